@@ -1,0 +1,2 @@
+//! Quaternion-based trajectory tracking for small quadcopters.
+#![no_std]

@@ -1,0 +1,53 @@
+//! The command line: one module a command, each with its `Args` and a `run`.
+
+mod output;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Why a command stops: one line for the user and the exit code.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    exit_code: u8,
+    line: String,
+}
+
+impl Failure {
+    /// The input cannot be used: exit code 2.
+    pub(crate) fn input(reason: impl std::fmt::Display) -> Self {
+        Self { exit_code: 2, line: reason.to_string() }
+    }
+
+    /// The question was answered with no: exit code 1.
+    pub(crate) fn verdict(reason: impl std::fmt::Display) -> Self {
+        Self { exit_code: 1, line: reason.to_string() }
+    }
+}
+
+/// Trajectory tracking with a quaternion-based quadcopter model: design, plan, fly, and reproduce the paper.
+#[derive(Parser)]
+#[command(name = "quatrack", version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {}
+
+/// Reads the arguments, runs the command, prints what went wrong in one line.
+pub(crate) fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return output::argument_error(&error),
+    };
+    let outcome: Result<(), Failure> = match arguments.command {};
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("quatrack: {}", failure.line);
+            ExitCode::from(failure.exit_code)
+        }
+    }
+}

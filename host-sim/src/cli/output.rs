@@ -1,0 +1,49 @@
+//! What every command writes: files that are whole or absent, JSON, and argument errors of one line.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use serde::Serialize;
+
+use super::Failure;
+
+/// Prints help and version as they are, and an argument error as one line with exit code 2.
+pub(crate) fn argument_error(error: &clap::Error) -> ExitCode {
+    if !error.use_stderr() || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        print!("{error}");
+        return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
+    }
+    let text = error.to_string();
+    let line: Vec<&str> =
+        text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("Usage:")).collect();
+    eprintln!("quatrack: {}", line.join(" ").trim_start_matches("error: "));
+    ExitCode::from(2)
+}
+
+/// Creates `dir` and what leads to it.
+pub(crate) fn create_dir(dir: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(dir).map_err(|error| {
+        Failure::input(format!("{}: cannot create this folder ({error}); choose another", dir.display()))
+    })
+}
+
+/// Writes a file under a temporary name beside it and renames it, so that what stands under `path` is always whole.
+pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    let partial = PathBuf::from(partial);
+    fs::write(&partial, contents).and_then(|()| fs::rename(&partial, path)).map_err(|error| {
+        // The first error is the one to report; a leftover of it is only tidied away.
+        let _ = fs::remove_file(&partial);
+        Failure::input(format!("{}: cannot write this file ({error}); choose another place", path.display()))
+    })
+}
+
+/// Writes `value` as JSON, ended by a line feed.
+pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
+    let mut text = serde_json::to_string_pretty(value)
+        .map_err(|error| Failure::input(format!("{}: cannot be written as JSON ({error})", path.display())))?;
+    text.push('\n');
+    write(path, text.as_bytes())
+}

@@ -1,0 +1,26 @@
+//! The host side of quatrack, in f64: what the paper does with pencil, MATLAB and a solver.
+//!
+//! In flow the equations of the paper, weights, waypoints and trajectory files; out flow gains, plans, flights, tables
+//! and figures. The layers import only downwards:
+//!
+//! ```text
+//! reproduction, figures           Table I and Figures 2 to 5
+//!   flight                        plant, integrators, laws in f64, the f32 core in the loop, metrics
+//!     plan                        waypoints and bounds -> B-spline, by second-order cone programming
+//!       trajectory                B-splines, polynomial pieces, their files
+//!     analysis                    Section III: poles, Jordan blocks, controllability
+//!     design                      Section IV: Lyapunov and Riccati equations, the four gains
+//!       model                     Section II: the model (1), its linearisations
+//! ```
+//!
+//! Conventions: world frame z up, quaternion scalar first, Hamilton product, body to world; thrust is divided by mass
+//! (m/s^2), body rates in rad/s; SI everywhere.
+
+pub mod analysis;
+pub mod design;
+pub mod figures;
+pub mod flight;
+pub mod model;
+pub mod plan;
+pub mod reproduction;
+pub mod trajectory;
