@@ -1,2 +1,65 @@
-//! Quaternion-based trajectory tracking for small quadcopters.
+//! Quaternion-based trajectory tracking for small quadcopters, after "Trajectory Tracking with a Quaternion-based
+//! Quadcopter Model": an estimated state and a reference in, thrust and body rates out, at a fixed rate.
+//!
+//! No `std`, no allocation, no panic, `f32`, and the same bits on every target. Gains are computed offline and stand in
+//! [`gains`].
+//!
+//! ```
+//! use quatrack::{Equilibrium, Limits, Rate, Reference, State, Tracker, gains, nalgebra::Vector3};
+//!
+//! let limits = Limits::new(1.8, 16.5, Vector3::new(20.0, 20.0, 5.0))?;
+//! let tracker = Tracker::new(Equilibrium::new(&gains::paper::LQR_E), limits);
+//! let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0)?;
+//! let step = tracker.step(&State::at_rest(Vector3::new(0.0, 0.0, 0.9)), &reference)?;
+//! // 10 cm too low: 100 m/s^2 per metre on top of gravity, cut to what the motors can do.
+//! assert_eq!(step.command.thrust_m_s2, 16.5);
+//! assert!(step.limited.thrust);
+//! # Ok::<(), Box<dyn core::error::Error>>(())
+//! ```
+//!
+//! The layers import only downwards:
+//!
+//! ```text
+//! tracker                     one step: normalise, law, saturate
+//!   law                       equilibrium (E) and flat output (F)
+//!     trajectory, gains       pieces played by ticks; tables
+//!       reference             flat output -> state and input, checked
+//!         flatness            the flat map and its inverse
+//!           state, command, gain, clock
+//!             quaternion, error
+//!               math          square root, sine and cosine
+//! ```
+//!
+//! Conventions: world frame z up; quaternion scalar first, Hamilton product, body to world; thrust divided by mass, in
+//! m/s^2; body rates in rad/s.
 #![no_std]
+#![warn(clippy::unwrap_used, clippy::expect_used)]
+
+#[cfg(test)]
+extern crate std;
+
+pub mod clock;
+pub mod command;
+pub mod error;
+pub mod flatness;
+pub mod gain;
+pub mod gains;
+pub mod law;
+pub mod math;
+pub mod quaternion;
+pub mod reference;
+pub mod state;
+pub mod tracker;
+pub mod trajectory;
+
+pub use nalgebra;
+
+pub use clock::{Rate, Tick};
+pub use command::{Command, Limited, Limits};
+pub use error::{ReferenceError, StateError, StepError};
+pub use law::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput};
+pub use quaternion::{Heading, Quaternion};
+pub use reference::{FlatSample, Reference};
+pub use state::State;
+pub use tracker::{Step, Tracker};
+pub use trajectory::{Piece, Player, Trajectory};

@@ -4,6 +4,7 @@
 //! [`linear`]). The quaternion enters as it is, without normalisation: the paper's matrices (9) are the derivatives of
 //! this form, in which the thrust axis is a homogeneous quadratic of the quaternion.
 
+pub mod flat;
 pub mod linear;
 
 use nalgebra::{ComplexField, SVector, Vector3, Vector4};

@@ -1,0 +1,197 @@
+//! The command: thrust and body rates in, the same within the vehicle's limits out, with a report of what was limited.
+
+use core::fmt;
+
+use nalgebra::Vector3;
+
+/// The paper's input `u = [T p q r]` (2b).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Command {
+    /// Thrust divided by mass along the body z axis, m/s^2.
+    pub thrust_m_s2: f32,
+    /// Body rates `p q r`, rad/s.
+    pub body_rates_rad_s: Vector3<f32>,
+}
+
+impl Command {
+    /// No thrust, no rotation: what a stopped craft is given.
+    pub const ZERO: Self = Self { thrust_m_s2: 0.0, body_rates_rad_s: Vector3::new(0.0, 0.0, 0.0) };
+}
+
+/// What a vehicle can be asked for; built with [`Limits::new`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    thrust_min_m_s2: f32,
+    thrust_max_m_s2: f32,
+    body_rates_max_rad_s: Vector3<f32>,
+}
+
+/// Why limits are refused.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LimitsError {
+    /// `thrust_min_m_s2 <= thrust_max_m_s2` does not hold, or one of them is not a number.
+    Thrust {
+        /// Lower bound, m/s^2.
+        min_m_s2: f32,
+        /// Upper bound, m/s^2.
+        max_m_s2: f32,
+    },
+    /// A body rate bound is not a positive number.
+    BodyRate {
+        /// The bound, rad/s.
+        max_rad_s: f32,
+    },
+}
+
+impl fmt::Display for LimitsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Thrust { min_m_s2, max_m_s2 } => {
+                write!(f, "limits: thrust from {min_m_s2} to {max_m_s2} m/s^2 is empty; give the lower bound first")
+            }
+            Self::BodyRate { max_rad_s } => write!(f, "limits: body rate {max_rad_s} rad/s; must be positive"),
+        }
+    }
+}
+
+impl core::error::Error for LimitsError {}
+
+/// Which parts of a command were cut to the limits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Limited {
+    /// Thrust.
+    pub thrust: bool,
+    /// Body rates `p q r`, each.
+    pub body_rates: [bool; 3],
+}
+
+impl Limited {
+    /// Nothing was cut.
+    pub const NOTHING: Self = Self { thrust: false, body_rates: [false; 3] };
+
+    /// Whether anything was cut.
+    pub fn any(self) -> bool {
+        self != Self::NOTHING
+    }
+}
+
+impl Limits {
+    /// The whole range of f32: never binds, and still refuses what is not finite.
+    pub const NONE: Self = Self {
+        thrust_min_m_s2: f32::MIN,
+        thrust_max_m_s2: f32::MAX,
+        body_rates_max_rad_s: Vector3::new(f32::MAX, f32::MAX, f32::MAX),
+    };
+
+    /// Thrust within `[thrust_min_m_s2, thrust_max_m_s2]`, each body rate within plus or minus its bound.
+    ///
+    /// # Errors
+    /// [`LimitsError`] where the range of thrust is empty or a rate bound is not positive; NaN is refused.
+    pub fn new(
+        thrust_min_m_s2: f32,
+        thrust_max_m_s2: f32,
+        body_rates_max_rad_s: Vector3<f32>,
+    ) -> Result<Self, LimitsError> {
+        let finite = thrust_min_m_s2.is_finite() && thrust_max_m_s2.is_finite();
+        if !(finite && thrust_min_m_s2 <= thrust_max_m_s2) {
+            return Err(LimitsError::Thrust { min_m_s2: thrust_min_m_s2, max_m_s2: thrust_max_m_s2 });
+        }
+        match body_rates_max_rad_s.iter().find(|max| !(max.is_finite() && **max > 0.0)) {
+            Some(&max_rad_s) => Err(LimitsError::BodyRate { max_rad_s }),
+            None => Ok(Self { thrust_min_m_s2, thrust_max_m_s2, body_rates_max_rad_s }),
+        }
+    }
+
+    /// Whether the command is finite and within the limits; false for NaN.
+    #[inline]
+    pub fn contain(&self, command: &Command) -> bool {
+        let rates = &command.body_rates_rad_s;
+        let max = &self.body_rates_max_rad_s;
+        command.thrust_m_s2 >= self.thrust_min_m_s2
+            && command.thrust_m_s2 <= self.thrust_max_m_s2
+            && rates.x.abs() <= max.x
+            && rates.y.abs() <= max.y
+            && rates.z.abs() <= max.z
+    }
+
+    /// The command cut to the limits and what was cut; nothing where a number is not finite.
+    #[inline]
+    pub fn saturate(&self, command: &Command) -> Option<(Command, Limited)> {
+        if self.contain(command) { Some((*command, Limited::NOTHING)) } else { self.cut(command) }
+    }
+
+    #[cold]
+    fn cut(&self, command: &Command) -> Option<(Command, Limited)> {
+        let rates = &command.body_rates_rad_s;
+        let max = &self.body_rates_max_rad_s;
+        if !(command.thrust_m_s2.is_finite() && rates.iter().all(|rate| rate.is_finite())) {
+            return None;
+        }
+        let cut = Command {
+            thrust_m_s2: command.thrust_m_s2.max(self.thrust_min_m_s2).min(self.thrust_max_m_s2),
+            body_rates_rad_s: Vector3::new(
+                rates.x.max(-max.x).min(max.x),
+                rates.y.max(-max.y).min(max.y),
+                rates.z.max(-max.z).min(max.z),
+            ),
+        };
+        let limited = Limited {
+            thrust: cut.thrust_m_s2 != command.thrust_m_s2,
+            body_rates: [
+                cut.body_rates_rad_s.x != rates.x,
+                cut.body_rates_rad_s.y != rates.y,
+                cut.body_rates_rad_s.z != rates.z,
+            ],
+        };
+        Some((cut, limited))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn command(thrust_m_s2: f32, p: f32, q: f32, r: f32) -> Command {
+        Command { thrust_m_s2, body_rates_rad_s: Vector3::new(p, q, r) }
+    }
+
+    fn limits() -> Limits {
+        Limits::new(2.0, 16.0, Vector3::new(10.0, 10.0, 3.0)).unwrap()
+    }
+
+    #[test]
+    fn a_command_on_the_limits_is_untouched() {
+        let edge = command(16.0, -10.0, 10.0, 3.0);
+        assert_eq!(limits().saturate(&edge), Some((edge, Limited::NOTHING)));
+    }
+
+    #[test]
+    fn each_part_is_cut_and_reported_alone() {
+        let (cut, limited) = limits().saturate(&command(1.0, 11.0, 0.0, -4.0)).unwrap();
+        assert_eq!(cut, command(2.0, 10.0, 0.0, -3.0));
+        assert_eq!(limited, Limited { thrust: true, body_rates: [true, false, true] });
+        assert!(limited.any());
+    }
+
+    #[test]
+    fn what_is_not_finite_is_never_a_command() {
+        for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for i in 0..4 {
+                let mut values = [9.81, 0.0, 0.0, 0.0];
+                values[i] = bad;
+                let [t, p, q, r] = values;
+                assert_eq!(limits().saturate(&command(t, p, q, r)), None);
+                assert_eq!(Limits::NONE.saturate(&command(t, p, q, r)), None);
+            }
+        }
+    }
+
+    #[test]
+    fn empty_and_unordered_limits_are_refused() {
+        let rates = Vector3::new(1.0, 1.0, 1.0);
+        assert_eq!(Limits::new(2.0, 1.0, rates), Err(LimitsError::Thrust { min_m_s2: 2.0, max_m_s2: 1.0 }));
+        assert!(Limits::new(f32::NAN, 1.0, rates).is_err());
+        let zero = Limits::new(0.0, 1.0, Vector3::new(1.0, 0.0, 1.0));
+        assert_eq!(zero, Err(LimitsError::BodyRate { max_rad_s: 0.0 }));
+    }
+}

@@ -1,0 +1,130 @@
+//! What can be wrong, one small enum per edge; every variant carries the offending value and says what to do.
+
+use core::fmt;
+
+/// A group of numbers in a state or a flat sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Field {
+    /// Position, m.
+    Position,
+    /// Attitude quaternion.
+    Attitude,
+    /// Velocity, m/s.
+    Velocity,
+    /// Acceleration, m/s^2.
+    Acceleration,
+    /// Jerk, m/s^3.
+    Jerk,
+    /// Heading, rad.
+    Heading,
+    /// Heading rate, rad/s.
+    HeadingRate,
+}
+
+impl fmt::Display for Field {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Position => "position",
+            Self::Attitude => "attitude",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+            Self::Jerk => "jerk",
+            Self::Heading => "heading",
+            Self::HeadingRate => "heading rate",
+        })
+    }
+}
+
+/// Why an estimated state cannot be flown on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StateError {
+    /// A component is infinite or not a number: distrust the estimator.
+    NonFinite {
+        /// Where.
+        field: Field,
+        /// What stands there.
+        value: f32,
+    },
+    /// The quaternion is no rotation: check its scaling and order (scalar first).
+    QuaternionNorm {
+        /// Its squared norm, which should be 1.
+        norm_squared: f32,
+    },
+}
+
+/// Why a flat output is no flyable reference.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ReferenceError {
+    /// A component is infinite or not a number: distrust the planner or the link.
+    NonFinite {
+        /// Where.
+        field: Field,
+        /// What stands there.
+        value: f32,
+    },
+    /// Free fall: without thrust the attitude is not determined. Plan with a thrust bound.
+    NoThrust {
+        /// The thrust that the acceleration asks for, m/s^2.
+        thrust_m_s2: f32,
+    },
+    /// The thrust would point down: the tilt of 180 degrees has no heading. Plan with a tilt bound.
+    Inverted {
+        /// Vertical component of the thrust's direction.
+        axis_z: f32,
+    },
+    /// A heading or a `q3` that the flat map cannot reach at this tilt: `|q3| > cos(tilt / 2)`.
+    HeadingInfeasible {
+        /// The third vector component of the quaternion that was asked for.
+        q3: f32,
+    },
+}
+
+/// Why a step gave no command. The caller must not hold the last one: stop the motors or level.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepError {
+    /// The state is the reason.
+    State(StateError),
+    /// State and reference are sound, but the law asks for an attitude at which the flat map is singular (free fall,
+    /// thrust downwards, heading half a turn off), or for numbers beyond the range of f32.
+    Singular,
+}
+
+impl fmt::Display for StateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NonFinite { field, value } => write!(f, "state: {field} holds {value}; distrust the estimator"),
+            Self::QuaternionNorm { norm_squared } => write!(
+                f,
+                "state: attitude has the squared norm {norm_squared}, not 1; check its scaling and order (scalar first)"
+            ),
+        }
+    }
+}
+
+impl fmt::Display for ReferenceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NonFinite { field, value } => write!(f, "reference: {field} holds {value}; distrust its source"),
+            Self::NoThrust { thrust_m_s2 } => {
+                write!(f, "reference: thrust {thrust_m_s2} m/s^2 is free fall; plan with a thrust bound")
+            }
+            Self::Inverted { axis_z } => {
+                write!(f, "reference: thrust axis points down ({axis_z}); plan with a tilt bound")
+            }
+            Self::HeadingInfeasible { q3 } => write!(f, "reference: q3 = {q3} is out of reach at this tilt"),
+        }
+    }
+}
+
+impl fmt::Display for StepError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::State(error) => error.fmt(f),
+            Self::Singular => f.write_str("law: the asked acceleration has no attitude; stop or level"),
+        }
+    }
+}
+
+impl core::error::Error for StateError {}
+impl core::error::Error for ReferenceError {}
+impl core::error::Error for StepError {}

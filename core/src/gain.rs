@@ -1,0 +1,116 @@
+//! Gain matrices: rows of numbers in, a matrix that is known to be finite and to use every error out.
+
+use core::fmt;
+
+use nalgebra::SMatrix;
+
+/// A constant feedback gain: `M` outputs from `N` errors, finite, every column with an entry that is not zero.
+///
+/// The last condition is what lets a step look at its outputs alone: an error that is not finite shows in one of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gain<const M: usize, const N: usize> {
+    rows: [[f32; N]; M],
+}
+
+/// Why a matrix is no gain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GainError {
+    /// An entry is infinite or not a number.
+    NonFinite {
+        /// Row, from 0.
+        row: usize,
+        /// Column, from 0.
+        column: usize,
+    },
+    /// An error that no output answers to: a broken sensor would go unnoticed.
+    UnusedError {
+        /// The column of zeros, from 0.
+        column: usize,
+    },
+}
+
+impl fmt::Display for GainError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NonFinite { row, column } => write!(f, "gain: entry ({row}, {column}) is not finite"),
+            Self::UnusedError { column } => write!(f, "gain: column {column} is zero; every error must have an answer"),
+        }
+    }
+}
+
+impl core::error::Error for GainError {}
+
+impl<const M: usize, const N: usize> Gain<M, N> {
+    /// Checks a matrix given by rows.
+    ///
+    /// # Errors
+    /// [`GainError`] names the entry or column.
+    pub const fn new(rows: [[f32; N]; M]) -> Result<Self, GainError> {
+        let mut column = 0;
+        while column < N {
+            let mut used = false;
+            let mut row = 0;
+            while row < M {
+                let entry = rows[row][column];
+                if !entry.is_finite() {
+                    return Err(GainError::NonFinite { row, column });
+                }
+                used |= entry != 0.0;
+                row += 1;
+            }
+            if !used {
+                return Err(GainError::UnusedError { column });
+            }
+            column += 1;
+        }
+        Ok(Self { rows })
+    }
+
+    /// For tables in the source: a bad one does not compile when it initialises a constant.
+    ///
+    /// # Panics
+    /// At compile time, on what [`Gain::new`] refuses.
+    pub const fn table(rows: [[f32; N]; M]) -> Self {
+        match Self::new(rows) {
+            Ok(gain) => gain,
+            Err(GainError::NonFinite { .. }) => panic!("the gain table holds an entry that is not finite"),
+            Err(GainError::UnusedError { .. }) => panic!("the gain table has a column of zeros"),
+        }
+    }
+
+    /// The rows.
+    pub const fn rows(&self) -> &[[f32; N]; M] {
+        &self.rows
+    }
+
+    /// The matrix, `M` by `N`.
+    pub fn matrix(&self) -> SMatrix<f32, M, N> {
+        SMatrix::<f32, N, M>::from(self.rows).transpose()
+    }
+
+    /// `K e`. The sums run in the order of the columns: a matrix library may choose another one on another target, and
+    /// with it other last bits.
+    #[inline]
+    pub(crate) fn times(&self, error: &[f32; N]) -> [f32; M] {
+        self.rows.map(|row| row.iter().zip(error).fold(0.0, |sum, (k, e)| sum + k * e))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn product_is_the_matrix_product() {
+        let gain = Gain::new([[1.0, 2.0, 3.0], [-4.0, 0.5, 0.0]]).unwrap();
+        assert_eq!(gain.times(&[1.0, 10.0, 100.0]), [321.0, 1.0]);
+        assert_eq!(gain.matrix()[(1, 0)], -4.0);
+        assert_eq!(gain.matrix()[(0, 2)], 3.0);
+    }
+
+    #[test]
+    fn what_cannot_be_flown_is_named() {
+        assert_eq!(Gain::new([[1.0, f32::NAN]]), Err(GainError::NonFinite { row: 0, column: 1 }));
+        assert_eq!(Gain::new([[1.0, 0.0], [2.0, -0.0]]), Err(GainError::UnusedError { column: 1 }));
+    }
+}

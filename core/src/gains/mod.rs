@@ -1,0 +1,3 @@
+//! Gain tables made offline: constants in the image, checked when it is compiled.
+
+pub mod paper;

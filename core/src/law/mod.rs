@@ -1,0 +1,61 @@
+//! The control laws: a normalised state and a reference in, a command before saturation out.
+//!
+//! A law does not check its inputs and does not fail: what is not finite, and what its map has no answer to, comes out
+//! as a command that is not finite, which [`crate::tracker`] refuses.
+
+mod equilibrium;
+mod flat_output;
+
+pub use equilibrium::{Equilibrium, EquilibriumGain, ErrorForm};
+pub use flat_output::{FlatOutput, FlatOutputGain};
+
+use crate::command::Command;
+use crate::reference::Reference;
+use crate::state::State;
+
+/// Whether the reference's own input is added to the feedback.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FeedForward {
+    /// Feedback around hover alone, as in the paper.
+    #[default]
+    Without,
+    /// The reference's thrust and body rates (or acceleration, jerk and heading rate) are fed forward.
+    With,
+}
+
+/// A state feedback law.
+pub trait ControlLaw {
+    /// The command for a state of unit quaternion norm; not finite where an input is not or where the law is singular.
+    fn command(&self, state: &State, reference: &Reference) -> Command;
+}
+
+/// Any of the laws, to be chosen at run time.
+#[derive(Clone, Copy, Debug)]
+pub enum AnyLaw<'a> {
+    /// Linear in the state's error around hover.
+    Equilibrium(Equilibrium<'a>),
+    /// Linear in the flat state's error, through the flat map.
+    FlatOutput(FlatOutput<'a>),
+}
+
+impl ControlLaw for AnyLaw<'_> {
+    #[inline]
+    fn command(&self, state: &State, reference: &Reference) -> Command {
+        match self {
+            Self::Equilibrium(law) => law.command(state, reference),
+            Self::FlatOutput(law) => law.command(state, reference),
+        }
+    }
+}
+
+impl<'a> From<Equilibrium<'a>> for AnyLaw<'a> {
+    fn from(law: Equilibrium<'a>) -> Self {
+        Self::Equilibrium(law)
+    }
+}
+
+impl<'a> From<FlatOutput<'a>> for AnyLaw<'a> {
+    fn from(law: FlatOutput<'a>) -> Self {
+        Self::FlatOutput(law)
+    }
+}

@@ -1,0 +1,196 @@
+//! Unit quaternions, the project's one attitude convention: scalar first, Hamilton product, body to world.
+//!
+//! `q v q*` turns a vector given in the body frame into the world frame, and `dq/dt = 1/2 q (0, omega)` with the body
+//! rates `omega`. `q` and `-q` are the same attitude; who compares two of them moves the measured one to the
+//! reference's hemisphere first.
+
+use core::ops::{Mul, Neg};
+
+use nalgebra::Vector3;
+
+use crate::math::{sin_cos, sqrt};
+
+/// A quaternion, scalar part first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quaternion {
+    /// Scalar part, `q0` in the paper.
+    pub w: f32,
+    /// First vector component, `q1`.
+    pub x: f32,
+    /// Second vector component, `q2`.
+    pub y: f32,
+    /// Third vector component, `q3`.
+    pub z: f32,
+}
+
+impl Quaternion {
+    /// Body axes along world axes.
+    pub const IDENTITY: Self = Self::new(1.0, 0.0, 0.0, 0.0);
+
+    /// From its components, scalar part first.
+    pub const fn new(w: f32, x: f32, y: f32, z: f32) -> Self {
+        Self { w, x, y, z }
+    }
+
+    /// The inverse of a unit quaternion.
+    pub fn conjugate(self) -> Self {
+        Self::new(self.w, -self.x, -self.y, -self.z)
+    }
+
+    /// Inner product of the four components; below zero for two quaternions of opposite hemispheres.
+    pub fn dot(self, other: Self) -> f32 {
+        self.w * other.w + self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// The same attitude in the hemisphere of `other`.
+    pub fn in_hemisphere_of(self, other: Self) -> Self {
+        if self.dot(other) < 0.0 { -self } else { self }
+    }
+
+    /// Vector part.
+    pub fn vector(self) -> Vector3<f32> {
+        Vector3::new(self.x, self.y, self.z)
+    }
+
+    /// The body z axis in the world frame, along which the thrust acts; `q` of unit norm.
+    pub fn thrust_axis(self) -> Vector3<f32> {
+        Vector3::new(
+            2.0 * (self.x * self.z + self.w * self.y),
+            2.0 * (self.y * self.z - self.w * self.x),
+            1.0 - 2.0 * (self.x * self.x + self.y * self.y),
+        )
+    }
+
+    /// The quaternion scaled to norm 1; the caller has checked that the norm is near 1.
+    pub(crate) fn normalised(self, norm_squared: f32) -> Self {
+        let scale = 1.0 / sqrt(norm_squared);
+        Self::new(self.w * scale, self.x * scale, self.y * scale, self.z * scale)
+    }
+}
+
+impl Mul for Quaternion {
+    type Output = Self;
+
+    /// Hamilton product: first `other`, then `self`.
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (self, other);
+        Self::new(
+            a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z,
+            a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
+            a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
+            a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w,
+        )
+    }
+}
+
+impl Neg for Quaternion {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self::new(-self.w, -self.x, -self.y, -self.z)
+    }
+}
+
+/// A heading: the rotation about the world's vertical that is left of an attitude `q = q_tilt(n) q_z(psi)` when the
+/// smallest rotation that tilts the thrust axis to `n` is taken off. Not Z-Y-X yaw, from which it differs away from
+/// hover.
+///
+/// Held as cosine and sine of half the angle; always of unit norm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Heading {
+    cos_half: f32,
+    sin_half: f32,
+}
+
+impl Heading {
+    /// Heading 0, the paper's.
+    pub const ZERO: Self = Self { cos_half: 1.0, sin_half: 0.0 };
+
+    /// From the angle psi in radians, within +-2000; turns are kept apart (psi and psi + 2 pi give `q` and `-q`).
+    pub fn from_angle(psi_rad: f32) -> Self {
+        let (sin_half, cos_half) = sin_cos(0.5 * psi_rad);
+        Self { cos_half, sin_half }
+    }
+
+    /// Cosine of half the angle.
+    pub fn cos_half(self) -> f32 {
+        self.cos_half
+    }
+
+    /// Sine of half the angle.
+    pub fn sin_half(self) -> f32 {
+        self.sin_half
+    }
+
+    /// Cosine and sine of the angle itself.
+    pub fn cos_sin(self) -> (f32, f32) {
+        let (c, s) = (self.cos_half, self.sin_half);
+        (c * c - s * s, 2.0 * c * s)
+    }
+
+    /// The quaternion `q_z(psi)`.
+    pub fn quaternion(self) -> Quaternion {
+        Quaternion::new(self.cos_half, 0.0, 0.0, self.sin_half)
+    }
+
+    /// A world vector in the frame that has this heading.
+    pub fn to_heading_frame(self, v: Vector3<f32>) -> Vector3<f32> {
+        let (cos, sin) = self.cos_sin();
+        Vector3::new(cos * v.x + sin * v.y, cos * v.y - sin * v.x, v.z)
+    }
+
+    /// An attitude seen from the frame that has this heading: `q_z(-psi) q`.
+    pub fn attitude_to_heading_frame(self, q: Quaternion) -> Quaternion {
+        let (c, s) = (self.cos_half, self.sin_half);
+        Quaternion::new(c * q.w + s * q.z, c * q.x + s * q.y, c * q.y - s * q.x, c * q.z - s * q.w)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const Q: Quaternion = Quaternion::new(0.5, 0.5, -0.1, 0.7);
+
+    #[test]
+    fn product_follows_hamilton() {
+        let i = Quaternion::new(0.0, 1.0, 0.0, 0.0);
+        let j = Quaternion::new(0.0, 0.0, 1.0, 0.0);
+        let k = Quaternion::new(0.0, 0.0, 0.0, 1.0);
+        assert_eq!(i * j, k);
+        assert_eq!(j * k, i);
+        assert_eq!(k * i, j);
+        assert_eq!(j * i, -k);
+        let squared = Q * Q.conjugate();
+        assert!((squared.w - Q.dot(Q)).abs() < 1e-6 && squared.vector().norm() < 1e-6);
+    }
+
+    #[test]
+    fn thrust_axis_is_the_sandwich_product() {
+        assert!((Q.dot(Q) - 1.0).abs() < 1e-6);
+        let sandwich = Q * Quaternion::new(0.0, 0.0, 0.0, 1.0) * Q.conjugate();
+        // A handful of roundings of numbers below 1.
+        assert!((Q.thrust_axis() - sandwich.vector()).norm() < 1e-6);
+        assert!(((-Q).thrust_axis() - Q.thrust_axis()).norm() == 0.0);
+    }
+
+    #[test]
+    fn hemisphere_is_that_of_the_other() {
+        assert_eq!((-Q).in_hemisphere_of(Q), Q);
+        assert_eq!(Q.in_hemisphere_of(-Q), -Q);
+        assert_eq!(Q.in_hemisphere_of(Q), Q);
+    }
+
+    #[test]
+    fn heading_frame_turns_vectors_and_attitudes_alike() {
+        let heading = Heading::from_angle(0.7);
+        let turned = heading.to_heading_frame(Q.thrust_axis());
+        let attitude = heading.attitude_to_heading_frame(Q);
+        assert!((turned - attitude.thrust_axis()).norm() < 1e-6);
+        let product = heading.quaternion().conjugate() * Q;
+        assert!((attitude.dot(product) - 1.0).abs() < 1e-6);
+        // A quarter turn to the left: what lies to the north of the craft lies ahead of it.
+        let north = Heading::from_angle(core::f32::consts::FRAC_PI_2).to_heading_frame(Vector3::new(0.0, 1.0, 0.0));
+        assert!((north - Vector3::new(1.0, 0.0, 0.0)).norm() < 1e-6);
+    }
+}

@@ -1,0 +1,146 @@
+//! The reference: the flat output and its derivatives in; the state and input that fly it out, checked once.
+
+use nalgebra::Vector3;
+
+use crate::command::Command;
+use crate::error::{Field, ReferenceError};
+use crate::flatness::{GRAVITY_M_S2, Tilt};
+use crate::quaternion::Heading;
+use crate::state::State;
+
+/// The flat output and its derivatives at one time, world frame; what a planner or a stored trajectory knows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlatSample {
+    /// Position, m.
+    pub position_m: Vector3<f32>,
+    /// Velocity, m/s.
+    pub velocity_m_s: Vector3<f32>,
+    /// Acceleration without gravity, m/s^2.
+    pub acceleration_m_s2: Vector3<f32>,
+    /// Jerk, m/s^3.
+    pub jerk_m_s3: Vector3<f32>,
+    /// Heading psi of `q = q_tilt(n) q_z(psi)`, rad; within +-2000.
+    pub heading_rad: f32,
+    /// Its rate, rad/s.
+    pub heading_rate_rad_s: f32,
+}
+
+impl FlatSample {
+    /// Rest at a position and heading.
+    pub const fn at_rest(position_m: Vector3<f32>, heading_rad: f32) -> Self {
+        const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
+        Self {
+            position_m,
+            velocity_m_s: ZERO,
+            acceleration_m_s2: ZERO,
+            jerk_m_s3: ZERO,
+            heading_rad,
+            heading_rate_rad_s: 0.0,
+        }
+    }
+
+    /// Names the first number that is not finite.
+    #[cold]
+    fn non_finite(&self) -> Option<ReferenceError> {
+        let vectors = [
+            (Field::Position, &self.position_m),
+            (Field::Velocity, &self.velocity_m_s),
+            (Field::Acceleration, &self.acceleration_m_s2),
+            (Field::Jerk, &self.jerk_m_s3),
+        ];
+        let scalars = [(Field::Heading, self.heading_rad), (Field::HeadingRate, self.heading_rate_rad_s)];
+        let in_vectors = vectors.iter().flat_map(|(field, v)| [(*field, v.x), (*field, v.y), (*field, v.z)]);
+        in_vectors
+            .chain(scalars)
+            .find(|(_, value)| !value.is_finite())
+            .map(|(field, value)| ReferenceError::NonFinite { field, value })
+    }
+}
+
+/// A flyable reference: finite, with thrust, upright enough for the flat map. Only this module makes one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reference {
+    pub(crate) state: State,
+    pub(crate) input: Command,
+    pub(crate) acceleration_m_s2: Vector3<f32>,
+    pub(crate) jerk_m_s3: Vector3<f32>,
+    pub(crate) heading: Heading,
+    pub(crate) heading_rate_rad_s: f32,
+}
+
+impl Reference {
+    /// Hover at a position and heading.
+    ///
+    /// # Errors
+    /// [`ReferenceError::NonFinite`].
+    pub fn hover(position_m: Vector3<f32>, heading_rad: f32) -> Result<Self, ReferenceError> {
+        Self::from_flat(&FlatSample::at_rest(position_m, heading_rad))
+    }
+
+    /// The state and input that fly a flat output, by the flat map (5).
+    ///
+    /// # Errors
+    /// [`ReferenceError`] where a number is not finite and at the map's singularities.
+    #[inline]
+    pub fn from_flat(sample: &FlatSample) -> Result<Self, ReferenceError> {
+        let tilt = Tilt::new(sample.acceleration_m_s2, sample.jerk_m_s3);
+        let heading = Heading::from_angle(sample.heading_rad);
+        let mapped = tilt.with_heading(heading, sample.heading_rate_rad_s);
+        let (r, v, rates) = (&sample.position_m, &sample.velocity_m_s, &mapped.input.body_rates_rad_s);
+        // Every number of the sample reaches one of these; a sum is finite only if all of them are.
+        let witness = (r.x + r.y + r.z) + (v.x + v.y + v.z) + (rates.x + rates.y + rates.z);
+        if !witness.is_finite() {
+            return Err(sample.singular_or_non_finite(mapped.input.thrust_m_s2));
+        }
+        tilt.check()?;
+        Ok(Self {
+            state: State {
+                position_m: sample.position_m,
+                attitude: mapped.attitude,
+                velocity_m_s: sample.velocity_m_s,
+            },
+            input: mapped.input,
+            acceleration_m_s2: sample.acceleration_m_s2,
+            jerk_m_s3: sample.jerk_m_s3,
+            heading,
+            heading_rate_rad_s: sample.heading_rate_rad_s,
+        })
+    }
+
+    /// Position, attitude and velocity to be at.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Thrust and body rates that keep the craft on the reference.
+    pub fn input(&self) -> &Command {
+        &self.input
+    }
+
+    /// Acceleration without gravity, world frame, m/s^2.
+    pub fn acceleration_m_s2(&self) -> Vector3<f32> {
+        self.acceleration_m_s2
+    }
+
+    /// Jerk, world frame, m/s^3.
+    pub fn jerk_m_s3(&self) -> Vector3<f32> {
+        self.jerk_m_s3
+    }
+
+    /// Heading of the attitude.
+    pub fn heading(&self) -> Heading {
+        self.heading
+    }
+}
+
+impl FlatSample {
+    /// Why the flat map gave something that is not finite.
+    #[cold]
+    fn singular_or_non_finite(&self, thrust_m_s2: f32) -> ReferenceError {
+        self.non_finite().unwrap_or(if thrust_m_s2 > 0.0 && self.acceleration_m_s2.z < -GRAVITY_M_S2 {
+            ReferenceError::Inverted { axis_z: -1.0 }
+        } else {
+            ReferenceError::NoThrust { thrust_m_s2 }
+        })
+    }
+}

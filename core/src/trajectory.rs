@@ -1,0 +1,232 @@
+//! Stored trajectories: polynomial pieces and a tick in, the flat output to jerk out.
+//!
+//! A [`Trajectory`] is pieces that have been checked; a [`Player`] walks along them at a fixed rate. Time is the tick:
+//! the time within a piece is found by integers, in nanoseconds, and only then becomes an `f32`.
+
+use core::fmt;
+
+use nalgebra::Vector3;
+
+use crate::clock::{Rate, Tick, TickClock};
+use crate::reference::FlatSample;
+
+/// Coefficients of a polynomial of degree at most 7, ascending powers of the seconds since the piece began.
+pub type Coefficients = [f32; 8];
+
+/// One piece of a trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// How long it lasts, ns.
+    pub duration_ns: u64,
+    /// Position along world x, m.
+    pub x: Coefficients,
+    /// Position along world y, m.
+    pub y: Coefficients,
+    /// Position along world z, m.
+    pub z: Coefficients,
+    /// Heading, rad.
+    pub heading: Coefficients,
+}
+
+/// Longest trajectory, ns: one hour.
+pub const MAX_DURATION_NS: u64 = 3_600_000_000_000;
+
+/// Largest jump of position between two pieces, m. Beyond it the pieces do not belong together; below it, it is the
+/// rounding of coefficients that were written with six decimals.
+pub const MAX_JUMP_M: f32 = 1e-3;
+
+/// Largest jump of heading between two pieces, rad.
+pub const MAX_HEADING_JUMP_RAD: f32 = 1e-3;
+
+/// Pieces that have been checked: at least one, positive durations, finite coefficients, no jumps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trajectory<'a> {
+    first: &'a Piece,
+    following: &'a [Piece],
+    duration_ns: u64,
+    end: FlatSample,
+}
+
+/// Why pieces are no trajectory; pieces are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TrajectoryError {
+    /// There are none.
+    Empty,
+    /// A piece of no duration.
+    NoDuration {
+        /// Which piece.
+        piece: usize,
+    },
+    /// Longer than [`MAX_DURATION_NS`] in all.
+    TooLong {
+        /// The piece with which the limit is passed.
+        piece: usize,
+    },
+    /// A coefficient is infinite or not a number, or the polynomial leaves the range of f32.
+    NonFinite {
+        /// Which piece.
+        piece: usize,
+    },
+    /// Position or heading jumps where a piece begins.
+    Jump {
+        /// The piece that begins there.
+        piece: usize,
+        /// How far it is from the end of the one before, m or rad.
+        size: f32,
+    },
+}
+
+impl fmt::Display for TrajectoryError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => f.write_str("trajectory: no pieces"),
+            Self::NoDuration { piece } => write!(f, "trajectory: piece {piece} has no duration"),
+            Self::TooLong { piece } => write!(f, "trajectory: longer than an hour with piece {piece}; split it"),
+            Self::NonFinite { piece } => write!(f, "trajectory: piece {piece} holds a value that is not finite"),
+            Self::Jump { piece, size } => {
+                write!(f, "trajectory: piece {piece} begins {size} m or rad from the end of the one before")
+            }
+        }
+    }
+}
+
+impl core::error::Error for TrajectoryError {}
+
+impl<'a> Trajectory<'a> {
+    /// Checks pieces.
+    ///
+    /// # Errors
+    /// [`TrajectoryError`] names the piece.
+    pub fn new(pieces: &'a [Piece]) -> Result<Self, TrajectoryError> {
+        let (first, following) = pieces.split_first().ok_or(TrajectoryError::Empty)?;
+        let mut duration_ns = 0_u64;
+        let mut end = first.at(0);
+        for (index, piece) in pieces.iter().enumerate() {
+            if piece.duration_ns == 0 {
+                return Err(TrajectoryError::NoDuration { piece: index });
+            }
+            duration_ns = duration_ns.saturating_add(piece.duration_ns);
+            if duration_ns > MAX_DURATION_NS {
+                return Err(TrajectoryError::TooLong { piece: index });
+            }
+            if !piece.is_finite() {
+                return Err(TrajectoryError::NonFinite { piece: index });
+            }
+            if let Some(size) = piece.jump_from(&end) {
+                return Err(TrajectoryError::Jump { piece: index, size });
+            }
+            end = piece.at(piece.duration_ns);
+        }
+        Ok(Self { first, following, duration_ns, end: FlatSample::at_rest(end.position_m, end.heading_rad) })
+    }
+
+    /// Length in time, ns.
+    pub fn duration_ns(&self) -> u64 {
+        self.duration_ns
+    }
+}
+
+impl Piece {
+    /// The flat output `time_ns` after the piece began.
+    #[inline]
+    fn at(&self, time_ns: u64) -> FlatSample {
+        let t = time_ns as f32 * 1e-9;
+        let [x, vx, ax, jx] = derivatives(&self.x, t);
+        let [y, vy, ay, jy] = derivatives(&self.y, t);
+        let [z, vz, az, jz] = derivatives(&self.z, t);
+        let [heading_rad, heading_rate_rad_s, _, _] = derivatives(&self.heading, t);
+        FlatSample {
+            position_m: Vector3::new(x, y, z),
+            velocity_m_s: Vector3::new(vx, vy, vz),
+            acceleration_m_s2: Vector3::new(ax, ay, az),
+            jerk_m_s3: Vector3::new(jx, jy, jz),
+            heading_rad,
+            heading_rate_rad_s,
+        }
+    }
+
+    /// Coefficients and the values at both ends are finite; in between, no polynomial of degree 7 with finite
+    /// coefficients over at most an hour that is finite at its end can exceed the sum of its terms, which is checked.
+    fn is_finite(&self) -> bool {
+        let t = (self.duration_ns as f32 * 1e-9).max(1.0);
+        [&self.x, &self.y, &self.z, &self.heading].iter().all(|coefficients| {
+            // Bounds |p|, |p'|, |p''| and |p'''| over the piece: 210 = 7 * 6 * 5.
+            (210.0 * coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c.abs())).is_finite()
+        })
+    }
+
+    /// How far this piece begins from `end`, if further than allowed.
+    fn jump_from(&self, end: &FlatSample) -> Option<f32> {
+        let start = self.at(0);
+        let position = (start.position_m - end.position_m).amax();
+        let heading = (start.heading_rad - end.heading_rad).abs();
+        let jumps = [(position, MAX_JUMP_M), (heading, MAX_HEADING_JUMP_RAD)];
+        jumps.iter().find(|(size, max)| size > max).map(|(size, _)| *size)
+    }
+}
+
+/// A polynomial and its first three derivatives at `t`, all by one pass of Horner's scheme.
+#[inline]
+fn derivatives(coefficients: &Coefficients, t: f32) -> [f32; 4] {
+    let (mut p, mut d1, mut d2, mut d3) = (0.0, 0.0, 0.0, 0.0);
+    for c in coefficients.iter().rev() {
+        d3 = d3 * t + d2;
+        d2 = d2 * t + d1;
+        d1 = d1 * t + p;
+        p = p * t + c;
+    }
+    [p, d1, 2.0 * d2, 6.0 * d3]
+}
+
+/// Walks along a trajectory, one tick at a time.
+///
+/// Ticks may be skipped or run backwards; a step forward within a piece or to the next one is the cheap case. After the
+/// end the trajectory rests at its last position and heading.
+#[derive(Clone, Copy, Debug)]
+pub struct Player<'a> {
+    trajectory: Trajectory<'a>,
+    clock: TickClock,
+    end_tick: Tick,
+    /// The piece of the last tick and when it begins.
+    piece: &'a Piece,
+    following: &'a [Piece],
+    start_ns: u64,
+}
+
+impl<'a> Player<'a> {
+    /// A player at the start of `trajectory`, ticking at `rate`.
+    pub fn new(trajectory: Trajectory<'a>, rate: Rate) -> Self {
+        let clock = TickClock::new(rate);
+        let end_tick = clock.first_tick_at(trajectory.duration_ns);
+        let (piece, following) = (trajectory.first, trajectory.following);
+        Self { trajectory, clock, end_tick, piece, following, start_ns: 0 }
+    }
+
+    /// The first tick at or after the trajectory's end.
+    pub fn end_tick(&self) -> Tick {
+        self.end_tick
+    }
+
+    /// The flat output `tick` ticks after the start.
+    #[inline]
+    pub fn at(&mut self, tick: Tick) -> FlatSample {
+        if tick >= self.end_tick {
+            return self.trajectory.end;
+        }
+        let time_ns = self.clock.time_ns(tick);
+        if time_ns < self.start_ns {
+            self.rewind();
+        }
+        while time_ns - self.start_ns >= self.piece.duration_ns {
+            let Some((next, following)) = self.following.split_first() else { break };
+            self.start_ns += self.piece.duration_ns;
+            (self.piece, self.following) = (next, following);
+        }
+        self.piece.at(time_ns - self.start_ns)
+    }
+
+    #[cold]
+    fn rewind(&mut self) {
+        (self.piece, self.following, self.start_ns) = (self.trajectory.first, self.trajectory.following, 0);
+    }
+}

@@ -1,0 +1,103 @@
+//! The `f32` core in the loop: the crate that runs on the board, flown against the f64 plant.
+//!
+//! The one crossing between f64 and f32: states go in rounded, as from an estimator; trajectories go in as the pieces
+//! that the board stores; commands come out exactly.
+
+use nalgebra::{Vector3, Vector4};
+use quatrack::trajectory::{Coefficients, TrajectoryError};
+use quatrack::{AnyLaw, Limits, Piece, Player, Quaternion, Rate, Reference, State, Tracker};
+
+use super::closed_loop::HeldCommand;
+use super::law::{EquilibriumGain, FlatOutputGain};
+use crate::model::{InputVector, StateVector, attitude, position, velocity};
+use crate::trajectory::polynomial::PiecewisePolynomial;
+
+fn vector(v: &Vector3<f64>) -> Vector3<f32> {
+    v.map(|value| value as f32)
+}
+
+fn quaternion(q: &Vector4<f64>) -> Quaternion {
+    Quaternion::new(q[0] as f32, q[1] as f32, q[2] as f32, q[3] as f32)
+}
+
+/// A state as the core takes it.
+pub fn state(x: &StateVector) -> State {
+    State {
+        position_m: vector(&position(x)),
+        attitude: quaternion(&attitude(x)),
+        velocity_m_s: vector(&velocity(x)),
+    }
+}
+
+/// A command of the core as an input of the model.
+pub fn input(command: &quatrack::Command) -> InputVector {
+    let rates = command.body_rates_rad_s.map(f64::from);
+    InputVector::new(f64::from(command.thrust_m_s2), rates.x, rates.y, rates.z)
+}
+
+/// A gain of the core in f64: the numbers that it flies, to compare with the design's.
+pub fn equilibrium_gain(gain: &quatrack::law::EquilibriumGain) -> EquilibriumGain {
+    gain.matrix().map(f64::from)
+}
+
+/// A gain of the core in f64.
+pub fn flat_output_gain(gain: &quatrack::law::FlatOutputGain) -> FlatOutputGain {
+    gain.matrix().map(f64::from)
+}
+
+/// A trajectory as the board stores it. Piece boundaries are rounded to a nanosecond from the start, so that their
+/// rounding does not add up.
+pub fn pieces(trajectory: &PiecewisePolynomial) -> Vec<Piece> {
+    let coefficients = |c: &[f64; 8]| -> Coefficients { c.map(|value| value as f32) };
+    let mut end_s = 0.0;
+    let mut start_ns = 0_u64;
+    trajectory
+        .pieces()
+        .iter()
+        .map(|piece| {
+            end_s += piece.duration_s;
+            let end_ns = (end_s * 1e9).round() as u64;
+            let duration_ns = end_ns - start_ns;
+            start_ns = end_ns;
+            Piece {
+                duration_ns,
+                x: coefficients(&piece.x),
+                y: coefficients(&piece.y),
+                z: coefficients(&piece.z),
+                heading: coefficients(&piece.yaw),
+            }
+        })
+        .collect()
+}
+
+/// The core's step at a rate, with the trajectory evaluated on board.
+pub struct CoreLoop<'a> {
+    player: Player<'a>,
+    tracker: Tracker<'a>,
+}
+
+impl<'a> CoreLoop<'a> {
+    /// A loop that flies stored pieces.
+    ///
+    /// # Errors
+    /// [`TrajectoryError`] where the core refuses the pieces.
+    pub fn new(
+        pieces: &'a [Piece],
+        rate: Rate,
+        law: impl Into<AnyLaw<'a>>,
+        limits: Limits,
+    ) -> Result<Self, TrajectoryError> {
+        let trajectory = quatrack::Trajectory::new(pieces)?;
+        Ok(Self { player: Player::new(trajectory, rate), tracker: Tracker::new(law, limits) })
+    }
+
+    /// One control step.
+    ///
+    /// # Errors
+    /// The core's own words, where it gives no command.
+    pub fn step(&mut self, tick: u32, x: &StateVector) -> Result<HeldCommand, String> {
+        let reference = Reference::from_flat(&self.player.at(tick)).map_err(|error| error.to_string())?;
+        let step = self.tracker.step(&state(x), &reference).map_err(|error| error.to_string())?;
+        Ok(HeldCommand { input: input(&step.command), limited: step.limited.any() })
+    }
+}
