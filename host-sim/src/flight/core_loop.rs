@@ -22,11 +22,7 @@ fn quaternion(q: &Vector4<f64>) -> Quaternion {
 
 /// A state as the core takes it.
 pub fn state(x: &StateVector) -> State {
-    State {
-        position_m: vector(&position(x)),
-        attitude: quaternion(&attitude(x)),
-        velocity_m_s: vector(&velocity(x)),
-    }
+    State { position_m: vector(&position(x)), attitude: quaternion(&attitude(x)), velocity_m_s: vector(&velocity(x)) }
 }
 
 /// A command of the core as an input of the model.

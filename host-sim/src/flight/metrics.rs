@@ -38,9 +38,8 @@ impl Metrics {
         let ends = errors.first().copied().unwrap_or(0.0) + errors.last().copied().unwrap_or(0.0);
         let whole = flight.lost.is_none();
         let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0_f64, f64::max);
-        let tilt_deg = |s: &super::closed_loop::Sample| {
-            thrust_axis(&attitude(&s.state)).z.clamp(-1.0, 1.0).acos().to_degrees()
-        };
+        let tilt_deg =
+            |s: &super::closed_loop::Sample| thrust_axis(&attitude(&s.state)).z.clamp(-1.0, 1.0).acos().to_degrees();
         let (min_z_time_s, min_z_m) = flight
             .samples
             .iter()
@@ -56,9 +55,7 @@ impl Metrics {
             min_z_time_s,
             max_tilt_deg: largest(&mut flight.samples.iter().map(tilt_deg)),
             max_thrust_m_s2: largest(&mut flight.samples.iter().map(|s| s.input[0])),
-            max_body_rate_rad_s: largest(
-                &mut flight.samples.iter().map(|s| s.input.fixed_rows::<3>(1).amax()),
-            ),
+            max_body_rate_rad_s: largest(&mut flight.samples.iter().map(|s| s.input.fixed_rows::<3>(1).amax())),
             saturated_steps: flight.saturated_steps,
         }
     }

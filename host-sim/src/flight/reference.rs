@@ -35,7 +35,11 @@ pub struct Sampled {
 
 impl Sampled {
     /// Samples `trajectory` every `period_s`, mapping each sample by `map`.
-    pub fn new(trajectory: &dyn Trajectory, period_s: f64, map: impl Fn(&dyn Trajectory, f64) -> ReferencePoint) -> Self {
+    pub fn new(
+        trajectory: &dyn Trajectory,
+        period_s: f64,
+        map: impl Fn(&dyn Trajectory, f64) -> ReferencePoint,
+    ) -> Self {
         let duration_s = trajectory.duration_s();
         let intervals = (duration_s / period_s - 1e-9).ceil().max(1.0) as usize;
         let points = (0..=intervals).map(|k| map(trajectory, (k as f64 * period_s).min(duration_s))).collect();

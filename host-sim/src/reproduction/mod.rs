@@ -2,4 +2,5 @@
 //! verdict per cell out.
 
 pub mod published;
+pub mod report;
 pub mod table;

@@ -9,7 +9,9 @@ use nalgebra::{Quaternion, SVector, Vector3, Vector4};
 
 use crate::flight::law::{EquilibriumGain, FlatOutputGain};
 use crate::model::flat::{ReferencePoint, Thrust, reference_point};
-use crate::model::{ATTITUDE, GRAVITY_M_S2, InputVector, StateVector, attitude, hover_input, position, thrust_axis, velocity};
+use crate::model::{
+    ATTITUDE, GRAVITY_M_S2, InputVector, StateVector, attitude, hover_input, position, thrust_axis, velocity,
+};
 use crate::trajectory::Trajectory;
 
 /// The reference with slip A.
@@ -55,10 +57,8 @@ fn phi_with_slip(acceleration: &Vector3<f64>, jerk: &Vector3<f64>, q3: f64, q3_r
     let q0_rate = (slip - 2.0 * q3 * q3_rate) / (2.0 * q[0]);
     let s = q[0] * q[0] + q3 * q3;
     let s_rate = 2.0 * q[0] * q0_rate + 2.0 * q3 * q3_rate;
-    let q1_rate =
-        (q3_rate * n.x + q3 * n_rate.x - q0_rate * n.y - q[0] * n_rate.y) / (2.0 * s) - q[1] * s_rate / s;
-    let q2_rate =
-        (q0_rate * n.x + q[0] * n_rate.x + q3_rate * n.y + q3 * n_rate.y) / (2.0 * s) - q[2] * s_rate / s;
+    let q1_rate = (q3_rate * n.x + q3 * n_rate.x - q0_rate * n.y - q[0] * n_rate.y) / (2.0 * s) - q[1] * s_rate / s;
+    let q2_rate = (q0_rate * n.x + q[0] * n_rate.x + q3_rate * n.y + q3 * n_rate.y) / (2.0 * s) - q[2] * s_rate / s;
     let conjugate = Quaternion::new(q[0], -q[1], -q[2], -q[3]);
     let rates = conjugate * Quaternion::new(q0_rate, q1_rate, q2_rate, q3_rate) * 2.0;
     InputVector::new(magnitude, rates.i, rates.j, rates.k)

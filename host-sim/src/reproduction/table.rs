@@ -1,94 +1,238 @@
-//! Table I, cell by cell: gains and trajectories in; IAE as printed, as published, exact, with the core and with
-//! feed-forward out.
+//! Table I, cell by cell: trajectories and gains in; IAE as printed, as published, exact, with the core in the loop and
+//! with feed-forward out.
 
-use quatrack::{AnyLaw, Equilibrium, ErrorForm, FlatOutput, Limits, Rate, gains::paper};
+use std::collections::BTreeMap;
+use std::fmt;
+
+use quatrack::law::{EquilibriumGain as CoreEquilibriumGain, FlatOutputGain as CoreFlatOutputGain};
+use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Rate, gains::paper};
 use serde::Serialize;
 
 use super::published;
+use crate::design::synthesis::{self, SynthesisError};
 use crate::flight::closed_loop::{Flight, SAMPLE_PERIOD_S, Solver, fly_continuous, fly_sampled};
 use crate::flight::core_loop::{self, CoreLoop};
+use crate::flight::integrator::DormandPrince;
 use crate::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
 use crate::flight::metrics::Metrics;
-use crate::flight::reference::{Exact, Reference, Sampled};
+use crate::flight::reference::{Exact, Sampled};
 use crate::model::flat::reference_point;
-use crate::trajectory::bspline::BSpline;
 use crate::trajectory::polynomial::PiecewisePolynomial;
 
-/// tmp
-pub fn closed(mu: f64) -> (EquilibriumGain, FlatOutputGain, EquilibriumGain, FlatOutputGain) {
-    let g = 9.81;
-    let e = |t: [f64; 2], q: [f64; 3], r: f64| {
-        let mut k = EquilibriumGain::zeros();
-        k[(0, 2)] = t[0];
-        k[(0, 8)] = t[1];
-        k[(2, 0)] = q[0];
-        k[(2, 6)] = q[1];
-        k[(2, 4)] = q[2];
-        k[(1, 1)] = -q[0];
-        k[(1, 7)] = -q[1];
-        k[(1, 3)] = q[2];
-        k[(3, 5)] = r;
-        k
-    };
-    let f = |r, v, a, q| {
-        let mut k = FlatOutputGain::zeros();
-        for i in 0..3 {
-            k[(i, i)] = r;
-            k[(i, i + 3)] = v;
-            k[(i + 3, i + 6)] = a;
-        }
-        k[(6, 9)] = q;
-        k
-    };
-    (
-        e([2.0 * mu * mu, 2.0 * mu], [4.0 * mu * mu * mu / g, 6.0 * mu * mu / g, 6.0 * mu], 2.0 * mu),
-        f(2.0 * mu * mu, 2.0 * mu, mu, mu),
-        e([100.0, 5200.0_f64.sqrt()], [1000.0_f64.sqrt(), 25.4484, 45.7951], 10.0),
-        f(2000.0_f64.sqrt(), (500.0 + 2.0 * 2000.0_f64.sqrt()).sqrt(), 1000.0_f64.sqrt(), 20.0),
-    )
+/// Rates at which the core is flown, Hz.
+pub const CORE_RATES_HZ: [u32; 3] = [100, 500, 1000];
+
+/// Decay rate of the paper's Lyapunov design, 1/s.
+pub const PAPER_MU: f64 = 2.0;
+
+/// Decay rate of the case that crashes in the paper's text, 1/s.
+pub const CRASH_MU: f64 = 1.0;
+
+/// The integrator of the flights with feed-forward, whose errors are as small as an integrator's own.
+const TRUTH: Solver = Solver::Adaptive(DormandPrince { tolerance: 1e-11, step_min_s: 1e-7 });
+
+/// The paper's controllers, in the order of its Table I.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub enum Controller {
+    /// Lyapunov design on the flat chain.
+    #[serde(rename = "LYAP-F")]
+    LyapF,
+    /// Lyapunov design at the hover equilibrium.
+    #[serde(rename = "LYAP-E")]
+    LyapE,
+    /// LQR on the flat chain.
+    #[serde(rename = "LQR-F")]
+    LqrF,
+    /// LQR at the hover equilibrium.
+    #[serde(rename = "LQR-E")]
+    LqrE,
 }
-/// tmp
-pub fn trial(spline: &BSpline) {
-    let (le, lf, qe, qf) = closed(2.0);
-    let pubref = Sampled::new(spline, SAMPLE_PERIOD_S, published::reference);
-    let exref = Sampled::new(spline, SAMPLE_PERIOD_S, |t, s| reference_point(&t.at(s)));
-    let m = |f: Flight| (Metrics::of(&f).iae_m_s, f.lost);
-    let pieces = core_loop::pieces(&PiecewisePolynomial::from_bspline(spline));
-    for (name, e, f) in [("LYAP", le, lf), ("LQR", qe, qf)] {
-        println!("{name}-F pub {:?}", m(fly_continuous(&pubref, |x, t| published::flat_output_input(&f, x, t), Solver::PAPER)));
-        println!("{name}-E pub {:?}", m(fly_continuous(&pubref, |x, t| published::equilibrium_input(&e, x, t), Solver::PAPER)));
-        for ff in [false, true] {
-            for law in [Law::FlatOutput(f), Law::EquilibriumPaper(e), Law::EquilibriumHeading(e)] {
-                let fb = Feedback { law, feed_forward: ff };
-                println!("{name} ff={ff} sampled {:?}", m(fly_continuous(&exref, |x, t| fb.input(x, t), Solver::PAPER)));
-                println!("{name} ff={ff} exact   {:?}", m(fly_continuous(&Exact(spline), |x, t| fb.input(x, t), Solver::PAPER)));
-            }
-        }
-        let (e32, f32_) = if name == "LYAP" { (&paper::LYAP_E, &paper::LYAP_F) } else { (&paper::LQR_E, &paper::LQR_F) };
-        for hz in [100, 500, 1000] {
-            for ff in [quatrack::FeedForward::Without, quatrack::FeedForward::With] {
-                let laws: [AnyLaw; 3] = [
-                    FlatOutput { gain: f32_, feed_forward: ff }.into(),
-                    Equilibrium { gain: e32, error_form: ErrorForm::Paper, feed_forward: ff }.into(),
-                    Equilibrium { gain: e32, error_form: ErrorForm::HeadingFrame, feed_forward: ff }.into(),
-                ];
-                for law in laws {
-                    let mut core = CoreLoop::new(&pieces, Rate::from_hz(hz).unwrap(), law, Limits::NONE).unwrap();
-                    let fl = fly_sampled(&Exact(spline), hz, |k, _, x| core.step(k, x));
-                    let s = fl.saturated_steps; println!("{name} core {hz} {ff:?} sat {s} {:?}", m(fl));
-                }
-            }
+
+impl Controller {
+    /// All four.
+    pub const ALL: [Self; 4] = [Self::LyapF, Self::LyapE, Self::LqrF, Self::LqrE];
+}
+
+impl fmt::Display for Controller {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::LyapF => "LYAP-F",
+            Self::LyapE => "LYAP-E",
+            Self::LqrF => "LQR-F",
+            Self::LqrE => "LQR-E",
+        })
+    }
+}
+
+/// The paper's trajectories.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Course {
+    /// 30 s through eight waypoints.
+    Mild,
+    /// The letter W in 12 s.
+    Aggressive,
+}
+
+impl Course {
+    /// IAE as printed in the paper's Table I, m s, in the order of [`Controller::ALL`].
+    pub fn printed(self) -> [&'static str; 4] {
+        match self {
+            Self::Mild => ["4.68", "0.22", "0.31", "0.018"],
+            Self::Aggressive => ["5.69", "2.14", "0.83", "0.11"],
         }
     }
-    for (e, f) in [(closed(1.0).0, closed(1.0).1)] {
-        let fl = fly_continuous(&pubref, |x, t| published::equilibrium_input(&e, x, t), Solver::PAPER);
-        println!("mu1 E pub {:?}", Metrics::of(&fl));
-        let fl = fly_continuous(&exref, |x, t| published::equilibrium_input(&e, x, t), Solver::PAPER);
-        println!("mu1 E ex {:?}", Metrics::of(&fl));
-        let fl = fly_continuous(&pubref, |x, t| published::flat_output_input(&f, x, t), Solver::PAPER);
-        println!("mu1 F pub {:?}", Metrics::of(&fl));
-        let fb = Feedback { law: Law::FlatOutput(f), feed_forward: false };
-        let fl = fly_continuous(&exref, |x, t| fb.input(x, t), Solver::PAPER);
-        println!("mu1 F ex {:?}", Metrics::of(&fl));
+}
+
+/// The four gains, in f64.
+#[derive(Clone, Copy, Debug)]
+pub struct Gains {
+    lyap_f: FlatOutputGain,
+    lyap_e: EquilibriumGain,
+    lqr_f: FlatOutputGain,
+    lqr_e: EquilibriumGain,
+}
+
+/// A gain of either kind.
+#[derive(Clone, Copy, Debug)]
+enum AnyGain {
+    Equilibrium(EquilibriumGain),
+    FlatOutput(FlatOutputGain),
+}
+
+impl Gains {
+    /// The paper's designs, with the decay rate `mu` of the Lyapunov ones.
+    ///
+    /// # Errors
+    /// [`SynthesisError`] where the design has no solution: `mu` not positive.
+    pub fn design(mu: f64) -> Result<Self, SynthesisError> {
+        Ok(Self {
+            lyap_f: synthesis::lyapunov_flat(mu)?.gain,
+            lyap_e: synthesis::lyapunov_equilibrium(mu)?.gain,
+            lqr_f: synthesis::lqr_flat()?.gain,
+            lqr_e: synthesis::lqr_equilibrium()?.gain,
+        })
     }
+
+    fn of(&self, controller: Controller) -> AnyGain {
+        match controller {
+            Controller::LyapF => AnyGain::FlatOutput(self.lyap_f),
+            Controller::LyapE => AnyGain::Equilibrium(self.lyap_e),
+            Controller::LqrF => AnyGain::FlatOutput(self.lqr_f),
+            Controller::LqrE => AnyGain::Equilibrium(self.lqr_e),
+        }
+    }
+}
+
+/// One cell of Table I, five times over. IAE in m s; nothing where the flight was lost.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Cell {
+    /// As printed.
+    #[serde(serialize_with = "as_number")]
+    pub paper: &'static str,
+    /// With the two slips of the published simulation.
+    pub as_published: Option<f64>,
+    /// Without them.
+    pub exact: Option<f64>,
+    /// With the f32 core, commands held, by rate in Hz.
+    pub core_f32: BTreeMap<u32, Option<f64>>,
+    /// With the reference's input fed forward, exact, in continuous time.
+    pub feed_forward: Option<f64>,
+}
+
+fn as_number<S: serde::Serializer>(printed: &&'static str, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_f64(printed.parse().unwrap_or(f64::NAN))
+}
+
+impl Cell {
+    /// Whether the figure as published rounds to the printed digits.
+    pub fn is_reproduced(&self) -> bool {
+        let decimals = self.paper.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+        self.as_published.is_some_and(|iae| format!("{iae:.decimals$}") == self.paper)
+    }
+}
+
+/// The flights of one controller on one course.
+pub struct Outcome {
+    /// The figures.
+    pub cell: Cell,
+    /// Steps of the core whose command was cut to the limits, over all rates.
+    pub saturated_steps: u64,
+    /// The flight as published, for the figures of the paper.
+    pub published_flight: Flight,
+}
+
+/// Flies one cell.
+pub fn fly_cell(course: Course, trajectory: &PiecewisePolynomial, controller: Controller, gains: &Gains) -> Outcome {
+    let index = Controller::ALL.iter().position(|c| *c == controller).unwrap_or_default();
+    let gain = gains.of(controller);
+    let published_flight = fly_published(trajectory, &gain);
+    let feedback = |feed_forward| Feedback { law: law(&gain), feed_forward };
+    let sampled = Sampled::new(trajectory, SAMPLE_PERIOD_S, |t, t_s| reference_point(&t.at(t_s)));
+    let exact = fly_continuous(&sampled, |x, target| feedback(false).input(x, target), Solver::PAPER);
+    let fed = fly_continuous(&Exact(trajectory), |x, target| feedback(true).input(x, target), TRUTH);
+    let mut saturated_steps = 0;
+    let core_f32 = CORE_RATES_HZ
+        .into_iter()
+        .map(|rate_hz| {
+            let iae = fly_core(trajectory, controller, rate_hz).and_then(|flight| {
+                saturated_steps += flight.saturated_steps;
+                Metrics::of(&flight).iae_m_s
+            });
+            (rate_hz, iae)
+        })
+        .collect();
+    let cell = Cell {
+        paper: course.printed()[index],
+        as_published: Metrics::of(&published_flight).iae_m_s,
+        exact: Metrics::of(&exact).iae_m_s,
+        core_f32,
+        feed_forward: Metrics::of(&fed).iae_m_s,
+    };
+    Outcome { cell, saturated_steps, published_flight }
+}
+
+/// The published flight of a Lyapunov controller at the decay rate that crashes in the paper's text.
+pub fn fly_crash(trajectory: &PiecewisePolynomial, controller: Controller) -> Result<Flight, SynthesisError> {
+    Ok(fly_published(trajectory, &Gains::design(CRASH_MU)?.of(controller)))
+}
+
+fn law(gain: &AnyGain) -> Law {
+    match gain {
+        AnyGain::Equilibrium(gain) => Law::EquilibriumPaper(*gain),
+        AnyGain::FlatOutput(gain) => Law::FlatOutput(*gain),
+    }
+}
+
+fn fly_published(trajectory: &PiecewisePolynomial, gain: &AnyGain) -> Flight {
+    let reference = Sampled::new(trajectory, SAMPLE_PERIOD_S, published::reference);
+    match gain {
+        AnyGain::Equilibrium(gain) => {
+            fly_continuous(&reference, |x, target| published::equilibrium_input(gain, x, target), Solver::PAPER)
+        }
+        AnyGain::FlatOutput(gain) => {
+            fly_continuous(&reference, |x, target| published::flat_output_input(gain, x, target), Solver::PAPER)
+        }
+    }
+}
+
+/// The committed tables in the core, by name.
+fn core_law(controller: Controller) -> AnyLaw<'static> {
+    let equilibrium = |gain: &'static CoreEquilibriumGain| -> AnyLaw<'static> {
+        Equilibrium { gain, error_form: ErrorForm::Paper, feed_forward: FeedForward::Without }.into()
+    };
+    let flat_output = |gain: &'static CoreFlatOutputGain| -> AnyLaw<'static> { FlatOutput::new(gain).into() };
+    match controller {
+        Controller::LyapF => flat_output(&paper::LYAP_F),
+        Controller::LyapE => equilibrium(&paper::LYAP_E),
+        Controller::LqrF => flat_output(&paper::LQR_F),
+        Controller::LqrE => equilibrium(&paper::LQR_E),
+    }
+}
+
+/// Nothing where the core refuses the trajectory or the rate, which it does for neither of the paper's.
+fn fly_core(trajectory: &PiecewisePolynomial, controller: Controller, rate_hz: u32) -> Option<Flight> {
+    let pieces = core_loop::pieces(trajectory);
+    let mut core = CoreLoop::new(&pieces, Rate::from_hz(rate_hz)?, core_law(controller), Limits::NONE).ok()?;
+    Some(fly_sampled(&Exact(trajectory), rate_hz, |tick, _, x| core.step(tick, x)))
 }

@@ -1,6 +1,6 @@
 //! Stand-in until the polynomial pieces land.
-use super::bspline::BSpline;
 use super::Trajectory;
+use super::bspline::BSpline;
 /// Piece.
 #[derive(Clone, Debug)]
 pub struct PolynomialPiece {
@@ -44,5 +44,28 @@ impl PiecewisePolynomial {
             })
             .collect();
         Self { pieces }
+    }
+}
+impl Trajectory for PiecewisePolynomial {
+    fn duration_s(&self) -> f64 {
+        self.pieces.iter().map(|p| p.duration_s).sum()
+    }
+    fn at(&self, t_s: f64) -> super::FlatSample {
+        let w = self.pieces[0].duration_s;
+        let k = ((t_s / w) as usize).min(self.pieces.len() - 1);
+        let t = t_s - w * k as f64;
+        let p = &self.pieces[k];
+        let d = |c: &[f64; 8], o: usize| {
+            (o..8).rev().fold(0.0, |s, i| s * t + c[i] * (0..o).map(|j| (i - j) as f64).product::<f64>())
+        };
+        let v = |o| nalgebra::Vector3::new(d(&p.x, o), d(&p.y, o), d(&p.z, o));
+        super::FlatSample {
+            position_m: v(0),
+            velocity_m_s: v(1),
+            acceleration_m_s2: v(2),
+            jerk_m_s3: v(3),
+            heading_rad: 0.0,
+            heading_rate_rad_s: 0.0,
+        }
     }
 }
