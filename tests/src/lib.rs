@@ -1,1 +1,28 @@
-//! Home of the tests that cross crates; they live in `tests/`.
+//! What the tests that cross crates share; they live in `tests/`.
+
+/// The README's example is compiled and run.
+#[doc = include_str!("../../README.md")]
+#[cfg(doctest)]
+pub struct Readme;
+
+/// Point `index` of the Halton sequence in `N` dimensions, each coordinate in (0, 1): random enough to cover a box
+/// evenly, and the same on every machine.
+pub fn halton<const N: usize>(index: u32) -> [f64; N] {
+    const PRIMES: [u32; 20] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71];
+    std::array::from_fn(|dimension| {
+        let base = PRIMES[dimension];
+        let (mut remaining, mut weight, mut value) = (index + 1, 1.0, 0.0);
+        while remaining > 0 {
+            weight /= f64::from(base);
+            value += weight * f64::from(remaining % base);
+            remaining /= base;
+        }
+        value
+    })
+}
+
+/// The value below which a share of the sorted numbers lies.
+pub fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[((values.len() - 1) as f64 * share) as usize]
+}

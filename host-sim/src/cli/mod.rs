@@ -1,6 +1,8 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
+mod fly;
 mod output;
+mod reproduce;
 
 use std::process::ExitCode;
 
@@ -34,7 +36,10 @@ struct Arguments {
 }
 
 #[derive(Subcommand)]
-enum Command {}
+enum Command {
+    Fly(fly::Args),
+    Reproduce(reproduce::Args),
+}
 
 /// Reads the arguments, runs the command, prints what went wrong in one line.
 pub(crate) fn main() -> ExitCode {
@@ -42,7 +47,10 @@ pub(crate) fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return output::argument_error(&error),
     };
-    let outcome: Result<(), Failure> = match arguments.command {};
+    let outcome: Result<(), Failure> = match &arguments.command {
+        Command::Fly(args) => fly::run(args),
+        Command::Reproduce(args) => reproduce::run(args),
+    };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

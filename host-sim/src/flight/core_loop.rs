@@ -3,12 +3,12 @@
 //! The one crossing between f64 and f32: states go in rounded, as from an estimator; trajectories go in as the pieces
 //! that the board stores; commands come out exactly.
 
-use nalgebra::{Vector3, Vector4};
-use quatrack::trajectory::{Coefficients, TrajectoryError};
-use quatrack::{AnyLaw, Limits, Piece, Player, Quaternion, Rate, Reference, State, Tracker};
+use nalgebra::{SMatrix, Vector3, Vector4};
+use quatrack::gain::{Gain, GainError};
+use quatrack::trajectory::TrajectoryError;
+use quatrack::{AnyLaw, Command, Limits, Piece, Player, Quaternion, Rate, Reference, State, Tracker};
 
 use super::closed_loop::HeldCommand;
-use super::law::{EquilibriumGain, FlatOutputGain};
 use crate::model::{InputVector, StateVector, attitude, position, velocity};
 use crate::trajectory::polynomial::PiecewisePolynomial;
 
@@ -26,25 +26,31 @@ pub fn state(x: &StateVector) -> State {
 }
 
 /// A command of the core as an input of the model.
-pub fn input(command: &quatrack::Command) -> InputVector {
+pub fn input(command: &Command) -> InputVector {
     let rates = command.body_rates_rad_s.map(f64::from);
     InputVector::new(f64::from(command.thrust_m_s2), rates.x, rates.y, rates.z)
 }
 
-/// A gain of the core in f64: the numbers that it flies, to compare with the design's.
-pub fn equilibrium_gain(gain: &quatrack::law::EquilibriumGain) -> EquilibriumGain {
-    gain.matrix().map(f64::from)
+/// A designed gain as the core flies it: every entry rounded to f32.
+///
+/// # Errors
+/// [`GainError`] where the rounded gain is none: an entry too large for f32, or a column of zeros.
+pub fn to_core_gain<const M: usize, const N: usize>(gain: &SMatrix<f64, M, N>) -> Result<Gain<M, N>, GainError> {
+    Gain::new(std::array::from_fn(|row| std::array::from_fn(|column| gain[(row, column)] as f32)))
 }
 
-/// A gain of the core in f64.
-pub fn flat_output_gain(gain: &quatrack::law::FlatOutputGain) -> FlatOutputGain {
-    gain.matrix().map(f64::from)
+/// An input cut to the core's limits, and whether it was; nothing where it is not finite. An input within the limits
+/// keeps its f64 digits.
+pub fn saturate(input: &InputVector, limits: &Limits) -> Option<(InputVector, bool)> {
+    let rates = Vector3::new(input[1], input[2], input[3]);
+    let command = Command { thrust_m_s2: input[0] as f32, body_rates_rad_s: vector(&rates) };
+    let (cut, limited) = limits.saturate(&command)?;
+    Some(if limited.any() { (self::input(&cut), true) } else { (*input, false) })
 }
 
 /// A trajectory as the board stores it. Piece boundaries are rounded to a nanosecond from the start, so that their
 /// rounding does not add up.
 pub fn pieces(trajectory: &PiecewisePolynomial) -> Vec<Piece> {
-    let coefficients = |c: &[f64; 8]| -> Coefficients { c.map(|value| value as f32) };
     let mut end_s = 0.0;
     let mut start_ns = 0_u64;
     trajectory
@@ -55,13 +61,8 @@ pub fn pieces(trajectory: &PiecewisePolynomial) -> Vec<Piece> {
             let end_ns = (end_s * 1e9).round() as u64;
             let duration_ns = end_ns - start_ns;
             start_ns = end_ns;
-            Piece {
-                duration_ns,
-                x: coefficients(&piece.x),
-                y: coefficients(&piece.y),
-                z: coefficients(&piece.z),
-                heading: coefficients(&piece.yaw),
-            }
+            let [x, y, z, heading] = piece.coefficients.map(|c| c.map(|value| value as f32));
+            Piece { duration_ns, x, y, z, heading }
         })
         .collect()
 }

@@ -2,6 +2,7 @@
 //! out.
 
 pub mod bspline;
+pub mod file;
 pub mod polynomial;
 
 use nalgebra::Vector3;

@@ -1,0 +1,307 @@
+//! `quatrack fly`: a controller, a trajectory and a rate in; the figures of one flight, and its log, out.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use clap::ValueEnum;
+use quatrack::nalgebra::Vector3;
+use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Rate};
+use quatrack_sim::design::synthesis;
+use quatrack_sim::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
+use quatrack_sim::flight::core_loop::{self, CoreLoop};
+use quatrack_sim::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
+use quatrack_sim::flight::metrics::Metrics;
+use quatrack_sim::flight::reference::{Exact, Reference};
+use quatrack_sim::flight::{integrator::Method, log};
+use quatrack_sim::plan::{self, Plan};
+use quatrack_sim::trajectory::Trajectory;
+use quatrack_sim::trajectory::bspline::BSpline;
+use quatrack_sim::trajectory::file::{self, TrajectoryFile};
+use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
+
+use super::{Failure, output};
+
+/// Flies one trajectory with one controller and prints what came of it.
+///
+/// Examples:
+///   quatrack fly --controller lqr-e --trajectory mild
+///   quatrack fly --controller lqr-e --trajectory my.csv --rate-hz 500 --feed-forward --limits crazyflie-2.1
+///   quatrack fly --controller lyap-e --mu 1 --trajectory aggressive --precision f64 --out out/crash
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Args {
+    /// Which law and design.
+    #[arg(long, value_enum, ignore_case = true)]
+    controller: Controller,
+    /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), or a plan
+    /// (TOML, planned first).
+    #[arg(long, value_name = "mild|aggressive|FILE")]
+    trajectory: String,
+    /// Control steps a second, 1 to 10000, commands held in between. Without it f32 flies at 500 Hz and f64 in
+    /// continuous time.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    rate_hz: Option<f64>,
+    /// f32 flies the core that runs on the board, f64 the law as the paper writes it.
+    #[arg(long, value_enum, default_value_t = Precision::F32)]
+    precision: Precision,
+    /// Add the reference's own input to the feedback.
+    #[arg(long)]
+    feed_forward: bool,
+    /// How the equilibrium laws form their error: in the heading frame, good for every heading, or as the paper does,
+    /// good near heading 0.
+    #[arg(long, value_enum, default_value_t = Form::Heading)]
+    error_form: Form,
+    /// Decay rate of the Lyapunov designs, 1/s.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    mu: Option<f64>,
+    /// Cut commands to a vehicle: crazyflie-2.1, crazyflie-2.1-upgrade, crazyflie-2.1-brushless, none, or
+    /// THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s.
+    #[arg(long, value_name = "V", default_value = "none", allow_hyphen_values = true)]
+    limits: LimitsChoice,
+    /// Folder for the log of the flight as CSV, created where it is missing.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write the figures as JSON.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// The controllers of the paper.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Controller {
+    /// Lyapunov design on the flat chain.
+    LyapF,
+    /// Lyapunov design at the hover equilibrium.
+    LyapE,
+    /// LQR on the flat chain.
+    LqrF,
+    /// LQR at the hover equilibrium.
+    LqrE,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Precision {
+    F32,
+    F64,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Form {
+    Heading,
+    Paper,
+}
+
+/// Limits by vehicle or by numbers.
+#[derive(Clone, Debug)]
+struct LimitsChoice {
+    name: String,
+    limits: Limits,
+}
+
+/// Thrust of one motor (lowest, highest, N) and mass (kg) of Bitcraze's vehicles, from their platform definitions.
+const VEHICLES: [(&str, f32, f32, f32); 3] = [
+    ("crazyflie-2.1", 0.012_818, 0.12, 0.029),
+    ("crazyflie-2.1-upgrade", 0.019_226, 0.18, 0.0325),
+    ("crazyflie-2.1-brushless", 0.021_363, 0.2, 0.0393),
+];
+
+/// What a rate loop of these vehicles follows, rad/s.
+const VEHICLE_BODY_RATES_RAD_S: Vector3<f32> = Vector3::new(20.0, 20.0, 10.0);
+
+impl FromStr for LimitsChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let name = text.to_owned();
+        if text == "none" {
+            return Ok(Self { name, limits: Limits::NONE });
+        }
+        if let Some((_, min_n, max_n, mass_kg)) = VEHICLES.iter().find(|vehicle| vehicle.0 == text) {
+            let limits = Limits::new(4.0 * min_n / mass_kg, 4.0 * max_n / mass_kg, VEHICLE_BODY_RATES_RAD_S)
+                .map_err(|error| error.to_string())?;
+            return Ok(Self { name, limits });
+        }
+        let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+        let Ok([min, max, rate]) = numbers.as_deref() else {
+            let vehicles: Vec<&str> = VEHICLES.iter().map(|vehicle| vehicle.0).collect();
+            return Err(format!(
+                "neither a vehicle ({}), none, nor THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s",
+                vehicles.join(", ")
+            ));
+        };
+        let limits =
+            Limits::new(*min, *max, Vector3::new(*rate, *rate, *rate)).map_err(|error| error.to_string())?;
+        Ok(Self { name, limits })
+    }
+}
+
+impl fmt::Display for Controller {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::LyapF => "LYAP-F",
+            Self::LyapE => "LYAP-E",
+            Self::LqrF => "LQR-F",
+            Self::LqrE => "LQR-E",
+        })
+    }
+}
+
+/// A gain of either law, in f64.
+enum Gain {
+    Equilibrium(EquilibriumGain),
+    FlatOutput(FlatOutputGain),
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let rate = args.rate_hz.map(checked_rate).transpose()?;
+    let gain = design(args)?;
+    let trajectory = load(&args.trajectory)?;
+    if let Some(dir) = &args.out {
+        output::create_dir(dir)?;
+    }
+    let (flight, clock) = match (args.precision, rate) {
+        (Precision::F32, rate) => {
+            let rate = rate.map_or_else(default_rate, Ok)?;
+            (fly_core(args, &gain, &trajectory, rate)?, format!("f32 core, {} Hz hold", rate.hz()))
+        }
+        (Precision::F64, Some(rate)) => {
+            (fly_f64_sampled(args, &gain, &trajectory, rate), format!("f64, {} Hz hold", rate.hz()))
+        }
+        (Precision::F64, None) => (fly_f64_continuous(args, &gain, &trajectory)?, "f64, continuous".to_owned()),
+    };
+    report(args, &flight, &clock, trajectory.duration_s())
+}
+
+fn checked_rate(hz: f64) -> Result<Rate, Failure> {
+    let whole = (hz.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&hz)).then_some(hz as u32);
+    whole.and_then(Rate::from_hz).ok_or_else(|| {
+        Failure::input(format!(
+            "--rate-hz {hz}: must be a whole number from {} to {} control steps a second",
+            Rate::MIN_HZ,
+            Rate::MAX_HZ
+        ))
+    })
+}
+
+fn default_rate() -> Result<Rate, Failure> {
+    checked_rate(500.0)
+}
+
+fn design(args: &Args) -> Result<Gain, Failure> {
+    const PAPER_MU: f64 = 2.0;
+    let mu = args.mu.unwrap_or(PAPER_MU);
+    if matches!(args.controller, Controller::LqrE | Controller::LqrF) && args.mu.is_some() {
+        return Err(Failure::input("--mu belongs to the Lyapunov designs; leave it out or choose lyap-e or lyap-f"));
+    }
+    let gain = match args.controller {
+        Controller::LyapF => synthesis::lyapunov_flat(mu).map(|design| Gain::FlatOutput(design.gain)),
+        Controller::LyapE => synthesis::lyapunov_equilibrium(mu).map(|design| Gain::Equilibrium(design.gain)),
+        Controller::LqrF => synthesis::lqr_flat().map(|design| Gain::FlatOutput(design.gain)),
+        Controller::LqrE => synthesis::lqr_equilibrium().map(|design| Gain::Equilibrium(design.gain)),
+    };
+    gain.map_err(|error| Failure::input(format!("--mu {mu}: {error}")))
+}
+
+/// A trajectory by name or from a file, as the pieces that the board flies.
+fn load(name: &str) -> Result<PiecewisePolynomial, Failure> {
+    let from_spline = |spline: &BSpline| {
+        PiecewisePolynomial::from_bspline(spline).map_err(|error| Failure::input(format!("{name}: {error}")))
+    };
+    match name {
+        "mild" => from_spline(&plan::paper::mild().map_err(Failure::verdict)?),
+        "aggressive" => from_spline(&plan::paper::aggressive().map_err(Failure::verdict)?),
+        path => match file::read(Path::new(path)).map_err(Failure::input)? {
+            TrajectoryFile::Pieces(pieces) => Ok(pieces),
+            TrajectoryFile::Spline(spline) => from_spline(&spline),
+            TrajectoryFile::Plan(text) => {
+                let plan = Plan::from_toml(&text).map_err(|error| super::plan::failure(name, &error))?;
+                from_spline(&plan.solve().map_err(|error| super::plan::failure(name, &error))?)
+            }
+        },
+    }
+}
+
+fn feedback(args: &Args, gain: &Gain) -> Feedback {
+    let law = match (gain, args.error_form) {
+        (Gain::Equilibrium(gain), Form::Paper) => Law::EquilibriumPaper(*gain),
+        (Gain::Equilibrium(gain), Form::Heading) => Law::EquilibriumHeading(*gain),
+        (Gain::FlatOutput(gain), _) => Law::FlatOutput(*gain),
+    };
+    Feedback { law, feed_forward: args.feed_forward }
+}
+
+fn fly_core(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial, rate: Rate) -> Result<Flight, Failure> {
+    let feed_forward = if args.feed_forward { FeedForward::With } else { FeedForward::Without };
+    let error_form = match args.error_form {
+        Form::Heading => ErrorForm::HeadingFrame,
+        Form::Paper => ErrorForm::Paper,
+    };
+    let (equilibrium_gain, flat_gain);
+    let law: AnyLaw<'_> = match gain {
+        Gain::Equilibrium(gain) => {
+            equilibrium_gain = core_loop::to_core_gain(gain).map_err(Failure::input)?;
+            Equilibrium { gain: &equilibrium_gain, error_form, feed_forward }.into()
+        }
+        Gain::FlatOutput(gain) => {
+            flat_gain = core_loop::to_core_gain(gain).map_err(Failure::input)?;
+            FlatOutput { gain: &flat_gain, feed_forward }.into()
+        }
+    };
+    let pieces = core_loop::pieces(trajectory);
+    let mut core = CoreLoop::new(&pieces, rate, law, args.limits.limits)
+        .map_err(|error| Failure::input(format!("{}: {error}", args.trajectory)))?;
+    Ok(fly_sampled(&Exact(trajectory), rate.hz(), |tick, _, x| core.step(tick, x)))
+}
+
+fn fly_f64_sampled(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial, rate: Rate) -> Flight {
+    let (reference, feedback) = (Exact(trajectory), feedback(args, gain));
+    fly_sampled(&reference, rate.hz(), |_, t_s, x| {
+        let input = feedback.input(x, &reference.at(t_s));
+        let (input, limited) = core_loop::saturate(&input, &args.limits.limits)
+            .ok_or_else(|| "the law has no finite command".to_owned())?;
+        Ok(HeldCommand { input, limited })
+    })
+}
+
+/// In continuous time nothing counts steps, so limits would go unreported: they are refused.
+fn fly_f64_continuous(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial) -> Result<Flight, Failure> {
+    if args.limits.name != "none" {
+        return Err(Failure::input(format!(
+            "--limits {}: continuous time has no steps to limit; add --rate-hz",
+            args.limits.name
+        )));
+    }
+    let feedback = feedback(args, gain);
+    let solver = Solver::Fixed { method: Method::RungeKutta4, substeps: 2 };
+    Ok(fly_continuous(&Exact(trajectory), |x, target| feedback.input(x, target), solver))
+}
+
+fn report(args: &Args, flight: &Flight, clock: &str, duration_s: f64) -> Result<(), Failure> {
+    let metrics = Metrics::of(flight);
+    let feed = if args.feed_forward { ", feed-forward" } else { "" };
+    println!("{} on {}, {duration_s:.2} s, {clock}{feed}, limits {}", args.controller, args.trajectory, args.limits.name);
+    let iae = |value: Option<f64>| value.map_or_else(|| "none: the flight was lost".to_owned(), |v| format!("{v:.6} m s"));
+    println!("  IAE, sum (23) times T_s   {}", iae(metrics.iae_m_s));
+    println!("  IAE, integral (22)        {}", iae(metrics.iae_integral_m_s));
+    println!("  largest position error    {:.6} m", metrics.max_error_m);
+    println!("  RMS position error        {:.6} m", metrics.rms_error_m);
+    println!("  lowest z                  {:.4} m at {:.2} s", metrics.min_z_m, metrics.min_z_time_s);
+    println!("  largest tilt              {:.2} deg", metrics.max_tilt_deg);
+    println!("  peak thrust               {:.3} m/s^2", metrics.max_thrust_m_s2);
+    println!("  peak body rate            {:.3} rad/s", metrics.max_body_rate_rad_s);
+    println!("  saturated steps           {}", metrics.saturated_steps);
+    if let Some(lost) = &flight.lost {
+        println!("  lost at {:.2} s: {}", lost.time_s, lost.reason);
+    }
+    if let Some(dir) = &args.out {
+        let path = dir.join("flight.csv");
+        output::write(&path, log::to_csv(flight).as_bytes())?;
+        println!("wrote {}", path.display());
+    }
+    if let Some(path) = &args.json {
+        output::write_json(path, &metrics)?;
+        println!("wrote {}", path.display());
+    }
+    Ok(())
+}
