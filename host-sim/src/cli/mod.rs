@@ -1,6 +1,7 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
 mod output;
+mod plan;
 
 use std::process::ExitCode;
 
@@ -34,7 +35,10 @@ struct Arguments {
 }
 
 #[derive(Subcommand)]
-enum Command {}
+enum Command {
+    /// Plan a flight: waypoints and bounds in, B-spline control points out.
+    Plan(plan::Args),
+}
 
 /// Reads the arguments, runs the command, prints what went wrong in one line.
 pub(crate) fn main() -> ExitCode {
@@ -42,7 +46,9 @@ pub(crate) fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return output::argument_error(&error),
     };
-    let outcome: Result<(), Failure> = match arguments.command {};
+    let outcome: Result<(), Failure> = match arguments.command {
+        Command::Plan(args) => plan::run(&args),
+    };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

@@ -61,6 +61,21 @@ impl UniformBasis {
         Ok(Self { degree, spans, duration_s })
     }
 
+    /// Polynomial degree of the curve.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// Number of polynomial spans.
+    pub fn spans(&self) -> usize {
+        self.spans
+    }
+
+    /// Length in time, s.
+    pub fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
     /// How many control points the curve has.
     pub fn control_points(&self) -> usize {
         self.spans + self.degree
