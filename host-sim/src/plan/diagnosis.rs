@@ -8,7 +8,7 @@
 use std::fmt;
 
 use super::program::Program;
-use super::socp::{self, Outcome};
+use super::socp::{self, Accuracy, Outcome};
 use super::{Corridor, Plan};
 use crate::model::GRAVITY_M_S2;
 use crate::trajectory::Trajectory;
@@ -20,6 +20,9 @@ const MOST_DESCENTS: usize = 12;
 const DESCENT_END: f64 = 1e-3;
 /// Added to a value that would do, so that it does with room for the solver.
 const ROOM: f64 = 1e-3;
+
+/// A limit exceeded by less than this part, or this many metres, is met: ten times what the solver is asked to leave.
+const TOUCHED: f64 = 1e-6;
 
 /// Something that bounds a flight and can be relaxed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,27 +54,22 @@ pub struct Remedy {
     pub enough: f64,
 }
 
-/// What is too tight, as far as it can be told.
+/// What is too tight, as far as it can be told: every entry is one way out, and relaxes all it lists and nothing else.
+/// Empty if none was found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Infeasibility {
-    /// Limits each of which would do if relaxed alone.
-    pub alone: Vec<Remedy>,
-    /// If there are none of those, limits that would do if all of them are relaxed.
-    pub together: Vec<Remedy>,
+    /// The ways out.
+    pub ways_out: Vec<Vec<Remedy>>,
 }
 
 impl fmt::Display for Infeasibility {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("no curve meets the plan: ")?;
-        let list = |remedies: &[Remedy], between: &str| {
-            remedies.iter().map(ToString::to_string).collect::<Vec<_>>().join(between)
-        };
-        match (self.alone.len(), self.together.len()) {
-            (0, 0) => f.write_str("its bounds contradict each other; relax several, or allow a longer duration_s"),
-            (0, _) => write!(f, "no bound alone is to blame; together these would do: {}", list(&self.together, ", ")),
-            (1, _) => write!(f, "{}, the rest kept", list(&self.alone, "")),
-            _ => write!(f, "{}; any one of these is enough, the rest kept", list(&self.alone, ", or ")),
+        if self.ways_out.is_empty() {
+            return f.write_str("its bounds contradict each other; relax several, or allow a longer duration_s");
         }
+        let way = |remedies: &Vec<Remedy>| remedies.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and ");
+        write!(f, "{}; the rest kept", self.ways_out.iter().map(way).collect::<Vec<_>>().join(", or "))
     }
 }
 
@@ -84,52 +82,51 @@ impl fmt::Display for Remedy {
             Limit::ThrustMax => ("thrust_max_m_s2", [self.given, self.enough]),
             Limit::BodyRate => ("body_rate_max_deg_s", [self.given, self.enough].map(f64::to_degrees)),
             Limit::Corridor(index) => {
-                let enough = outwards(self.enough, true);
+                let enough = outwards(self.enough);
                 return write!(f, "corridor {} is too tight (every side {enough} m further out would do)", index + 1);
             }
             Limit::Waypoints => {
-                let enough = outwards(self.enough, true);
+                let enough = outwards(self.enough);
                 return write!(f, "the waypoints' tolerance_m is too tight ({enough} m more for each would do)");
             }
         };
-        let enough = outwards(enough, self.limit != Limit::ThrustMin);
-        // Degrees come back from radians a rounding off.
-        let given = (given * 1e9).round() / 1e9;
+        // Of a thrust, what counts is its distance to hover.
+        let hover = if matches!(self.limit, Limit::ThrustMin | Limit::ThrustMax) { GRAVITY_M_S2 } else { 0.0 };
+        // Sums with g and degrees from radians are a rounding off.
+        let [given, enough] = [given, hover + outwards(enough - hover)].map(|value| (value * 1e9).round() / 1e9);
         write!(f, "{key} = {given} is too tight ({enough} would do)")
     }
 }
 
-/// A positive value to three digits, rounded to the side that relaxes.
-fn outwards(value: f64, up: bool) -> f64 {
-    let digits = (2 - value.abs().log10().floor() as i32).clamp(-9, 9);
-    let scale = 10_f64.powi(digits);
-    let scaled = value * scale;
-    (if up { scaled.ceil() } else { scaled.floor() }) / scale
+/// A value to three digits, rounded away from 0.
+fn outwards(value: f64) -> f64 {
+    let digits = 2.0 - value.abs().max(1e-9).log10().floor();
+    let scale = 10_f64.powf(digits);
+    (value.abs() * scale).ceil() / scale * value.signum()
 }
 
-/// Finds what is too tight in a plan that no curve meets.
+/// Finds what is too tight in a plan that no curve meets: first each limit alone; then, if that leaves only the
+/// waypoints to give way, all bounds and corridors together; at last everything.
 pub(super) fn diagnose(plan: &Plan) -> Infeasibility {
     let limits = plan.limits();
-    let remedy = |limit, enough: f64| {
-        let given = plan.given(limit);
-        // Room is a part of the value, but for thrust of its distance to hover.
-        let room = match limit {
-            Limit::ThrustMin | Limit::ThrustMax => ROOM * (enough - GRAVITY_M_S2),
-            _ => ROOM * enough,
-        };
-        Remedy { limit, given, enough: enough + room }
-    };
-    let alone: Vec<Remedy> = limits.iter().filter_map(|&limit| Some(remedy(limit, enough(plan, limit)?))).collect();
-    if !alone.is_empty() {
-        return Infeasibility { alone, together: Vec::new() };
+    let alone = limits.iter().filter_map(|&limit| plan.remedy(limit, enough(plan, limit)?));
+    let mut ways_out: Vec<Vec<Remedy>> = alone.map(|remedy| vec![remedy]).collect();
+    let bounds: Vec<Limit> = limits.iter().copied().filter(|limit| *limit != Limit::Waypoints).collect();
+    if !ways_out.iter().flatten().any(|remedy| remedy.limit != Limit::Waypoints) {
+        ways_out.splice(0..0, together(plan, &bounds));
     }
-    let Some(curve) = relaxed(plan, &limits) else { return Infeasibility::default() };
+    if ways_out.is_empty() {
+        ways_out.extend(together(plan, &limits));
+    }
+    Infeasibility { ways_out }
+}
+
+/// What is needed of several limits at once for their weighted sum to be least.
+fn together(plan: &Plan, limits: &[Limit]) -> Option<Vec<Remedy>> {
+    let curve = relaxed(plan, limits)?;
     let needed: Option<Vec<_>> = limits.iter().map(|&limit| Some((limit, plan.needed(limit, &curve)?))).collect();
-    let too_tight = needed.unwrap_or_default().into_iter().filter(|&(limit, needed)| {
-        let given = plan.given(limit);
-        if limit == Limit::ThrustMin { needed < given - ROOM } else { needed > given * (1.0 + ROOM) + 1e-6 }
-    });
-    Infeasibility { alone, together: too_tight.map(|(limit, needed)| remedy(limit, needed)).collect() }
+    let remedies: Vec<_> = needed?.into_iter().filter_map(|(limit, needed)| plan.remedy(limit, needed)).collect();
+    (!remedies.is_empty()).then_some(remedies)
 }
 
 /// The least value of one limit with which a curve exists, all others kept.
@@ -154,7 +151,7 @@ fn enough(plan: &Plan, limit: Limit) -> Option<f64> {
 /// The curve with the least slack in the limits given, which are weighed by their size.
 fn relaxed(plan: &Plan, limits: &[Limit]) -> Option<BSpline> {
     let weighted: Vec<(Limit, f64)> = limits.iter().map(|&limit| (limit, 1.0 / plan.slack_scale(limit))).collect();
-    match socp::solve(&Program::new(plan, &weighted)) {
+    match socp::solve(&Program::new(plan, &weighted), Accuracy::THREE_DIGITS) {
         Outcome::Solved(values) => plan.curve(&values).ok(),
         Outcome::Infeasible | Outcome::Failed(_) => None,
     }
@@ -175,6 +172,19 @@ impl Plan {
         let corridors = (0..self.corridors.len()).map(Limit::Corridor);
         let waypoints = (!self.inner_waypoints().is_empty()).then_some(Limit::Waypoints);
         bounded.chain(corridors).chain(waypoints).collect()
+    }
+
+    /// A limit and what is needed of it, with room; `None` if it is not too tight at all.
+    fn remedy(&self, limit: Limit, needed: f64) -> Option<Remedy> {
+        let given = self.given(limit);
+        let too_tight = if limit == Limit::ThrustMin {
+            needed < given - TOUCHED
+        } else {
+            needed > given * (1.0 + TOUCHED) + TOUCHED
+        };
+        // Room is a part of the value, but for thrust of its distance to hover.
+        let hover = if matches!(limit, Limit::ThrustMin | Limit::ThrustMax) { GRAVITY_M_S2 } else { 0.0 };
+        too_tight.then_some(Remedy { limit, given, enough: needed + ROOM * (needed - hover) })
     }
 
     /// Value of a limit, SI; 0 where none is given, and for corridors and waypoints, which count what is added.

@@ -104,13 +104,18 @@ impl Plan {
         file::read(text)
     }
 
-    /// Finds the curve. Equalities hold to rounding, bounds on control points to 1e-6 of their size.
+    /// Finds the curve. Equalities hold to rounding, bounds on control points to 1e-7 of their size (1e-6 at the edge of
+    /// what they allow).
     ///
     /// # Errors
     /// [`PlanError::Infeasible`] with the bounds that are too tight, or [`PlanError::NotConverged`].
     pub fn solve(&self) -> Result<BSpline, PlanError> {
         let program = program::Program::new(self, &[]);
-        match socp::solve(&program) {
+        let outcome = match socp::solve(&program, socp::Accuracy::CURVE) {
+            socp::Outcome::Failed(_) => socp::solve(&program, socp::Accuracy::EDGE),
+            outcome => outcome,
+        };
+        match outcome {
             socp::Outcome::Solved(values) => self.curve(&values),
             socp::Outcome::Infeasible => Err(PlanError::Infeasible(diagnosis::diagnose(self))),
             socp::Outcome::Failed(reason) => Err(PlanError::NotConverged(reason)),

@@ -8,11 +8,24 @@ use clarabel::solver::{
 
 use super::program::{Affine, Constraint, Program};
 
-/// Residuals and gap asked for. The mild flight's control points no longer move by a micrometre from here on; at 1e-8
-/// they are 2e-5 m off.
-const TOLERANCE: f64 = 1e-10;
-/// What is still taken for a solution where rounding ends the progress before that.
-const REDUCED_TOLERANCE: f64 = 1e-7;
+/// Residuals and gap asked of the solver.
+#[derive(Clone, Copy)]
+pub(super) struct Accuracy {
+    /// Where it stops.
+    asked: f64,
+    /// What is still taken for a solution where rounding ends the progress before that.
+    accepted: f64,
+}
+
+impl Accuracy {
+    /// For a curve: the mild flight's control points no longer move by a micrometre from here on; at 1e-8 they are
+    /// 2e-5 m off.
+    pub(super) const CURVE: Self = Self { asked: 1e-10, accepted: 1e-7 };
+    /// For a curve at the edge of its bounds, where rounding can end the progress before any better one.
+    pub(super) const EDGE: Self = Self { asked: 1e-8, accepted: 1e-6 };
+    /// For a bound of which three digits are told.
+    pub(super) const THREE_DIGITS: Self = Self { asked: 1e-7, accepted: 1e-5 };
+}
 
 /// What the solver found.
 pub(super) enum Outcome {
@@ -25,7 +38,7 @@ pub(super) enum Outcome {
 }
 
 /// Solves a cone program by an interior-point method; the same input gives the same output on every run.
-pub(super) fn solve(program: &Program) -> Outcome {
+pub(super) fn solve(program: &Program, accuracy: Accuracy) -> Outcome {
     let p = matrix(program.variables, program.variables, &program.quadratic);
     let mut rows = Rows::default();
     // Equalities first, then inequalities, then cones: clarabel then sees one block of each of the first two.
@@ -51,12 +64,12 @@ pub(super) fn solve(program: &Program) -> Outcome {
     let a = matrix(rows.b.len(), program.variables, &rows.entries);
     let settings = DefaultSettings {
         verbose: false,
-        tol_gap_abs: TOLERANCE,
-        tol_gap_rel: TOLERANCE,
-        tol_feas: TOLERANCE,
-        reduced_tol_gap_abs: REDUCED_TOLERANCE,
-        reduced_tol_gap_rel: REDUCED_TOLERANCE,
-        reduced_tol_feas: REDUCED_TOLERANCE,
+        tol_gap_abs: accuracy.asked,
+        tol_gap_rel: accuracy.asked,
+        tol_feas: accuracy.asked,
+        reduced_tol_gap_abs: accuracy.accepted,
+        reduced_tol_gap_rel: accuracy.accepted,
+        reduced_tol_feas: accuracy.accepted,
         ..DefaultSettings::default()
     };
     let mut solver = match DefaultSolver::new(&p, &program.linear, &a, &rows.b, &cones, settings) {
