@@ -88,7 +88,10 @@ proptest! {
 
 #[test]
 fn the_singularities_are_refused_by_name() {
-    let at = |z: f32| FlatSample { acceleration_m_s2: Vector3::new(0.0, 0.0, z), ..FlatSample::at_rest(Vector3::zeros(), 0.0) };
+    let at = |z: f32| FlatSample {
+        acceleration_m_s2: Vector3::new(0.0, 0.0, z),
+        ..FlatSample::at_rest(Vector3::zeros(), 0.0)
+    };
     assert!(matches!(Reference::from_flat(&at(-9.81)), Err(ReferenceError::NoThrust { .. })));
     assert!(matches!(Reference::from_flat(&at(-9.75)), Err(ReferenceError::NoThrust { .. })));
     assert!(matches!(Reference::from_flat(&at(-20.0)), Err(ReferenceError::Inverted { .. })));

@@ -4,7 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use quatrack::gains::paper;
 use quatrack::nalgebra::Vector3;
-use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Quaternion, Rate, Reference, State, Tracker};
+use quatrack::{
+    AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Quaternion, Rate, Reference, State, Tracker,
+};
 use quatrack_sim::flight::closed_loop::{Flight, fly_sampled};
 use quatrack_sim::flight::core_loop::{self, CoreLoop};
 use quatrack_sim::flight::metrics::Metrics;
@@ -42,7 +44,12 @@ fn move_and_turn(from_rad: f64, to_rad: f64) -> PiecewisePolynomial {
     PiecewisePolynomial::new(vec![Piece { duration_s, coefficients }]).unwrap()
 }
 
-fn fly(trajectory: &dyn Trajectory, pieces: &PiecewisePolynomial, law: AnyLaw<'_>, disturb: impl Fn(u32, &StateVector) -> StateVector) -> Flight {
+fn fly(
+    trajectory: &dyn Trajectory,
+    pieces: &PiecewisePolynomial,
+    law: AnyLaw<'_>,
+    disturb: impl Fn(u32, &StateVector) -> StateVector,
+) -> Flight {
     let pieces = core_loop::pieces(pieces);
     let mut core = CoreLoop::new(&pieces, Rate::from_hz(RATE_HZ).unwrap(), law, Limits::NONE).unwrap();
     fly_sampled(&Exact(trajectory), RATE_HZ, |tick, _, x| core.step(tick, &disturb(tick, x)))
@@ -94,7 +101,10 @@ fn tracking_does_not_depend_on_the_heading() {
                 let heading = TAU * f64::from(k) / 16.0 - PI;
                 let found = iae(&move_and_turn(heading, heading), law);
                 // The symmetric model gives the same flight to rounding; f32 leaves 1e-6 m of noise over 4 s.
-                assert!((found - at_zero).abs() < 2e-5 + 1e-3 * at_zero, "{name} at {heading:.2}: {found}, not {at_zero}");
+                assert!(
+                    (found - at_zero).abs() < 2e-5 + 1e-3 * at_zero,
+                    "{name} at {heading:.2}: {found}, not {at_zero}"
+                );
             }
         }
     }

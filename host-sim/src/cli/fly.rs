@@ -14,7 +14,7 @@ use quatrack_sim::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
 use quatrack_sim::flight::metrics::Metrics;
 use quatrack_sim::flight::reference::{Exact, Reference};
 use quatrack_sim::flight::{integrator::Method, log};
-use quatrack_sim::plan::{self, Plan};
+use quatrack_sim::plan::{self, Plan, PlanError};
 use quatrack_sim::trajectory::Trajectory;
 use quatrack_sim::trajectory::bspline::BSpline;
 use quatrack_sim::trajectory::file::{self, TrajectoryFile};
@@ -130,8 +130,7 @@ impl FromStr for LimitsChoice {
                 vehicles.join(", ")
             ));
         };
-        let limits =
-            Limits::new(*min, *max, Vector3::new(*rate, *rate, *rate)).map_err(|error| error.to_string())?;
+        let limits = Limits::new(*min, *max, Vector3::new(*rate, *rate, *rate)).map_err(|error| error.to_string())?;
         Ok(Self { name, limits })
     }
 }
@@ -208,16 +207,17 @@ fn load(name: &str) -> Result<PiecewisePolynomial, Failure> {
     let from_spline = |spline: &BSpline| {
         PiecewisePolynomial::from_bspline(spline).map_err(|error| Failure::input(format!("{name}: {error}")))
     };
+    let planned = |plan: Result<Plan, PlanError>| {
+        let curve = plan.and_then(|plan| plan.solve()).map_err(|error| super::plan::failed(Path::new(name), &error))?;
+        from_spline(&curve)
+    };
     match name {
-        "mild" => from_spline(&plan::paper::mild().map_err(Failure::verdict)?),
-        "aggressive" => from_spline(&plan::paper::aggressive().map_err(Failure::verdict)?),
+        "mild" => planned(plan::paper::mild()),
+        "aggressive" => planned(plan::paper::aggressive()),
         path => match file::read(Path::new(path)).map_err(Failure::input)? {
             TrajectoryFile::Pieces(pieces) => Ok(pieces),
             TrajectoryFile::Spline(spline) => from_spline(&spline),
-            TrajectoryFile::Plan(text) => {
-                let plan = Plan::from_toml(&text).map_err(|error| super::plan::failure(name, &error))?;
-                from_spline(&plan.solve().map_err(|error| super::plan::failure(name, &error))?)
-            }
+            TrajectoryFile::Plan(text) => planned(Plan::from_toml(&text)),
         },
     }
 }
@@ -280,28 +280,42 @@ fn fly_f64_continuous(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial
 fn report(args: &Args, flight: &Flight, clock: &str, duration_s: f64) -> Result<(), Failure> {
     let metrics = Metrics::of(flight);
     let feed = if args.feed_forward { ", feed-forward" } else { "" };
-    println!("{} on {}, {duration_s:.2} s, {clock}{feed}, limits {}", args.controller, args.trajectory, args.limits.name);
-    let iae = |value: Option<f64>| value.map_or_else(|| "none: the flight was lost".to_owned(), |v| format!("{v:.6} m s"));
-    println!("  IAE, sum (23) times T_s   {}", iae(metrics.iae_m_s));
-    println!("  IAE, integral (22)        {}", iae(metrics.iae_integral_m_s));
-    println!("  largest position error    {:.6} m", metrics.max_error_m);
-    println!("  RMS position error        {:.6} m", metrics.rms_error_m);
-    println!("  lowest z                  {:.4} m at {:.2} s", metrics.min_z_m, metrics.min_z_time_s);
-    println!("  largest tilt              {:.2} deg", metrics.max_tilt_deg);
-    println!("  peak thrust               {:.3} m/s^2", metrics.max_thrust_m_s2);
-    println!("  peak body rate            {:.3} rad/s", metrics.max_body_rate_rad_s);
-    println!("  saturated steps           {}", metrics.saturated_steps);
+    let Args { controller, trajectory, limits, .. } = args;
+    let iae = |v: Option<f64>| v.map_or_else(|| "none: the flight was lost".to_owned(), |v| format!("{v:.6} m s"));
+    output::print(&format!(
+        "{controller} on {trajectory}, {duration_s:.2} s, {clock}{feed}, limits {}\n\
+         \x20 IAE, sum (23) times T_s   {}\n\
+         \x20 IAE, integral (22)        {}\n\
+         \x20 largest position error    {:.6} m\n\
+         \x20 RMS position error        {:.6} m\n\
+         \x20 lowest z                  {:.4} m at {:.2} s\n\
+         \x20 largest tilt              {:.2} deg\n\
+         \x20 peak thrust               {:.3} m/s^2\n\
+         \x20 peak body rate            {:.3} rad/s\n\
+         \x20 saturated steps           {}\n",
+        limits.name,
+        iae(metrics.iae_m_s),
+        iae(metrics.iae_integral_m_s),
+        metrics.max_error_m,
+        metrics.rms_error_m,
+        metrics.min_z_m,
+        metrics.min_z_time_s,
+        metrics.max_tilt_deg,
+        metrics.max_thrust_m_s2,
+        metrics.max_body_rate_rad_s,
+        metrics.saturated_steps,
+    ))?;
     if let Some(lost) = &flight.lost {
-        println!("  lost at {:.2} s: {}", lost.time_s, lost.reason);
+        output::print(&format!("  lost at {:.2} s: {}\n", lost.time_s, lost.reason))?;
     }
     if let Some(dir) = &args.out {
         let path = dir.join("flight.csv");
         output::write(&path, log::to_csv(flight).as_bytes())?;
-        println!("wrote {}", path.display());
+        output::print(&format!("wrote {}\n", path.display()))?;
     }
     if let Some(path) = &args.json {
         output::write_json(path, &metrics)?;
-        println!("wrote {}", path.display());
+        output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())
 }

@@ -2,6 +2,7 @@
 
 mod fly;
 mod output;
+mod plan;
 mod reproduce;
 
 use std::process::ExitCode;
@@ -38,6 +39,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Fly(fly::Args),
+    Plan(plan::Args),
     Reproduce(reproduce::Args),
 }
 
@@ -49,6 +51,7 @@ pub(crate) fn main() -> ExitCode {
     };
     let outcome: Result<(), Failure> = match &arguments.command {
         Command::Fly(args) => fly::run(args),
+        Command::Plan(args) => plan::run(args),
         Command::Reproduce(args) => reproduce::run(args),
     };
     match outcome {

@@ -1,6 +1,7 @@
 //! What every command writes: files that are whole or absent, JSON, and argument errors of one line.
 
 use std::fs;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -11,7 +12,8 @@ use super::Failure;
 /// Prints help and version as they are, and an argument error as one line with exit code 2.
 pub(crate) fn argument_error(error: &clap::Error) -> ExitCode {
     if !error.use_stderr() || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        print!("{error}");
+        // Whether or not anybody reads the help, there is nothing more to do.
+        let _ = print(&error.to_string());
         return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
     }
     let text = error.to_string();
@@ -19,6 +21,16 @@ pub(crate) fn argument_error(error: &clap::Error) -> ExitCode {
         text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("Usage:")).collect();
     eprintln!("quatrack: {}", line.join(" ").trim_start_matches("error: "));
     ExitCode::from(2)
+}
+
+/// Prints a text as it is. A reader that has seen enough and closed the pipe is no failure.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    match io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::input(format!("standard output: cannot be written ({error})")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Creates `dir` and what leads to it.

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 use quatrack_sim::figures::{Curve, TrackingFigure};
 use quatrack_sim::flight::closed_loop::Flight;
 use quatrack_sim::model::position;
-use quatrack_sim::plan;
+use quatrack_sim::plan::{self, Plan, PlanError};
 use quatrack_sim::reproduction::report::Reproduction;
 use quatrack_sim::reproduction::table::{Controller, Course};
 use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
@@ -40,17 +40,17 @@ const FIGURES: [(u32, &str, Course, [Controller; 2]); 4] = [
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     output::create_dir(&args.out)?;
-    let mild = PiecewisePolynomial::from_bspline(&plan::paper::mild().map_err(Failure::verdict)?)
-        .map_err(Failure::verdict)?;
-    let aggressive = PiecewisePolynomial::from_bspline(&plan::paper::aggressive().map_err(Failure::verdict)?)
-        .map_err(Failure::verdict)?;
+    let planned = |plan: Result<Plan, PlanError>| {
+        let curve = plan.and_then(|plan| plan.solve()).map_err(Failure::verdict)?;
+        PiecewisePolynomial::from_bspline(&curve).map_err(Failure::verdict)
+    };
+    let (mild, aggressive) = (planned(plan::paper::mild())?, planned(plan::paper::aggressive())?);
     let reproduction = Reproduction::fly(&mild, &aggressive).map_err(Failure::verdict)?;
-    print!("{reproduction}");
-    println!();
+    output::print(&format!("{reproduction}\n"))?;
     write_figures(&reproduction, &args.out)?;
     if let Some(path) = &args.json {
         output::write_json(path, &reproduction.report())?;
-        println!("wrote {}", path.display());
+        output::print(&format!("wrote {}\n", path.display()))?;
     }
     if reproduction.is_reproduced() {
         Ok(())
@@ -78,7 +78,7 @@ fn write_figures(reproduction: &Reproduction, dir: &Path) -> Result<(), Failure>
         let png = dir.join(format!("figure{number}.png"));
         output::write(&svg, figure.to_svg().map_err(Failure::verdict)?.as_bytes())?;
         output::write(&png, &figure.to_png().map_err(Failure::verdict)?)?;
-        println!("wrote {} and {}", svg.display(), png.display());
+        output::print(&format!("wrote {} and {}\n", svg.display(), png.display()))?;
     }
     Ok(())
 }

@@ -1,0 +1,137 @@
+//! `quatrack plan`: a plan file in; a summary and, if asked for, the curve's control points out.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use quatrack_sim::plan::{Limit, Plan, PlanError, Realised};
+use quatrack_sim::trajectory::bspline::BSpline;
+use serde::Serialize;
+
+use super::{Failure, output};
+
+/// Plan a flight through waypoints within bounds.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Plan file in TOML; plans/mild.toml and plans/aggressive.toml show the keys.
+    #[arg(value_name = "FILE.toml")]
+    plan: PathBuf,
+    /// Write degree, duration and control points as JSON.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write degree, duration and control points as TOML.
+    #[arg(long, value_name = "FILE")]
+    toml: Option<PathBuf>,
+}
+
+/// What the files hold.
+#[derive(Serialize)]
+struct Curve {
+    degree: usize,
+    duration_s: f64,
+    control_points_m: Vec<[f64; 3]>,
+}
+
+/// Plans the flight of a file.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let path = args.plan.display();
+    let text = fs::read_to_string(&args.plan)
+        .map_err(|error| Failure::input(format!("{path}: cannot read this plan file ({error})")))?;
+    let plan = Plan::from_toml(&text).map_err(|error| Failure::input(format!("{path}: {error}")))?;
+    let curve = plan.solve().map_err(|error| failed(&args.plan, &error))?;
+    let contents = Curve {
+        degree: curve.degree(),
+        duration_s: plan.duration_s(),
+        control_points_m: curve.control_points_m().iter().map(|point| [point.x, point.y, point.z]).collect(),
+    };
+    if let Some(json) = &args.json {
+        output::write_json(json, &contents)?;
+    }
+    if let Some(toml) = &args.toml {
+        output::write(toml, as_toml(&contents).as_bytes())?;
+    }
+    let mut text = format!("{path}\n{}", summary(&plan, &curve));
+    for written in [&args.json, &args.toml].into_iter().flatten() {
+        text += &format!("wrote {}\n", written.display());
+    }
+    output::print(&text)
+}
+
+/// How a planning error ends the command: 1 where the plan cannot be met, 2 where the file cannot be used.
+pub(super) fn failed(path: &Path, error: &PlanError) -> Failure {
+    let line = format!("{}: {error}", path.display());
+    match error {
+        PlanError::Infeasible(_) | PlanError::NotConverged(_) => Failure::verdict(line),
+        _ => Failure::input(line),
+    }
+}
+
+/// One control point a line; Rust's shortest decimals read back to the same bits.
+fn as_toml(curve: &Curve) -> String {
+    let points = curve.control_points_m.iter().map(|[x, y, z]| format!("  [{x:?}, {y:?}, {z:?}],\n"));
+    format!(
+        "degree = {}\nduration_s = {:?}\ncontrol_points_m = [\n{}]\n",
+        curve.degree,
+        curve.duration_s,
+        points.collect::<String>()
+    )
+}
+
+fn summary(plan: &Plan, curve: &BSpline) -> String {
+    let realised = plan.realised(curve);
+    let sampled = &realised.sampled;
+    let bounds = plan.bounds();
+    let mut text = format!(
+        "degree {}, {} spans, {} control points, {} s, {:.3} m long\n\n",
+        plan.degree(),
+        plan.spans(),
+        curve.control_points_m().len(),
+        plan.duration_s(),
+        sampled.length_m
+    );
+    line(&mut text, ["", "sampled", "control points", "bound"]);
+    let one = 1.0;
+    let deg = 1_f64.to_degrees();
+    let rows = [
+        ("speed, largest, m/s", sampled.speed_max_m_s, Some(Limit::Speed), bounds.speed_max_m_s, one),
+        ("acceleration, largest, m/s^2", sampled.acceleration_max_m_s2, None, None, one),
+        ("tilt, largest, deg", sampled.tilt_max_rad, Some(Limit::Tilt), bounds.tilt_max_rad, deg),
+        ("thrust, least, m/s^2", sampled.thrust_min_m_s2, Some(Limit::ThrustMin), bounds.thrust_min_m_s2, one),
+        ("thrust, largest, m/s^2", sampled.thrust_max_m_s2, Some(Limit::ThrustMax), bounds.thrust_max_m_s2, one),
+        (
+            "body rate, largest, deg/s",
+            sampled.body_rate_max_rad_s,
+            Some(Limit::BodyRate),
+            bounds.body_rate_max_rad_s,
+            deg,
+        ),
+        ("body rate, largest, deg/s", sampled.body_rate_max_rad_s, None, None, deg),
+    ];
+    for (name, sampled, limit, bound, unit) in rows {
+        let proved = limit.and_then(|limit| proved(&realised, limit));
+        let cell = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{:.4}", value * unit));
+        // A bound is what was asked for: printed as written, but for the rounding of degrees.
+        let asked = bound.map_or("-".to_owned(), |bound| format!("{}", (bound * unit * 1e9).round() / 1e9));
+        line(&mut text, [name, &cell(Some(sampled)), &cell(proved), &asked]);
+    }
+    text.push('\n');
+    line(&mut text, ["waypoint", "time, s", "missed by, m", "tolerance, m"]);
+    for ((waypoint, miss), number) in plan.waypoints().iter().zip(&realised.misses_m).zip(1..) {
+        let time = format!("{:.4}", waypoint.time_s);
+        // What is left of an equality is rounding, and differs between machines.
+        let miss = format!("{:.6}", (miss * 1e6).round() / 1e6);
+        let tolerance = if waypoint.tolerance_m == 0.0 { "exact".to_owned() } else { waypoint.tolerance_m.to_string() };
+        line(&mut text, [&number.to_string(), &time, &miss, &tolerance]);
+    }
+    text
+}
+
+/// Largest (or least) value of a limit that the control points prove for all t.
+fn proved(realised: &Realised, limit: Limit) -> Option<f64> {
+    realised.proved.iter().find(|(of, _)| *of == limit).map(|(_, value)| *value)
+}
+
+fn line(text: &mut String, [name, a, b, c]: [&str; 4]) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{name:<30} {a:>10} {b:>15} {c:>13}");
+}
