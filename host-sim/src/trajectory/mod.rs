@@ -2,6 +2,8 @@
 //! out.
 
 pub mod bspline;
+pub mod file;
+pub mod polynomial;
 
 use nalgebra::Vector3;
 
