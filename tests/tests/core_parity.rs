@@ -16,8 +16,8 @@ fn spread(unit: f64, size: f64) -> f64 {
     f64::from(((2.0 * unit - 1.0) * size) as f32)
 }
 
-fn vector(units: &[f64], size: f64) -> nalgebra::Vector3<f64> {
-    nalgebra::Vector3::new(spread(units[0], size), spread(units[1], size), spread(units[2], size))
+fn vector(units: &[f64], size: f64) -> Vector3<f64> {
+    Vector3::new(spread(units[0], size), spread(units[1], size), spread(units[2], size))
 }
 
 /// Relative errors of the core's commands, in the order of cases, with both signs of the measured quaternion.

@@ -168,7 +168,9 @@ fn draw_scales(scene: &mut Scene, view: &View, axes: &[Range; 3], ticks: &[Vec<(
         if i == 2 {
             scene.text_upwards(name, (middle + Vector2::new(-46.0, 0.0)).into(), LABEL);
         } else {
-            let at = middle + 40.0 * outwards + Vector2::y() * CAP_HEIGHT * LABEL;
+            // Clear of the longest tick labels: those of y run away from the box, in the direction of the name.
+            let distance = if i == 0 { 40.0 } else { 50.0 };
+            let at = middle + distance * outwards + Vector2::y() * CAP_HEIGHT * LABEL;
             scene.text(name, at.into(), LABEL, anchor);
         }
     }

@@ -87,15 +87,15 @@ impl Reproduction {
     }
 }
 
-/// An IAE to four digits; below what an integrator can tell from zero it says so.
+/// An IAE to five digits; below what an integrator can tell from zero it says so.
 fn digits(iae: Option<f64>) -> String {
     const RESOLUTION: f64 = 1e-6;
     match iae {
         None => "lost".to_owned(),
         Some(iae) if iae < RESOLUTION => format!("< {RESOLUTION:.0e}"),
         Some(iae) => {
-            let decimals = (3 - iae.log10().floor() as i32).clamp(0, 9) as usize;
-            format!("{iae:.decimals$}")
+            let decimals = (4 - iae.log10().floor() as i32).clamp(0, 9) as usize;
+            if iae < 1e-3 { format!("{iae:.1e}") } else { format!("{iae:.decimals$}") }
         }
     }
 }
@@ -104,7 +104,7 @@ impl fmt::Display for Reproduction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "Table I: IAE (23) of the position, m s")?;
         for (course, outcomes) in &self.outcomes {
-            let title = format!("{course:?}, {} s", self.duration_s.get(course).copied().unwrap_or_default());
+            let title = format!("{course:?}, {:.0} s", self.duration_s.get(course).copied().unwrap_or_default());
             write!(f, "\n{title:<22}")?;
             for controller in outcomes.keys() {
                 write!(f, "{controller:>12}")?;
