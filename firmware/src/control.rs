@@ -1,56 +1,68 @@
-//! The control path: every law of the core over a stored piece, one step a tick.
+//! The control loop: the newest state and the reference of a tick in, one command out, against traits alone.
 
-use core::hint::black_box;
+use quatrack::{Command, FlatSample, Player, Reference, ReferenceError, State, Step, StepError, Tick, Tracker};
 
-use quatrack::gains::paper;
-use quatrack::nalgebra::Vector3;
-use quatrack::{Command, Equilibrium, FlatOutput, Limits, Piece, Player, Rate, Reference, State, Tracker, Trajectory};
+/// Where states come from: a link, later an estimator.
+pub trait StateSource {
+    /// The newest state, if there has been one.
+    fn newest(&mut self) -> Option<State>;
+}
 
-/// Rest to rest, half a metre up in two seconds: `z = 0.5 (35 s^4 - 84 s^5 + 70 s^6 - 20 s^7)` with `s = t / 2 s`.
-static CLIMB: [Piece; 1] = [Piece {
-    duration_ns: 2_000_000_000,
-    x: [0.0; 8],
-    y: [0.0; 8],
-    z: [0.0, 0.0, 0.0, 0.0, 1.093_75, -1.3125, 0.546_875, -0.078_125],
-    heading: [0.0; 8],
-}];
+/// Where references come from: a stored trajectory, or a link.
+pub trait ReferenceSource {
+    /// The flat output at a tick.
+    fn at(&mut self, tick: Tick) -> FlatSample;
+}
 
-/// Control steps a second.
-const RATE_HZ: u32 = 500;
+/// Where commands go: a link, later the rate loop and its motors.
+pub trait CommandSink {
+    /// Takes the command of this tick.
+    fn put(&mut self, command: &Command);
+}
 
-/// Crazyflie 2.1: four motors of 0.12 N at 0.029 kg; the rates are the paper's controllers' own choice.
-const THRUST_MAX_M_S2: f32 = 16.55;
-const BODY_RATE_MAX_RAD_S: f32 = 20.0;
-
-/// Steps for ever; what is commanded is only kept from being optimised away.
-pub(crate) fn run() -> ! {
-    loop {
-        black_box(climb(black_box(&State::at_rest(Vector3::new(0.0, 0.0, 0.0)))));
+impl ReferenceSource for Player<'_> {
+    #[inline]
+    fn at(&mut self, tick: Tick) -> FlatSample {
+        Player::at(self, tick)
     }
 }
 
-/// The last command of the climb, or none at the first step that gives none.
-fn climb(state: &State) -> Command {
-    let rates = Vector3::new(BODY_RATE_MAX_RAD_S, BODY_RATE_MAX_RAD_S, BODY_RATE_MAX_RAD_S);
-    let (Ok(limits), Some(rate), Ok(trajectory)) =
-        (Limits::new(0.0, THRUST_MAX_M_S2, rates), Rate::from_hz(RATE_HZ), Trajectory::new(black_box(&CLIMB)))
-    else {
-        return Command::ZERO;
-    };
-    let trackers = [
-        Tracker::new(Equilibrium::new(&paper::LQR_E), limits),
-        Tracker::new(Equilibrium::new(&paper::LYAP_E), limits),
-        Tracker::new(FlatOutput::new(&paper::LQR_F), limits),
-        Tracker::new(FlatOutput::new(&paper::LYAP_F), limits),
-    ];
-    let mut player = Player::new(trajectory, rate);
-    let mut command = Command::ZERO;
-    for tick in 0..player.end_tick() {
-        let Ok(reference) = Reference::from_flat(&player.at(tick)) else { return Command::ZERO };
-        for tracker in &trackers {
-            let Ok(step) = tracker.step(black_box(state), &reference) else { return Command::ZERO };
-            command = black_box(step.command);
-        }
-    }
-    command
+/// Why a tick gave the zero command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TickError {
+    /// No state has come yet.
+    NoState,
+    /// The reference cannot be flown.
+    Reference(ReferenceError),
+    /// The law gave none.
+    Step(StepError),
+}
+
+/// One tick: the command of the law, or zero and the reason.
+///
+/// # Errors
+/// [`TickError`]; the sink has then been given [`Command::ZERO`].
+#[inline]
+pub fn tick(
+    tick: Tick,
+    tracker: &Tracker<'_>,
+    states: &mut impl StateSource,
+    references: &mut impl ReferenceSource,
+    commands: &mut impl CommandSink,
+) -> Result<Step, TickError> {
+    let step = step(tick, tracker, states, references);
+    commands.put(step.as_ref().map_or(&Command::ZERO, |step| &step.command));
+    step
+}
+
+#[inline]
+fn step(
+    tick: Tick,
+    tracker: &Tracker<'_>,
+    states: &mut impl StateSource,
+    references: &mut impl ReferenceSource,
+) -> Result<Step, TickError> {
+    let state = states.newest().ok_or(TickError::NoState)?;
+    let reference = Reference::from_flat(&references.at(tick)).map_err(TickError::Reference)?;
+    tracker.step(&state, &reference).map_err(TickError::Step)
 }

@@ -1,32 +1,40 @@
-//! The control path on an STM32F405, linked without a single panic path.
-//!
-//! A state in, a stored piece played by ticks, a command out, through every law of the core. Drivers, clocks and the
-//! link to a host are not here yet: the state is the one in memory and the command goes nowhere. What the image shows
-//! is that the core runs without an operating system, an allocator, or anything that could panic: its panic handler
-//! calls a function that does not exist, so that it links only if the handler is unreachable.
+//! The image that flies.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-mod control;
-
-#[cfg(target_os = "none")]
 mod image {
-    use core::panic::PanicInfo;
+    use core::hint::black_box;
 
-    use cortex_m_rt::entry;
+    use quatrack::{Limits, Player, Rate, State, Trajectory};
+    use quatrack_firmware as _;
+    use quatrack_firmware::{control, laws, stored};
 
-    #[entry]
-    fn main() -> ! {
-        super::control::run()
+    struct Slot;
+    impl control::StateSource for Slot {
+        fn newest(&mut self) -> Option<State> {
+            black_box(None)
+        }
+    }
+    impl control::CommandSink for Slot {
+        fn put(&mut self, command: &quatrack::Command) {
+            black_box(command);
+        }
     }
 
-    #[panic_handler]
-    #[allow(unsafe_code, reason = "naming a symbol that must not be reached; nothing is ever called")]
-    fn panic(_: &PanicInfo<'_>) -> ! {
-        unsafe extern "C" {
-            safe fn the_control_path_can_panic() -> !;
+    #[cortex_m_rt::entry]
+    fn main() -> ! {
+        let (Some(law), Some(rate), Ok(trajectory)) =
+            (laws::by_index(black_box(0)), Rate::from_hz(500), Trajectory::new(black_box(&stored::MILD)))
+        else {
+            loop {
+                cortex_m::asm::wfi();
+            }
+        };
+        let tracker = quatrack::Tracker::new(law, Limits::NONE);
+        let mut player = Player::new(trajectory, rate);
+        loop {
+            let _ = black_box(control::tick(0, &tracker, &mut Slot, &mut player, &mut Slot));
         }
-        the_control_path_can_panic()
     }
 }
 

@@ -4,6 +4,7 @@
 //! and figures. The layers import only downwards:
 //!
 //! ```text
+//! pil                             the image on its processor, emulated or real: flown, compared, counted
 //! reproduction, figures           Table I and Figures 2 to 5
 //!   flight                        plant, integrators, laws in f64, the f32 core in the loop, metrics
 //!     plan                        waypoints and bounds -> B-spline, by second-order cone programming
@@ -21,6 +22,7 @@ pub mod design;
 pub mod figures;
 pub mod flight;
 pub mod model;
+pub mod pil;
 pub mod plan;
 pub mod reproduction;
 pub mod trajectory;

@@ -1,6 +1,7 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
 mod fly;
+mod measure;
 mod output;
 mod plan;
 mod reproduce;
@@ -39,6 +40,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Fly(fly::Args),
+    Measure(measure::Args),
     Plan(plan::Args),
     Reproduce(reproduce::Args),
 }
@@ -51,6 +53,7 @@ pub(crate) fn main() -> ExitCode {
     };
     let outcome: Result<(), Failure> = match &arguments.command {
         Command::Fly(args) => fly::run(args),
+        Command::Measure(args) => measure::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Reproduce(args) => reproduce::run(args),
     };

@@ -4,8 +4,11 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use quatrack_sim::flight::core_loop;
+use quatrack_sim::pil::stored;
 use quatrack_sim::plan::{Limit, Plan, PlanError, Realised};
 use quatrack_sim::trajectory::bspline::BSpline;
+use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
 use serde::Serialize;
 
 use super::{Failure, output};
@@ -22,6 +25,9 @@ pub(crate) struct Args {
     /// Write degree, duration and control points as TOML.
     #[arg(long, value_name = "FILE")]
     toml: Option<PathBuf>,
+    /// Write the pieces that a board stores, as a Rust constant with the name of the plan file.
+    #[arg(long, value_name = "FILE")]
+    rust: Option<PathBuf>,
 }
 
 /// What the files hold.
@@ -50,8 +56,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(toml) = &args.toml {
         output::write(toml, as_toml(&contents).as_bytes())?;
     }
+    if let Some(rust) = &args.rust {
+        let pieces = PiecewisePolynomial::from_bspline(&curve).map_err(Failure::verdict)?;
+        let name = args.plan.file_stem().unwrap_or_default().to_string_lossy().to_uppercase();
+        let name = name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+        output::write(rust, stored::rust_source(&name, &core_loop::pieces(&pieces)).as_bytes())?;
+    }
     let mut text = format!("{path}\n{}", summary(&plan, &curve));
-    for written in [&args.json, &args.toml].into_iter().flatten() {
+    for written in [&args.json, &args.toml, &args.rust].into_iter().flatten() {
         text += &format!("wrote {}\n", written.display());
     }
     output::print(&text)

@@ -216,8 +216,8 @@ fn fly_published(trajectory: &PiecewisePolynomial, gain: &AnyGain) -> Flight {
     }
 }
 
-/// The committed tables in the core, by name.
-fn core_law(controller: Controller) -> AnyLaw<'static> {
+/// The committed tables in the core, by name; errors formed as in the paper.
+pub fn core_law(controller: Controller) -> AnyLaw<'static> {
     let equilibrium = |gain: &'static CoreEquilibriumGain| -> AnyLaw<'static> {
         Equilibrium { gain, error_form: ErrorForm::Paper, feed_forward: FeedForward::Without }.into()
     };

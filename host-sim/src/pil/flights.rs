@@ -1,0 +1,83 @@
+//! The paper's flights as the board flies them: both courses, four controllers, 500 Hz; states and commands out.
+
+use quatrack::{Command, Limits, Player, Rate, Reference, State, Tracker};
+
+use super::{PilError, stored};
+use crate::flight::closed_loop::{Flight, HeldCommand, fly_sampled};
+use crate::flight::core_loop;
+use crate::flight::reference::Exact;
+use crate::model::StateVector;
+use crate::plan;
+use crate::reproduction::table::{Controller, Course, core_law};
+use crate::trajectory::polynomial::PiecewisePolynomial;
+
+/// Control steps a second.
+pub const RATE_HZ: u32 = 500;
+
+/// Both courses.
+pub const COURSES: [Course; 2] = [Course::Mild, Course::Aggressive];
+
+/// The planned trajectories, against which errors are taken.
+pub struct Plans {
+    mild: PiecewisePolynomial,
+    aggressive: PiecewisePolynomial,
+}
+
+impl Plans {
+    /// Plans both.
+    ///
+    /// # Errors
+    /// [`PilError::Plan`], which the paper's own plans do not meet.
+    pub fn solve() -> Result<Self, PilError> {
+        let solve = |plan: Result<plan::Plan, plan::PlanError>| {
+            let curve = plan.and_then(|plan| plan.solve()).map_err(|error| PilError::Plan(error.to_string()))?;
+            PiecewisePolynomial::from_bspline(&curve).map_err(|error| PilError::Plan(error.to_string()))
+        };
+        Ok(Self { mild: solve(plan::paper::mild())?, aggressive: solve(plan::paper::aggressive())? })
+    }
+
+    /// One of them.
+    pub fn of(&self, course: Course) -> &PiecewisePolynomial {
+        match course {
+            Course::Mild => &self.mild,
+            Course::Aggressive => &self.aggressive,
+        }
+    }
+}
+
+/// The core on the host with what the board has stored.
+pub struct HostCore {
+    tracker: Tracker<'static>,
+    player: Player<'static>,
+}
+
+impl HostCore {
+    /// The core at the start of a flight.
+    ///
+    /// # Errors
+    /// [`PilError::Answer`] where the core refuses what is stored.
+    pub fn new(course: Course, controller: Controller) -> Result<Self, PilError> {
+        let trajectory = quatrack::Trajectory::new(stored::pieces(course))
+            .map_err(|error| PilError::Answer(format!("the stored {course:?} trajectory: {error}")))?;
+        let rate = Rate::from_hz(RATE_HZ).ok_or_else(|| PilError::Answer(format!("no rate of {RATE_HZ} Hz")))?;
+        Ok(Self { tracker: Tracker::new(core_law(controller), Limits::NONE), player: Player::new(trajectory, rate) })
+    }
+
+    /// The command of a tick.
+    ///
+    /// # Errors
+    /// The core's own words.
+    pub fn step(&mut self, tick: u32, state: &State) -> Result<Command, String> {
+        let reference = Reference::from_flat(&self.player.at(tick)).map_err(|error| error.to_string())?;
+        let step = self.tracker.step(state, &reference).map_err(|error| error.to_string())?;
+        Ok(step.command)
+    }
+}
+
+/// Flies a course under the commands of `control`, which is given the tick and the state as the board gets it.
+pub fn fly(plan: &PiecewisePolynomial, mut control: impl FnMut(u32, &State) -> Result<Command, String>) -> Flight {
+    fly_sampled(&Exact(plan), RATE_HZ, |tick, _, x: &StateVector| {
+        let command = control(tick, &core_loop::state(x))?;
+        Ok(HeldCommand { input: core_loop::input(&command), limited: false })
+    })
+}

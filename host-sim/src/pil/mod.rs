@@ -1,0 +1,100 @@
+//! The image on its processor, emulated or real: flights in; commands, instruction counts and verdicts out.
+//!
+//! ```text
+//! measure          instructions a step, flash, RAM
+//!   flights        the paper's flights, flown by the core on the host
+//!   emulator       the process that runs an image
+//!   image          built here, or given; what it takes in flash and RAM
+//!   stored         the trajectories that the board has in flash
+//! ```
+
+pub mod emulator;
+pub mod flights;
+pub mod image;
+pub mod measure;
+pub mod stored;
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Why an image was not flown or counted.
+#[derive(Debug, Error)]
+pub enum PilError {
+    /// Nothing to build the image from.
+    #[error("not inside a checkout of quatrack, so there is no image to build; change there or give --image FILE")]
+    NoCheckout,
+    /// Cargo failed; it has said why.
+    #[error("the image was not built: {command} ended with {status}; its own messages are above")]
+    Build {
+        /// What was run.
+        command: String,
+        /// How it ended.
+        status: String,
+    },
+    /// No image.
+    #[error("{}: {reason}", path.display())]
+    Image {
+        /// The file.
+        path: PathBuf,
+        /// Why it cannot be run.
+        reason: String,
+    },
+    /// QEMU is not there.
+    #[error("{} is not installed; on Debian and Ubuntu: apt-get install qemu-system-arm", emulator::PROGRAM)]
+    NoEmulator,
+    /// The emulator stopped by itself.
+    #[error("the emulator ended with {status} before the image had answered{}", said(.output))]
+    EmulatorEnded {
+        /// How.
+        status: String,
+        /// What it said.
+        output: String,
+    },
+    /// The image does not get on.
+    #[error("no answer within {seconds} s: {waiting_for}")]
+    Silent {
+        /// How long.
+        seconds: u64,
+        /// From what.
+        waiting_for: String,
+    },
+    /// The emulator does not count as assumed.
+    #[error(
+        "the emulated timer counts {counted} for {instructions} instructions; it cannot measure with this emulator"
+    )]
+    Miscounts {
+        /// What it counted.
+        counted: u32,
+        /// What was executed.
+        instructions: u32,
+    },
+    /// What the image wrote is not what was asked of it.
+    #[error("the image's answer does not fit: {0}; build the image from this checkout")]
+    Answer(String),
+    /// The planner failed on the paper's own plans.
+    #[error("{0}")]
+    Plan(String),
+    /// The machine.
+    #[error("{doing}: {source}")]
+    Io {
+        /// At what.
+        doing: String,
+        /// What it said.
+        source: io::Error,
+    },
+}
+
+impl PilError {
+    /// Words for a failed system call.
+    pub(crate) fn io(doing: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
+        let doing = doing.into();
+        move |source| Self::Io { doing, source }
+    }
+}
+
+fn said(output: &str) -> String {
+    let text = output.trim();
+    if text.is_empty() { String::new() } else { format!(": {}", text.replace('\n', " ")) }
+}
