@@ -159,16 +159,14 @@ fn split_real_pair(h: &mut DMatrix<f64>, q: &mut DMatrix<f64>, k: usize) {
         h[(k, j)] = c * upper + s * lower;
         h[(k + 1, j)] = c * lower - s * upper;
     }
-    for (matrix, rows) in [(h, k + 2), (q, n)] {
+    for (matrix, rows) in [(&mut *h, k + 2), (q, n)] {
         for i in 0..rows {
             let (left, right) = (matrix[(i, k)], matrix[(i, k + 1)]);
             matrix[(i, k)] = c * left + s * right;
             matrix[(i, k + 1)] = c * right - s * left;
         }
-        if rows == k + 2 {
-            matrix[(k + 1, k)] = 0.0;
-        }
     }
+    h[(k + 1, k)] = 0.0;
 }
 
 /// One implicit double-shift sweep over the active block `low..=high`, which has at least three rows.

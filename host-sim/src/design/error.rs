@@ -125,8 +125,13 @@ pub enum DesignError {
 /// A complex number as people write it: without an imaginary part of zero.
 fn complex(value: &Complex64) -> String {
     if value.im == 0.0 {
-        format!("{:.6}", value.re)
+        real(value.re)
     } else {
-        format!("{:.6} {} {:.6}i", value.re, if value.im < 0.0 { '-' } else { '+' }, value.im.abs())
+        format!("{} {} {}i", real(value.re), if value.im < 0.0 { '-' } else { '+' }, real(value.im.abs()))
     }
+}
+
+/// Six digits, whatever the size.
+fn real(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) { format!("{value:.6}") } else { format!("{value:.5e}") }
 }
