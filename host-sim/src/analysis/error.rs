@@ -51,7 +51,9 @@ pub enum MatrixError {
         value: f64,
     },
     /// The QR iteration used up its bound.
-    #[error("the eigenvalues of {name} were not found in {iterations} QR sweeps; scale the matrix or check its entries")]
+    #[error(
+        "the eigenvalues of {name} were not found in {iterations} QR sweeps; scale the matrix or check its entries"
+    )]
     EigenvaluesNotFound {
         /// Name of the matrix.
         name: &'static str,

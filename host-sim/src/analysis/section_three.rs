@@ -16,8 +16,7 @@ use crate::model::{INPUT_NAMES, STATE_NAMES, hover_input, hover_state};
 const FLAT_STATE_NAMES: [&str; 10] =
     ["x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "ax_m_s2", "ay_m_s2", "az_m_s2", "q3"];
 /// Names of the flat input (6b) in order, with their units.
-const FLAT_INPUT_NAMES: [&str; 7] =
-    ["ax_m_s2", "ay_m_s2", "az_m_s2", "jx_m_s3", "jy_m_s3", "jz_m_s3", "q3_rate_per_s"];
+const FLAT_INPUT_NAMES: [&str; 7] = ["ax_m_s2", "ay_m_s2", "az_m_s2", "jx_m_s3", "jy_m_s3", "jz_m_s3", "q3_rate_per_s"];
 
 /// One uncontrollable mode of a model: a combination of its states that the input does not reach.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -37,8 +37,6 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
 }
 
 impl Double {
-    pub(super) const ZERO: Self = Self { hi: 0.0, lo: 0.0 };
-
     pub(super) fn new(value: f64) -> Self {
         Self { hi: value, lo: 0.0 }
     }

@@ -71,11 +71,7 @@ pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<LyapunovSolution, 
         .filter(|refined| refined.last_correction < 1e-12)
         .ok_or(DesignError::Inaccurate { equation: "the Lyapunov equation", residual: f64::NAN })?;
     let x = equation.unscaled(&refined.x).hi;
-    Ok(LyapunovSolution {
-        relative_residual: given.relative_residual(&x),
-        x,
-        last_correction: refined.last_correction,
-    })
+    Ok(LyapunovSolution { relative_residual: given.relative_residual(&x), x, last_correction: refined.last_correction })
 }
 
 /// The paper's design (15), (17): P > 0 with `P A + A' P - P B B' P = -2 mu P` and K = B' P / 2.

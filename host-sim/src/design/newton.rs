@@ -15,7 +15,7 @@ use super::lyapunov::LyapunovOperator;
 const MAX_STEPS: usize = 70;
 /// Correction relative to X after which another one could only change digits that an f64 does not have.
 const FINISHED: f64 = 1e-20;
-/// Below this a correction that no longer shrinks is the rounding floor.
+/// Below this a correction that no longer shrinks, not even by half, is the rounding floor.
 const SETTLED: f64 = 1e-9;
 
 /// A refined solution, in the coordinates of its equation.
@@ -33,6 +33,7 @@ pub(super) fn refine(equation: &Equation, start: DMatrix<f64>) -> Option<Refined
     let mut x = DoubleMatrix::new(start);
     let mut operator: Option<LyapunovOperator> = None;
     let mut last_correction = f64::INFINITY;
+    let mut fast = false;
     let mut growing = 0;
     for _ in 0..MAX_STEPS {
         let residual = equation.residual(&x);
@@ -40,7 +41,7 @@ pub(super) fn refine(equation: &Equation, start: DMatrix<f64>) -> Option<Refined
             return None;
         }
         // Near the solution the closed loop no longer changes enough to be worth another Schur form.
-        if last_correction > 1e-8 || operator.is_none() {
+        if last_correction > 1e-8 || !fast {
             operator = Some(LyapunovOperator::new(&residual.closed_loop).ok()?);
         }
         let correction = operator.as_ref()?.solve(&residual.value.hi);
@@ -53,7 +54,7 @@ pub(super) fn refine(equation: &Equation, start: DMatrix<f64>) -> Option<Refined
             break;
         }
         let relative = size / x.hi.norm().max(size);
-        if relative < SETTLED && relative > 0.25 * last_correction {
+        if relative < SETTLED && relative > 0.7 * last_correction {
             break;
         }
         growing = if relative > 0.9 * last_correction { growing + 1 } else { 0 };
@@ -61,6 +62,7 @@ pub(super) fn refine(equation: &Equation, start: DMatrix<f64>) -> Option<Refined
             return None;
         }
         x.add(&correction);
+        fast = relative < 1e-3 * last_correction;
         last_correction = relative;
         if relative < FINISHED {
             break;

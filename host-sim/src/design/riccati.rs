@@ -13,7 +13,8 @@
 //! **Conditions.** A stabilising solution exists and is unique if (A, B) is stabilisable and the Hamiltonian has no
 //! eigenvalue on the imaginary axis; for Q >= 0 the latter says that Q sees every mode of A there. [`lqr`] demands
 //! Q >= 0, and then P >= 0. [`care`] takes any symmetric Q, as H-infinity problems need. [`strong_care`] also accepts
-//! closed-loop poles on the axis, the limit of stabilising solutions; half of the digits are typical there.
+//! closed-loop poles on the axis, the limit of stabilising solutions; there Newton steps only halve the error, and how far
+//! they get is in `last_correction`.
 //!
 //! References: Laub 1979; Byers 1987; Kleinman 1968; Benner 2001 (balancing); Guo and Lancaster 1998 (strong solutions);
 //! Kenney and Hewer 1990 (condition).
@@ -26,7 +27,9 @@ use super::hamiltonian::{by_schur_vectors, by_sign_function};
 use super::lyapunov::LyapunovOperator;
 use super::newton::{Refined, refine};
 use super::{DesignError, require_symmetric};
-use crate::analysis::{MatrixError, balance, eigenvalues, require_finite, require_square, spectral_abscissa, staircase};
+use crate::analysis::{
+    MatrixError, balance, eigenvalues, require_finite, require_square, spectral_abscissa, staircase,
+};
 
 /// A solution counts as found if the last correction, relative to P, is below this.
 const ACCURATE: f64 = 1e-13;
@@ -288,9 +291,11 @@ fn no_solution(equation: &Equation, residual: f64) -> DesignError {
     nearest.retain(|value| value.im >= 0.0);
     nearest.sort_by(|x, y| x.re.abs().total_cmp(&y.re.abs()));
     // The few that are nearest to the axis: each costs an inverse.
-    nearest.iter().take(4).find(|value| on_axis(&h, **value, tolerance)).map_or(inaccurate, |value| {
-        DesignError::HamiltonianOnAxis { eigenvalue: Complex64::new(0.0, value.im) }
-    })
+    nearest
+        .iter()
+        .take(4)
+        .find(|value| on_axis(&h, **value, tolerance))
+        .map_or(inaccurate, |value| DesignError::HamiltonianOnAxis { eigenvalue: Complex64::new(0.0, value.im) })
 }
 
 /// Kenney and Hewer's upper estimate of the condition number.
