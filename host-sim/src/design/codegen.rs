@@ -4,20 +4,14 @@ use std::fmt::Write;
 
 use nalgebra::SMatrix;
 
-use super::error::DesignError;
-use super::synthesis::{EquilibriumWeights, FlatWeights, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat};
+use super::DesignError;
+use super::synthesis::{
+    EquilibriumWeights, FlatWeights, PAPER_MU, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat,
+};
 
-/// Decay rate of the paper's Lyapunov design, 1/s.
-pub const PAPER_MU: f64 = 2.0;
-
-/// Entries below this share of a gain's largest are rounding of the solver where the structure has a zero.
-const NEGLIGIBLE: f64 = 1e-12;
-
-/// A gain as the core flies it: every entry rounded to the nearest f32, what is negligible to zero; by rows.
+/// A gain as the core flies it: every entry rounded to the nearest f32; by rows.
 pub fn rounded<const M: usize, const N: usize>(gain: &SMatrix<f64, M, N>) -> [[f32; N]; M] {
-    let smallest = NEGLIGIBLE * gain.amax();
-    let entry = |value: f64| if value.abs() < smallest { 0.0 } else { value as f32 };
-    std::array::from_fn(|row| std::array::from_fn(|column| entry(gain[(row, column)])))
+    std::array::from_fn(|row| std::array::from_fn(|column| gain[(row, column)] as f32))
 }
 
 /// The whole of `core/src/gains/paper.rs`: the four designs of the paper.

@@ -7,8 +7,9 @@ use std::thread;
 
 use serde::Serialize;
 
-use super::table::{CORE_RATES_HZ, CRASH_MU, Controller, Course, Gains, Outcome, PAPER_MU, fly_cell, fly_crash};
-use crate::design::synthesis::SynthesisError;
+use super::table::{CORE_RATES_HZ, CRASH_MU, Controller, Course, Gains, Outcome, fly_cell, fly_crash};
+use crate::design::DesignError;
+use crate::design::synthesis::PAPER_MU;
 use crate::flight::metrics::Metrics;
 use crate::trajectory::Trajectory;
 use crate::trajectory::polynomial::PiecewisePolynomial;
@@ -31,8 +32,8 @@ impl Reproduction {
     /// Flies everything, the two courses side by side.
     ///
     /// # Errors
-    /// [`SynthesisError`] where a gain cannot be designed.
-    pub fn fly(mild: &PiecewisePolynomial, aggressive: &PiecewisePolynomial) -> Result<Self, SynthesisError> {
+    /// [`DesignError`] where a gain cannot be designed.
+    pub fn fly(mild: &PiecewisePolynomial, aggressive: &PiecewisePolynomial) -> Result<Self, DesignError> {
         let gains = Gains::design(PAPER_MU)?;
         let fly_course = |course: Course, trajectory: &PiecewisePolynomial| {
             Controller::ALL.map(|controller| (controller, fly_cell(course, trajectory, controller, &gains)))
