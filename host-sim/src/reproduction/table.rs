@@ -114,6 +114,14 @@ impl Gains {
         })
     }
 
+    /// The gain of an equilibrium controller; nothing for the others.
+    pub fn equilibrium(&self, controller: Controller) -> Option<EquilibriumGain> {
+        match self.of(controller) {
+            AnyGain::Equilibrium(gain) => Some(gain),
+            AnyGain::FlatOutput(_) => None,
+        }
+    }
+
     fn of(&self, controller: Controller) -> AnyGain {
         match controller {
             Controller::LyapF => AnyGain::FlatOutput(self.lyap_f),
