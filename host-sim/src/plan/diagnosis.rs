@@ -7,6 +7,8 @@
 
 use std::fmt;
 
+use nalgebra::Vector3;
+
 use super::program::Program;
 use super::socp::{self, Accuracy, Outcome};
 use super::{Corridor, Plan};
@@ -218,10 +220,10 @@ impl Plan {
 
     /// The value of a limit that a curve needs so that the bound can be proved by control points; `None` if none can be.
     pub(super) fn needed(&self, limit: Limit, curve: &BSpline) -> Option<f64> {
-        let gravity = nalgebra::Vector3::new(0.0, 0.0, GRAVITY_M_S2);
+        let gravity = Vector3::new(0.0, 0.0, GRAVITY_M_S2);
         let thrusts = || curve.derivative_control_points(2).into_iter().map(|acceleration| acceleration + gravity);
         match limit {
-            Limit::Speed => Some(largest(curve.derivative_control_points(1).iter().map(|v| v.norm()))),
+            Limit::Speed => Some(largest(curve.derivative_control_points(1).iter().map(Vector3::norm))),
             Limit::Tilt => {
                 let tilt_rad = largest(thrusts().map(|thrust| thrust.xy().norm().atan2(thrust.z)));
                 (tilt_rad < std::f64::consts::FRAC_PI_2).then_some(tilt_rad)
@@ -233,7 +235,7 @@ impl Plan {
                 let jerks = curve.derivative_control_points(3);
                 let rate = |span: usize| {
                     let lift = -largest(lifts[span..span + self.degree() - 1].iter().map(|lift| -lift));
-                    let jerk = largest(jerks[span..span + self.degree() - 2].iter().map(|jerk| jerk.norm()));
+                    let jerk = largest(jerks[span..span + self.degree() - 2].iter().map(Vector3::norm));
                     (lift > 0.0).then_some(jerk / lift)
                 };
                 let rates: Option<Vec<f64>> = (0..self.spans()).map(rate).collect();
