@@ -153,3 +153,24 @@ fn two_waypoints_make_a_flight() {
     assert!((curve.at(2.0).position_m - nalgebra::Vector3::new(0.5, -1.0, 1.5)).norm() < 1e-9);
     assert_eq!(curve.at(4.0).position_m, nalgebra::Vector3::new(1.0, -2.0, 3.0));
 }
+
+#[test]
+fn slow_and_small_flights_are_planned_too() {
+    // Snap goes with length over time to the fourth: from one of these to the other its square spans 20 decades.
+    for (duration_s, spans, size_m, period_s) in [(1000.0, 20, 1.0, 10.0), (5.0, 60, 0.01, 0.04)] {
+        let text = format!(
+            "degree = 5\nspans = {spans}\nduration_s = {duration_s:?}\nsnap_sample_period_s = {period_s}\n\
+             [bounds]\nspeed_max_m_s = 1\nbody_rate_max_deg_s = 20\ntilt_max_deg = 5\n\
+             [[waypoints]]\ntime_s = 0\nposition_m = [0, 0, 0]\n\
+             [[waypoints]]\ntime_s = {}\nposition_m = [{size_m}, 0, {size_m}]\n\
+             [[waypoints]]\ntime_s = {duration_s:?}\nposition_m = [0, {size_m}, 0]\n",
+            0.4 * duration_s
+        );
+        let (plan, curve) = solved(&text);
+        // Twice the straight path would be a curve with loops in it.
+        let straight_m = (2.0_f64.sqrt() + 3.0_f64.sqrt()) * size_m;
+        let flown = Extremes::of(&curve);
+        assert!((straight_m..2.0 * straight_m).contains(&flown.length_m), "{straight_m} {flown:?}");
+        assert!(plan.realised(&curve).misses_m.iter().all(|miss_m| *miss_m < 1e-8 * size_m));
+    }
+}

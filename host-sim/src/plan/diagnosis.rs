@@ -68,7 +68,9 @@ impl fmt::Display for Infeasibility {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("no curve meets the plan: ")?;
         if self.ways_out.is_empty() {
-            return f.write_str("its bounds contradict each other; relax several, or allow a longer duration_s");
+            return f.write_str(
+                "no values of its bounds were found with which one does; allow a longer duration_s, or move waypoints",
+            );
         }
         let way = |remedies: &Vec<Remedy>| remedies.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and ");
         write!(f, "{}; the rest kept", self.ways_out.iter().map(way).collect::<Vec<_>>().join(", or "))
@@ -174,6 +176,12 @@ impl Plan {
         let corridors = (0..self.corridors.len()).map(Limit::Corridor);
         let waypoints = (!self.inner_waypoints().is_empty()).then_some(Limit::Waypoints);
         bounded.chain(corridors).chain(waypoints).collect()
+    }
+
+    /// Whether a curve keeps to every limit, by its control points and at the waypoints.
+    pub(super) fn kept_by(&self, curve: &BSpline) -> bool {
+        let kept = |limit| self.needed(limit, curve).is_some_and(|needed| self.remedy(limit, needed).is_none());
+        self.limits().into_iter().all(kept)
     }
 
     /// A limit and what is needed of it, with room; `None` if it is not too tight at all.
