@@ -27,6 +27,8 @@ fn table_one() {
     let reproduction = reproduction();
     insta::assert_snapshot!(reproduction.to_string());
     assert!(reproduction.is_reproduced());
+    let readme = include_str!("../../README.md");
+    assert!(readme.contains(&reproduction.to_string()), "the README shows another table than `cargo reproduce` prints");
 }
 
 /// Values that an independent implementation in f64 found, to all the digits it printed.
@@ -57,7 +59,8 @@ fn feed_forward_leaves_only_what_the_integrator_leaves() {
     for course in ["mild", "aggressive"] {
         for controller in ["LYAP-F", "LYAP-E", "LQR-F", "LQR-E"] {
             let iae = report["iae"][course][controller]["feed_forward"].as_f64().unwrap();
-            assert!(iae < 2e-6, "{course} {controller}: {iae}");
+            // An integrator that errs by 1e-13 a step, and F does not see a lateral drift.
+            assert!(iae < 1e-6, "{course} {controller}: {iae}");
         }
     }
 }

@@ -29,7 +29,7 @@ pub const CORE_RATES_HZ: [u32; 3] = [100, 500, 1000];
 pub const CRASH_MU: f64 = 1.0;
 
 /// The integrator of the flights with feed-forward, whose errors are as small as an integrator's own.
-const TRUTH: Solver = Solver::Adaptive(DormandPrince { tolerance: 1e-11, step_min_s: 1e-7 });
+const TRUTH: Solver = Solver::Adaptive(DormandPrince { tolerance: 1e-13, step_min_s: 1e-7 });
 
 /// The paper's controllers, in the order of its Table I.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
