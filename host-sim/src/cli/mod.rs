@@ -1,5 +1,6 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
+mod analyze;
 mod output;
 
 use std::process::ExitCode;
@@ -34,7 +35,9 @@ struct Arguments {
 }
 
 #[derive(Subcommand)]
-enum Command {}
+enum Command {
+    Analyze(analyze::Args),
+}
 
 /// Reads the arguments, runs the command, prints what went wrong in one line.
 pub(crate) fn main() -> ExitCode {
@@ -42,7 +45,9 @@ pub(crate) fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return output::argument_error(&error),
     };
-    let outcome: Result<(), Failure> = match arguments.command {};
+    let outcome: Result<(), Failure> = match arguments.command {
+        Command::Analyze(args) => analyze::run(&args),
+    };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
