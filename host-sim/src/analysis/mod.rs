@@ -9,6 +9,7 @@
 //! - [`SectionThree`]: all of it for (F-LTI) and (E-LTI), with the names of the states.
 
 mod balance;
+mod claims;
 mod controllability;
 mod error;
 mod jordan;
@@ -17,6 +18,7 @@ mod section_three;
 mod singular;
 
 pub(crate) use balance::balance;
+pub use claims::Claim;
 pub use controllability::{PbhTest, Staircase, controllability_matrix, pbh_test, staircase};
 pub use error::MatrixError;
 pub(crate) use error::{require_finite, require_square};

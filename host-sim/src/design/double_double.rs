@@ -121,6 +121,11 @@ impl DoubleMatrix {
         Self::from_fn(self.hi.nrows(), self.hi.ncols(), |i, j| self.get(i, j).minus(other.get(i, j)))
     }
 
+    /// The matrix times a power of two.
+    pub(super) fn scaled(&self, power_of_two: f64) -> Self {
+        Self { hi: &self.hi * power_of_two, lo: &self.lo * power_of_two }
+    }
+
     /// Adds an f64 matrix.
     pub(super) fn add(&mut self, other: &DMatrix<f64>) {
         for j in 0..other.ncols() {
@@ -132,8 +137,7 @@ impl DoubleMatrix {
 
     /// `(M + M') / 2`.
     pub(super) fn symmetrised(&self) -> Self {
-        let sum = self.plus(&self.transposed());
-        Self { hi: sum.hi * 0.5, lo: sum.lo * 0.5 }
+        self.plus(&self.transposed()).scaled(0.5)
     }
 
     /// Matrix product: exact products, their sum kept as sum and sum of errors.
@@ -164,6 +168,37 @@ impl DoubleMatrix {
             }
         }
         result
+    }
+
+    /// Inverse by Gauss-Jordan elimination with row pivoting; `None` if a pivot is zero or not finite.
+    pub(super) fn inverse(&self) -> Option<Self> {
+        let n = self.hi.nrows();
+        let mut left: Vec<Vec<Double>> = (0..n).map(|i| (0..n).map(|j| self.get(i, j)).collect()).collect();
+        let mut right: Vec<Vec<Double>> =
+            (0..n).map(|i| (0..n).map(|j| Double::new(f64::from(u8::from(i == j)))).collect()).collect();
+        for k in 0..n {
+            let pivot = (k..n).max_by(|i, j| left[*i][k].hi.abs().total_cmp(&left[*j][k].hi.abs()))?;
+            left.swap(k, pivot);
+            right.swap(k, pivot);
+            if left[k][k].hi == 0.0 || !left[k][k].hi.is_finite() {
+                return None;
+            }
+            let reciprocal = Double::new(1.0).over(left[k][k]);
+            for entry in left[k].iter_mut().chain(&mut right[k]) {
+                *entry = entry.times(reciprocal);
+            }
+            let (pivot_left, pivot_right) = (left[k].clone(), right[k].clone());
+            for i in (0..n).filter(|i| *i != k) {
+                let factor = left[i][k];
+                if factor.hi == 0.0 {
+                    continue;
+                }
+                for (entry, above) in left[i].iter_mut().zip(&pivot_left).chain(right[i].iter_mut().zip(&pivot_right)) {
+                    *entry = entry.minus(factor.times(*above));
+                }
+            }
+        }
+        Some(Self::from_fn(n, n, |i, j| right[i][j]))
     }
 
     pub(super) fn is_finite(&self) -> bool {

@@ -74,8 +74,8 @@ pub enum DesignError {
     },
     /// The Hamiltonian matrix has an eigenvalue on the imaginary axis.
     #[error(
-        "the Hamiltonian matrix has the eigenvalue {} on the imaginary axis, so no stabilising solution exists; \
-         change Q", complex(.eigenvalue)
+        "the Hamiltonian matrix has the eigenvalue {} on the imaginary axis to working precision, so no stabilising \
+         solution can be told from its neighbours; change Q or scale the weights", complex(.eigenvalue)
     )]
     HamiltonianOnAxis {
         /// The eigenvalue, 1/s.

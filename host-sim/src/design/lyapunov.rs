@@ -67,7 +67,7 @@ pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<LyapunovSolution, 
     equation.scale = scale;
     let operator = LyapunovOperator::new(&equation.a)?;
     operator.require_regular(equation.a.norm())?;
-    let refined = refine(&equation, operator.solve(&equation.q))
+    let refined = refine(&equation, DoubleMatrix::new(operator.solve(&equation.q)))
         .filter(|refined| refined.last_correction < 1e-12)
         .ok_or(DesignError::Inaccurate { equation: "the Lyapunov equation", residual: f64::NAN })?;
     let x = equation.unscaled(&refined.x).hi;
@@ -103,7 +103,7 @@ pub fn decay_rate_design(a: &DMatrix<f64>, b: &DMatrix<f64>, mu: f64) -> Result<
     let inverse = LyapunovOperator::new(&equation.a.transpose())?
         .solve(&(-(&equation.factor.hi * equation.factor.hi.transpose())));
     let start = inverse.try_inverse().ok_or_else(|| inaccurate(f64::INFINITY))?;
-    let refined = refine(&equation, (&start + start.transpose()) * 0.5).ok_or_else(|| inaccurate(f64::INFINITY))?;
+    let refined = refine(&equation, DoubleMatrix::new(start).symmetrised()).ok_or_else(|| inaccurate(f64::INFINITY))?;
     let p = equation.unscaled(&refined.x);
     let relative_residual = given.relative_residual(&p.hi);
     if refined.last_correction > 1e-12 || !relative_residual.is_finite() {

@@ -29,8 +29,8 @@ pub(super) struct Refined {
 }
 
 /// Refines `start` until the corrections vanish or stop shrinking; `None` if they blow up.
-pub(super) fn refine(equation: &Equation, start: DMatrix<f64>) -> Option<Refined> {
-    let mut x = DoubleMatrix::new(start);
+pub(super) fn refine(equation: &Equation, start: DoubleMatrix) -> Option<Refined> {
+    let mut x = start;
     let mut operator: Option<LyapunovOperator> = None;
     let mut last_correction = f64::INFINITY;
     let mut fast = false;
@@ -54,9 +54,6 @@ pub(super) fn refine(equation: &Equation, start: DMatrix<f64>) -> Option<Refined
             break;
         }
         let relative = size / x.hi.norm().max(size);
-        if relative < SETTLED && relative > 0.7 * last_correction {
-            break;
-        }
         growing = if relative > 0.9 * last_correction { growing + 1 } else { 0 };
         if growing > 20 {
             return None;

@@ -6,7 +6,8 @@
 //! **Method.** (1) R is factorised in 32 digits and only `F = B R^-1/2` is kept, so that an R that is nearly singular
 //! costs no digits. (2) The Hamiltonian matrix is balanced by powers of two. (3) The staircase forms of (A, F) and
 //! (A', Q) decide whether an unstable mode is out of reach, or a mode on the imaginary axis out of sight. (4) The
-//! matrix sign function of the Hamiltonian gives a first P; where that fails, its ordered Schur form does. (5)
+//! matrix sign function of the Hamiltonian gives a first P; where that fails, its ordered Schur form, or for up to 40
+//! states the sign function in 32 digits. (5)
 //! Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below what an f64 can hold.
 //! (6) The result counts only if the corrections have vanished and every pole of the closed loop is stable.
 //!
@@ -22,8 +23,9 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
+use super::double_double::DoubleMatrix;
 use super::equation::{Equation, InputWeight};
-use super::hamiltonian::{by_schur_vectors, by_sign_function};
+use super::hamiltonian::{by_precise_sign_function, by_schur_vectors, by_sign_function};
 use super::lyapunov::LyapunovOperator;
 use super::newton::{Refined, refine};
 use super::{DesignError, require_symmetric};
@@ -138,7 +140,9 @@ fn solve(
     let stable = refined.last_correction <= ACCURATE && abscissa < 0.0;
     let good = match accepted {
         Poles::Stable => {
-            if let Some(eigenvalue) = marginal_pole(equation, &refined, abscissa) {
+            // For Q >= 0 the test of detectability has already settled that the axis is free.
+            let indefinite = require_positive_semidefinite(&given.q).is_err();
+            if let Some(eigenvalue) = marginal_pole(equation, &refined, abscissa).filter(|_| indefinite || !stable) {
                 return Err(DesignError::HamiltonianOnAxis { eigenvalue });
             }
             stable
@@ -149,6 +153,10 @@ fn solve(
         }
     };
     if !good || !relative_residual.is_finite() {
+        if accepted == Poles::Stable {
+            // Balancing may lift what is zero up to rounding: ask once more as given, to name the mode.
+            require_detectable(&given)?;
+        }
         return Err(no_solution(equation, relative_residual));
     }
     Ok(RiccatiSolution {
@@ -172,9 +180,11 @@ struct Attempt<'a> {
 /// Tries the starts in each scaling until one refines to full accuracy; otherwise the best there was.
 fn best_attempt(scalings: &[Equation]) -> Option<Attempt<'_>> {
     let mut best: Option<Attempt> = None;
-    for equation in scalings {
-        let h = equation.hamiltonian();
-        for start in [by_sign_function, by_schur_vectors] {
+    let starts: [fn(&DMatrix<f64>) -> Option<DoubleMatrix>; 3] =
+        [by_sign_function, by_schur_vectors, by_precise_sign_function];
+    for start in starts {
+        for equation in scalings {
+            let h = equation.hamiltonian();
             let Some(refined) = start(&h).and_then(|x| refine(equation, x)) else { continue };
             let Ok(abscissa) = spectral_abscissa(&refined.closed_loop) else { continue };
             let attempt = Attempt { equation, refined, abscissa };

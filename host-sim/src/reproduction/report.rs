@@ -88,14 +88,14 @@ impl Reproduction {
     }
 }
 
-/// An IAE to five digits; below what an integrator can tell from zero it says so.
+/// An IAE to four digits; below what an integrator can tell from zero it says so.
 fn digits(iae: Option<f64>) -> String {
     const RESOLUTION: f64 = 1e-6;
     match iae {
         None => "lost".to_owned(),
         Some(iae) if iae < RESOLUTION => format!("< {RESOLUTION:.0e}"),
         Some(iae) => {
-            let decimals = (4 - iae.log10().floor() as i32).clamp(0, 9) as usize;
+            let decimals = (3 - iae.log10().floor() as i32).clamp(0, 9) as usize;
             if iae < 1e-3 { format!("{iae:.1e}") } else { format!("{iae:.decimals$}") }
         }
     }
