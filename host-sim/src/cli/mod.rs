@@ -1,5 +1,6 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
+mod analyze;
 mod fly;
 mod measure;
 mod output;
@@ -39,6 +40,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Analyze(analyze::Args),
     Fly(fly::Args),
     Measure(measure::Args),
     Plan(plan::Args),
@@ -52,6 +54,7 @@ pub(crate) fn main() -> ExitCode {
         Err(error) => return output::argument_error(&error),
     };
     let outcome: Result<(), Failure> = match &arguments.command {
+        Command::Analyze(args) => analyze::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Plan(args) => plan::run(args),

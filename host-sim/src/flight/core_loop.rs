@@ -9,6 +9,7 @@ use quatrack::trajectory::TrajectoryError;
 use quatrack::{AnyLaw, Command, Limits, Piece, Player, Quaternion, Rate, Reference, State, Tracker};
 
 use super::closed_loop::HeldCommand;
+use crate::design::codegen::rounded;
 use crate::model::{InputVector, StateVector, attitude, position, velocity};
 use crate::trajectory::polynomial::PiecewisePolynomial;
 
@@ -36,7 +37,7 @@ pub fn input(command: &Command) -> InputVector {
 /// # Errors
 /// [`GainError`] where the rounded gain is none: an entry too large for f32, or a column of zeros.
 pub fn to_core_gain<const M: usize, const N: usize>(gain: &SMatrix<f64, M, N>) -> Result<Gain<M, N>, GainError> {
-    Gain::new(std::array::from_fn(|row| std::array::from_fn(|column| gain[(row, column)] as f32)))
+    Gain::new(rounded(gain))
 }
 
 /// An input cut to the core's limits, and whether it was; nothing where it is not finite. An input within the limits
