@@ -15,6 +15,7 @@ pub struct Tracker<'a> {
 
 /// What one step gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Step {
     /// The command, finite and within the limits.
     pub command: Command,

@@ -15,6 +15,8 @@ use crate::state::State;
 
 /// Whether the reference's own input is added to the feedback.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum FeedForward {
     /// Feedback around hover alone, as in the paper.
     #[default]

@@ -1,0 +1,279 @@
+//! The supervisor: what a tick saw (ages, step, overrun, fault) in; whether the motors may turn and the command may
+//! pass out.
+//!
+//! ```text
+//! Disarmed --arm--> Armed --first command on a fresh state--> Flying
+//!     ^               |                                         |
+//!     +---------------+----- disarm, or any stop reason --------+        any mode --fault--> Faulted, for good
+//! ```
+//!
+//! Nothing ever holds the last command: what ends a flight gives a zero command and disarms in the same tick. Armed
+//! motors stand still; a new arm request is needed after every stop. Levelling out instead would take an attitude, and
+//! without the link's states there is none on board.
+
+use core::fmt;
+
+use crate::clock::Tick;
+use crate::command::Command;
+
+/// Bounds that the supervisor holds a flight to; apart from its state, so that they can be set without touching it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Config {
+    /// Oldest state that is flown on, ticks since it came.
+    pub state_age_max_ticks: Tick,
+    /// Longest time without any accepted frame, ticks.
+    pub link_silence_max_ticks: Tick,
+    /// Overruns in a row that a flight survives; with 0 the first one ends it.
+    pub overruns_tolerated: u32,
+}
+
+/// Something that only a restart of the board mends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Fault {
+    /// The processor took a fault exception.
+    HardFault,
+    /// The stack grew into its guard.
+    StackExhausted,
+    /// The control interrupt did not come when it should have.
+    ClockStopped,
+}
+
+/// Why a flight, or readiness for one, ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum StopReason {
+    /// A disarm request.
+    Requested,
+    /// More overruns in a row than tolerated.
+    Overrun,
+    /// No accepted frame for longer than allowed.
+    LinkLost,
+    /// The last state is older than allowed.
+    StaleState,
+    /// There was nothing to follow while flying.
+    NoReference,
+    /// State, reference or law gave no command.
+    StepFailed,
+}
+
+/// What the supervisor is in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Mode {
+    /// Motors off; why, if it was ever armed since start-up.
+    Disarmed(Option<StopReason>),
+    /// Motors may turn, the command is zero until there is one.
+    Armed,
+    /// Commands pass.
+    Flying,
+    /// Motors off until a restart.
+    Faulted(Fault),
+}
+
+/// How the control step of a tick went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum StepReport {
+    /// There was no state or no reference to step on.
+    NoReference,
+    /// It gave a command.
+    Command,
+    /// It gave none.
+    Failed,
+}
+
+/// What one tick saw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Conditions {
+    /// Ticks since the last accepted frame; none if there never was one.
+    pub link_silence_ticks: Option<Tick>,
+    /// Ticks since the last state came; none if there never was one.
+    pub state_age_ticks: Option<Tick>,
+    /// The step.
+    pub step: StepReport,
+    /// Whether this tick or the one before ran past its period.
+    pub overrun: bool,
+    /// A fault, from the tick on which it is found.
+    pub fault: Option<Fault>,
+}
+
+/// What follows from a tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Verdict {
+    /// The mode from this tick on.
+    pub mode: Mode,
+    /// Whether this tick ended a flight or the readiness for one.
+    pub stopped: bool,
+}
+
+/// Why an arm request is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ArmError {
+    /// A fault that only a restart mends.
+    Faulted(Fault),
+    /// The link has been silent for too long; the request that came over it is too old.
+    LinkSilent,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::HardFault => "hard fault",
+            Self::StackExhausted => "stack exhausted",
+            Self::ClockStopped => "control clock stopped",
+        })
+    }
+}
+
+impl fmt::Display for StopReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Requested => "by request",
+            Self::Overrun => "a tick overran",
+            Self::LinkLost => "link lost",
+            Self::StaleState => "state too old",
+            Self::NoReference => "no reference",
+            Self::StepFailed => "no command from the step",
+        })
+    }
+}
+
+impl fmt::Display for Mode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Disarmed(None) => f.write_str("disarmed"),
+            Self::Disarmed(Some(reason)) => write!(f, "disarmed ({reason})"),
+            Self::Armed => f.write_str("armed"),
+            Self::Flying => f.write_str("flying"),
+            Self::Faulted(fault) => write!(f, "faulted ({fault}; restart the board)"),
+        }
+    }
+}
+
+impl fmt::Display for ArmError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Faulted(fault) => write!(f, "arm: {fault} since start-up; restart the board"),
+            Self::LinkSilent => f.write_str("arm: the link is silent; send states first"),
+        }
+    }
+}
+
+impl core::error::Error for ArmError {}
+
+impl Mode {
+    /// Whether the motors may turn.
+    pub const fn motors_allowed(self) -> bool {
+        matches!(self, Self::Armed | Self::Flying)
+    }
+
+    /// Whether the step's command reaches the motors.
+    pub const fn command_passes(self) -> bool {
+        matches!(self, Self::Flying)
+    }
+}
+
+impl Verdict {
+    /// The command for the motors: the step's own while flying, zero in every other mode.
+    pub fn gate(&self, command: &Command) -> Command {
+        if self.mode.command_passes() { *command } else { Command::ZERO }
+    }
+}
+
+/// The state machine; disarmed at start-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Supervisor {
+    mode: Mode,
+    overruns_in_a_row: u32,
+}
+
+impl Supervisor {
+    /// Disarmed.
+    pub const fn new() -> Self {
+        Self { mode: Mode::Disarmed(None), overruns_in_a_row: 0 }
+    }
+
+    /// The mode after the last call.
+    pub const fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// Takes an arm request; nothing changes when armed or flying.
+    ///
+    /// # Errors
+    /// [`ArmError`] after a fault, and where the link has been silent for longer than `config` allows.
+    pub fn arm(&mut self, config: &Config, link_silence_ticks: Option<Tick>) -> Result<(), ArmError> {
+        match self.mode {
+            Mode::Faulted(fault) => Err(ArmError::Faulted(fault)),
+            Mode::Armed | Mode::Flying => Ok(()),
+            Mode::Disarmed(_) if !within(link_silence_ticks, config.link_silence_max_ticks) => {
+                Err(ArmError::LinkSilent)
+            }
+            Mode::Disarmed(_) => {
+                *self = Self { mode: Mode::Armed, overruns_in_a_row: 0 };
+                Ok(())
+            }
+        }
+    }
+
+    /// Takes a disarm request; from the next command on it is zero.
+    pub fn disarm(&mut self) {
+        if self.mode.motors_allowed() {
+            self.mode = Mode::Disarmed(Some(StopReason::Requested));
+        }
+    }
+
+    /// Takes what a tick saw, after its step and before its command goes to the motors.
+    ///
+    /// Of several reasons to stop, the first in this order is named: overrun, link, step, state, reference.
+    pub fn tick(&mut self, config: &Config, conditions: &Conditions) -> Verdict {
+        self.overruns_in_a_row = if conditions.overrun { self.overruns_in_a_row.saturating_add(1) } else { 0 };
+        let before = self.mode;
+        self.mode = match (before, conditions.fault) {
+            (Mode::Faulted(fault), _) | (_, Some(fault)) => Mode::Faulted(fault),
+            (Mode::Disarmed(reason), None) => Mode::Disarmed(reason),
+            (Mode::Armed | Mode::Flying, None) => self.armed(config, conditions),
+        };
+        Verdict { mode: self.mode, stopped: before.motors_allowed() && !self.mode.motors_allowed() }
+    }
+
+    /// The mode that follows on armed or flying without a fault.
+    fn armed(&self, config: &Config, conditions: &Conditions) -> Mode {
+        let stop = |reason| Mode::Disarmed(Some(reason));
+        let fresh = within(conditions.state_age_ticks, config.state_age_max_ticks);
+        let flying = self.mode.command_passes();
+        if self.overruns_in_a_row > config.overruns_tolerated {
+            return stop(StopReason::Overrun);
+        }
+        if !within(conditions.link_silence_ticks, config.link_silence_max_ticks) {
+            return stop(StopReason::LinkLost);
+        }
+        match conditions.step {
+            StepReport::Failed => stop(StopReason::StepFailed),
+            // Nothing has to have come yet before the first command.
+            _ if flying && !fresh => stop(StopReason::StaleState),
+            StepReport::NoReference if flying => stop(StopReason::NoReference),
+            StepReport::Command if fresh => Mode::Flying,
+            StepReport::Command | StepReport::NoReference => Mode::Armed,
+        }
+    }
+}
+
+impl Default for Supervisor {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+fn within(age_ticks: Option<Tick>, max_ticks: Tick) -> bool {
+    age_ticks.is_some_and(|age| age <= max_ticks)
+}
