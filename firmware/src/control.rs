@@ -1,68 +1,45 @@
-//! The control loop: the newest state and the reference of a tick in, one command out, against traits alone.
+//! The control step against four small traits: a clock, a state, a reference in; one command out. No hardware.
 
-use quatrack::{Command, FlatSample, Player, Reference, ReferenceError, State, Step, StepError, Tick, Tracker};
+use quatrack::link::NoCommand;
+use quatrack::{Command, FlatSample, Reference, State, Step, Tick, Tracker};
 
-/// Where states come from: a link, later an estimator.
+/// Which tick it is, on the clock that the reference is played by.
+pub trait Clock {
+    /// The tick of this step.
+    fn now(&self) -> Tick;
+}
+
+/// Where states come from: a link; an estimator where there is one.
 pub trait StateSource {
     /// The newest state, if there has been one.
-    fn newest(&mut self) -> Option<State>;
+    fn newest(&self) -> Option<&State>;
 }
 
 /// Where references come from: a stored trajectory, or a link.
 pub trait ReferenceSource {
-    /// The flat output at a tick.
-    fn at(&mut self, tick: Tick) -> FlatSample;
+    /// The flat output at a tick, if there is anything to follow.
+    fn at(&mut self, now: Tick) -> Option<FlatSample>;
 }
 
-/// Where commands go: a link, later the rate loop and its motors.
+/// Where commands go: nowhere yet; the rate loop and its motors where there are some.
 pub trait CommandSink {
-    /// Takes the command of this tick.
+    /// Takes the command of this step. [`Command::ZERO`] stops the motors.
     fn put(&mut self, command: &Command);
 }
 
-impl ReferenceSource for Player<'_> {
-    #[inline]
-    fn at(&mut self, tick: Tick) -> FlatSample {
-        Player::at(self, tick)
-    }
-}
-
-/// Why a tick gave the zero command.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum TickError {
-    /// No state has come yet.
-    NoState,
-    /// The reference cannot be flown.
-    Reference(ReferenceError),
-    /// The law gave none.
-    Step(StepError),
-}
-
-/// One tick: the command of the law, or zero and the reason.
+/// One step of the law.
 ///
 /// # Errors
-/// [`TickError`]; the sink has then been given [`Command::ZERO`].
+/// [`NoCommand`] where there is no state, no reference, or no answer of the law.
 #[inline]
-pub fn tick(
-    tick: Tick,
-    tracker: &Tracker<'_>,
-    states: &mut impl StateSource,
+pub fn step(
+    clock: &impl Clock,
+    states: &impl StateSource,
     references: &mut impl ReferenceSource,
-    commands: &mut impl CommandSink,
-) -> Result<Step, TickError> {
-    let step = step(tick, tracker, states, references);
-    commands.put(step.as_ref().map_or(&Command::ZERO, |step| &step.command));
-    step
-}
-
-#[inline]
-fn step(
-    tick: Tick,
     tracker: &Tracker<'_>,
-    states: &mut impl StateSource,
-    references: &mut impl ReferenceSource,
-) -> Result<Step, TickError> {
-    let state = states.newest().ok_or(TickError::NoState)?;
-    let reference = Reference::from_flat(&references.at(tick)).map_err(TickError::Reference)?;
-    tracker.step(&state, &reference).map_err(TickError::Step)
+) -> Result<Step, NoCommand> {
+    let state = states.newest().ok_or(NoCommand::NoReference)?;
+    let sample = references.at(clock.now()).ok_or(NoCommand::NoReference)?;
+    let reference = Reference::from_flat(&sample).map_err(NoCommand::Reference)?;
+    tracker.step(state, &reference).map_err(NoCommand::Step)
 }

@@ -5,24 +5,32 @@
 
 use stm32f4::stm32f405::{RCC, TIM2};
 
-/// The running counter.
+/// The running counter, for any interrupt to read.
+#[derive(Clone, Copy)]
 pub struct Counter {
-    timer: TIM2,
+    /// Only [`Counter::start`] makes one.
+    running: (),
 }
 
 impl Counter {
-    /// Starts the timer over the whole range of 32 bits, without prescaler.
+    /// Starts the timer over the whole range of 32 bits, without prescaler. Nobody gets at it afterwards.
+    #[allow(clippy::needless_pass_by_value, reason = "the timer is taken away from whoever had it")]
     pub fn start(timer: TIM2, rcc: &RCC) -> Self {
         rcc.apb1enr().modify(|_, w| w.tim2en().enabled());
         timer.arr().write(|w| w.set(u32::MAX));
         timer.psc().reset();
+        // Takes the prescaler over.
+        timer.egr().write(|w| w.ug().update());
         timer.cr1().modify(|_, w| w.cen().enabled());
-        Self { timer }
+        Self { running: () }
     }
 
     /// The count now; wraps. Out of line, so that every reading costs the same.
+    #[allow(unsafe_code, reason = "reads one register of a timer that nobody writes any more")]
     #[inline(never)]
     pub fn now(&self) -> u32 {
-        self.timer.cnt().read().bits()
+        let () = self.running;
+        // SAFETY: reading the count changes nothing.
+        unsafe { TIM2::steal() }.cnt().read().bits()
     }
 }

@@ -1,24 +1,39 @@
 //! The quatrack controller on an STM32F405: states and orders in over a link, commands out at a fixed rate.
 //!
 //! ```text
-//! bin: main, measure        one image each
-//!   board                   pins, clocks and timers of one board
-//!   semihosting             files of the machine that emulates or debugs (feature `semihosting`)
-//!   counter                 the free-running timer that the loop is watched with
-//!   panic                   the handler that cannot link
-//!   stored                  the trajectories in flash
-//!   laws                    the four controllers by number
-//!   control                 the loop, against traits: no hardware
+//! bin                         one image each: main (the line), pipes (the emulator's), measure, control_path
+//!   board                     clocks, pins, timers of one board
+//!     transport               bytes over a USART, or over files of the emulating machine (feature `semihosting`)
+//!     counter, stack, record  the free-running timer; the painted stack; what outlives a restart
+//!     panic                   the handler that cannot link
+//!   session                   frames in, orders to the flight, frames out
+//!     flight                  states, orders, ticks in; gated commands out
+//!       playback, stored      what is followed; the trajectories in flash
+//!         control, timing     the step against traits; overruns, jitter, the longest step
 //! ```
+//!
+//! From `session` down nothing knows the hardware, and all of it is tested on the host.
 #![cfg_attr(not(test), no_std)]
+#![warn(clippy::unwrap_used, clippy::expect_used)]
 
 pub mod control;
-#[cfg(target_os = "none")]
-pub mod counter;
-pub mod laws;
+pub mod flight;
+pub mod playback;
+pub mod session;
 pub mod stored;
+pub mod timing;
 
 #[cfg(target_os = "none")]
+pub mod board;
+#[cfg(target_os = "none")]
+pub mod counter;
+#[cfg(target_os = "none")]
 mod panic;
+#[cfg(target_os = "none")]
+pub mod record;
 #[cfg(all(target_os = "none", feature = "semihosting"))]
 pub mod semihosting;
+#[cfg(target_os = "none")]
+pub mod stack;
+#[cfg(target_os = "none")]
+pub mod transport;

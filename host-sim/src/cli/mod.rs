@@ -4,6 +4,7 @@ mod analyze;
 mod fly;
 mod measure;
 mod output;
+mod pil;
 mod plan;
 mod reproduce;
 
@@ -43,6 +44,7 @@ enum Command {
     Analyze(analyze::Args),
     Fly(fly::Args),
     Measure(measure::Args),
+    Pil(pil::Args),
     Plan(plan::Args),
     Reproduce(reproduce::Args),
 }
@@ -57,6 +59,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Analyze(args) => analyze::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Measure(args) => measure::run(args),
+        Command::Pil(args) => pil::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Reproduce(args) => reproduce::run(args),
     };

@@ -7,6 +7,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 use super::PilError;
+use super::interrupt::Interrupt;
 
 /// QEMU for ARM.
 pub const PROGRAM: &str = "qemu-system-arm";
@@ -73,9 +74,10 @@ impl Emulator {
     ///
     /// # Errors
     /// [`PilError::EmulatorEnded`] where it does so with a failure, [`PilError::Silent`] where it does not in time.
-    pub fn wait(&mut self, limit: Duration) -> Result<(), PilError> {
+    pub fn wait(&mut self, limit: Duration, interrupt: &Interrupt) -> Result<(), PilError> {
         let start = Instant::now();
         loop {
+            interrupt.check()?;
             match self.ended()? {
                 Some(status) if status.success() => return Ok(()),
                 Some(status) => return Err(self.ended_early(status)),

@@ -19,6 +19,10 @@ const RAM: (u32, u32) = (0x2000_0000, 128 * 1024);
 /// An image of the firmware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Image {
+    /// Flies, with its line on a USART: the board's own.
+    Usart,
+    /// Flies, with its line on two pipes of the emulating machine.
+    Pipes,
     /// Counts instructions on recorded states.
     Measure,
     /// The control path alone, for its size.
@@ -28,6 +32,8 @@ pub enum Image {
 impl Image {
     fn binary(self) -> &'static str {
         match self {
+            Self::Usart => "quatrack-firmware",
+            Self::Pipes => "quatrack-firmware-pipes",
             Self::Measure => "quatrack-measure",
             Self::ControlPath => "quatrack-control-path",
         }
@@ -35,8 +41,8 @@ impl Image {
 
     fn features(self) -> &'static [&'static str] {
         match self {
-            Self::Measure => &["--features", "semihosting"],
-            Self::ControlPath => &[],
+            Self::Pipes | Self::Measure => &["--features", "semihosting"],
+            Self::Usart | Self::ControlPath => &[],
         }
     }
 }

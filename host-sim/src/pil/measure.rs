@@ -13,6 +13,8 @@ use super::PilError;
 use super::emulator::{Emulator, Folder};
 use super::flights::{COURSES, HostCore, Plans, fly};
 use super::image::Size;
+use super::interrupt::Interrupt;
+use super::lock_step;
 use crate::reproduction::table::{Controller, Course};
 
 /// Longest time for an emulator to count all flights.
@@ -90,11 +92,6 @@ fn state_words(state: &State) -> [f32; 10] {
     [r.x, r.y, r.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z]
 }
 
-fn command_words(command: &Command) -> [u32; 4] {
-    let rates = &command.body_rates_rad_s;
-    [command.thrust_m_s2, rates.x, rates.y, rates.z].map(f32::to_bits)
-}
-
 fn states_file(flights: &[Recorded]) -> Vec<u8> {
     let mut bytes = Vec::new();
     for flight in flights {
@@ -118,7 +115,7 @@ pub fn count(image: &Path, size: Size) -> Result<Report, PilError> {
     let folder = Folder::create()?;
     let states = folder.path().join("states.bin");
     fs::write(&states, states_file(&flights)).map_err(PilError::io("writing the recorded states"))?;
-    Emulator::start(image, folder.path(), &["-serial", "none"])?.wait(LIMIT)?;
+    Emulator::start(image, folder.path(), &["-serial", "none"])?.wait(LIMIT, &Interrupt::listen()?)?;
     let counts = fs::read(folder.path().join("counts.bin")).map_err(PilError::io("reading the counts"))?;
     let (words, _) = counts.as_chunks::<4>();
     let words: Vec<u32> = words.iter().copied().map(u32::from_le_bytes).collect();
@@ -140,7 +137,7 @@ fn report(flights: &[Recorded], words: &[u32], size: Size) -> Result<Report, Pil
     let (mut law, mut reference, mut tick) = (BTreeMap::<_, Vec<u32>>::new(), Vec::new(), Vec::new());
     for (step, ((controller, command), row)) in flown.iter().zip(rows).enumerate() {
         let [of_reference, of_law, of_tick, bits @ ..] = *row;
-        if bits != command_words(command) {
+        if bits != lock_step::words(command) {
             return Err(PilError::Answer(format!("{controller}, step {step}: another command than the host's")));
         }
         law.entry(*controller).or_default().push(of_law);

@@ -1,16 +1,23 @@
 //! The image on its processor, emulated or real: flights in; commands, instruction counts and verdicts out.
 //!
 //! ```text
+//! lock_step        the paper's flights under the target's commands, compared with the host's
 //! measure          instructions a step, flash, RAM
 //!   flights        the paper's flights, flown by the core on the host
-//!   emulator       the process that runs an image
-//!   image          built here, or given; what it takes in flash and RAM
-//!   stored         the trajectories that the board has in flash
+//!     client       a board behind its line
+//!       emulator   the process that runs an image
+//!       line       pipes or a serial port, with deadlines
+//!         image    built here, or given; what it takes in flash and RAM
+//!         stored   the trajectories that the board has in flash
 //! ```
 
+pub mod client;
 pub mod emulator;
 pub mod flights;
 pub mod image;
+pub mod interrupt;
+pub mod line;
+pub mod lock_step;
 pub mod measure;
 pub mod stored;
 
@@ -70,6 +77,27 @@ pub enum PilError {
         /// What was executed.
         instructions: u32,
     },
+    /// The board does not do what it is asked for.
+    #[error("the board refuses {request}: {reason}")]
+    Refused {
+        /// What was asked.
+        request: String,
+        /// The board's words.
+        reason: String,
+    },
+    /// A flight has no command.
+    #[error("{flight}, step {step}: no command ({reason})")]
+    NoCommand {
+        /// Which flight.
+        flight: String,
+        /// Which step.
+        step: u32,
+        /// The board's words.
+        reason: String,
+    },
+    /// A signal.
+    #[error("interrupted")]
+    Interrupted,
     /// What the image wrote is not what was asked of it.
     #[error("the image's answer does not fit: {0}; build the image from this checkout")]
     Answer(String),

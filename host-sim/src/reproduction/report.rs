@@ -89,7 +89,7 @@ impl Reproduction {
 }
 
 /// An IAE to four digits; below what an integrator can tell from zero it says so.
-fn digits(iae: Option<f64>) -> String {
+pub fn digits(iae: Option<f64>) -> String {
     const RESOLUTION: f64 = 1e-6;
     match iae {
         None => "lost".to_owned(),

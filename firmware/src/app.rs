@@ -1,0 +1,165 @@
+// The running image: interrupts in, priorities out. Included by each bin that flies, which says what its line is.
+//
+// Priorities, highest first:
+// 3  USART2    a byte is lost 10 us after it came; some 30 instructions
+// 2  SysTick   the tick, 1 kHz; some 50 instructions: counts, and pends the control interrupt
+// 1  CAN2_SCE  a vector that the board has no other use for: the control step
+// 0  idle      the link: frames in and out, telemetry
+#[rtic::app(device = stm32f4::stm32f405, peripherals = true)]
+mod app {
+    use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+
+    use heapless::spsc::Queue;
+    use quatrack::Tick;
+    use quatrack::link::{FRAME_BYTES, FromBoard, LoopStatistics};
+    use quatrack::supervisor::Fault;
+    use quatrack_firmware::board::crazyflie_2_1 as board;
+    use quatrack_firmware::counter::Counter;
+    use quatrack_firmware::flight::Flight;
+    use quatrack_firmware::playback::Store;
+    use quatrack_firmware::session::{Session, Shared as SharedFlight, Uploads, Vitals};
+    use quatrack_firmware::timing::Timing;
+    use quatrack_firmware::transport::Line as _;
+    use quatrack_firmware::transport::usart::{QUEUE_BYTES, Receiver, UsartLine};
+    use quatrack_firmware::{record, stack};
+    use rtic::mutex_prelude::Mutex;
+    use stm32f4::stm32f405::Interrupt;
+
+    use crate::Line;
+
+    static DROPPED_BYTES: AtomicU32 = AtomicU32::new(0);
+
+    #[shared]
+    struct Shared {
+        flight: Flight,
+        timing: Timing,
+        counter: Counter,
+    }
+
+    #[local]
+    struct Local {
+        receiver: Receiver,
+        session: Session,
+        line: Line,
+    }
+
+    #[init(local = [
+        queue: Queue<u8, QUEUE_BYTES> = Queue::new(),
+        store: Store = Store::new(),
+        uploads: Uploads = Uploads::new(),
+    ])]
+    fn init(mut context: init::Context) -> (Shared, Local) {
+        let fault = record::read();
+        let (producer, consumer) = context.local.queue.split();
+        let board = board::start(context.device, &mut context.core.SYST);
+        let line = crate::line(UsartLine::new(board.usart, consumer));
+        let shared = Shared {
+            flight: Flight::new(context.local.store, fault.map(|report| report.fault)),
+            timing: Timing::new(board.clocks.counts_per_tick),
+            counter: board.counter,
+        };
+        let receiver = Receiver::new(producer, &DROPPED_BYTES);
+        (shared, Local { receiver, session: Session::new(context.local.uploads, fault), line })
+    }
+
+    #[task(binds = USART2, priority = 3, local = [receiver])]
+    fn receive(context: receive::Context) {
+        context.local.receiver.on_interrupt();
+    }
+
+    #[task(binds = SysTick, priority = 2, shared = [&timing, &counter])]
+    fn tick(context: tick::Context) {
+        if context.shared.timing.on_timer(context.shared.counter.now()) {
+            rtic::pend(Interrupt::CAN2_SCE);
+        }
+    }
+
+    #[task(binds = CAN2_SCE, priority = 1, shared = [flight, &timing, &counter])]
+    fn control(mut context: control::Context) {
+        let (timing, counter) = (context.shared.timing, context.shared.counter);
+        let begun = counter.now();
+        let (due, overran) = timing.on_begin();
+        let now = timing.now();
+        context.shared.flight.lock(|flight| {
+            if !stack::is_within_bound() {
+                flight.fail(Fault::StackExhausted, now);
+            }
+            let steps = if flight.is_lock_step() { flight.is_waiting() } else { due };
+            if steps {
+                flight.step(now, overran);
+            } else {
+                flight.watch(now, overran);
+            }
+        });
+        timing.on_end(begun, counter.now(), due);
+    }
+
+    #[idle(local = [session, line], shared = [flight, &timing])]
+    fn idle(mut context: idle::Context) -> ! {
+        let (session, line) = (context.local.session, context.local.line);
+        let vitals = OwnVitals { timing: context.shared.timing };
+        let mut flight = LockedFlight(&mut context.shared.flight);
+        let mut received = [0; 64];
+        let mut frame = [0; FRAME_BYTES];
+        loop {
+            let count = line.receive(&mut received);
+            for byte in received.iter().take(count) {
+                let Some(answers) = session.push(*byte, &mut flight, &vitals) else { continue };
+                if flight.with(|flight| flight.is_lock_step() && flight.is_waiting()) {
+                    rtic::pend(Interrupt::CAN2_SCE);
+                    // The step is taken here, before the next instruction.
+                    cortex_m::asm::dsb();
+                    cortex_m::asm::isb();
+                }
+                let command = flight.with(Flight::take_answer).map(FromBoard::Command);
+                for message in answers.iter().chain(&command) {
+                    if let Some(frame) = session.frame(message, &mut frame) {
+                        line.send(frame);
+                    }
+                }
+            }
+            let command = flight.with(Flight::take_answer).map(FromBoard::Command);
+            for message in command.into_iter().chain(session.unasked(&mut flight, &vitals)) {
+                if let Some(frame) = session.frame(&message, &mut frame) {
+                    line.send(frame);
+                }
+            }
+            if count == 0 {
+                line.wait();
+            }
+        }
+    }
+
+    struct LockedFlight<'a, M>(&'a mut M);
+
+    impl<M: Mutex<T = Flight>> SharedFlight for LockedFlight<'_, M> {
+        fn with<R>(&mut self, access: impl FnOnce(&mut Flight) -> R) -> R {
+            self.0.lock(access)
+        }
+    }
+
+    struct OwnVitals<'a> {
+        timing: &'a Timing,
+    }
+
+    impl Vitals for OwnVitals<'_> {
+        fn now(&self) -> Tick {
+            self.timing.now()
+        }
+
+        fn statistics(&self) -> LoopStatistics {
+            LoopStatistics {
+                overruns: self.timing.overruns(),
+                worst_step_ns: self.timing.worst_step_ns(),
+                jitter_ns: self.timing.jitter_ns(),
+                stack_bytes: stack::high_water_bytes(),
+                bytes_dropped: DROPPED_BYTES.load(Relaxed),
+                ..LoopStatistics::default()
+            }
+        }
+
+        fn set_decimation(&self, decimation: u32) {
+            self.timing.set_decimation(decimation);
+        }
+    }
+}

@@ -1,0 +1,3 @@
+//! Boards: one module for each, with its pins and clocks.
+
+pub mod crazyflie_2_1;

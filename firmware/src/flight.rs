@@ -1,0 +1,284 @@
+//! The flight: states, orders and ticks in; gated commands and answers out. What the control interrupt owns.
+
+use quatrack::command::LimitsError;
+use quatrack::gains::paper;
+use quatrack::link::{CommandOut, LawChoice, LimitsSetting, NoCommand, StateIn, Table};
+use quatrack::supervisor::{ArmError, Conditions, Config, Fault, Mode, StepReport, Supervisor, Verdict};
+use quatrack::{Command, Equilibrium, Limits, Rate, State, Tick, Tracker};
+
+use crate::control::{self, Clock, CommandSink, StateSource};
+use crate::playback::{Playback, Store};
+
+/// Ticks of the loop a second.
+pub const TICK_RATE_HZ: u32 = 1000;
+
+/// The same as a rate.
+pub const TICK_RATE: Rate = match Rate::from_hz(TICK_RATE_HZ) {
+    Some(rate) => rate,
+    None => panic!("the core does not tick at this rate"),
+};
+
+/// Ticks for one control step unless it is set otherwise: 500 Hz.
+pub const DECIMATION: u32 = 2;
+
+/// Decimation at which the steps are taken when states come, on the clock of the states: lock-step with a simulation.
+pub const LOCK_STEP: u32 = 0;
+
+/// Bounds of a flight unless they are set otherwise: 50 ms without a state, half a second without a frame.
+pub const CONFIG: Config = Config { state_age_max_ticks: 50, link_silence_max_ticks: 500, overruns_tolerated: 2 };
+
+/// Crazyflie 2.1: four motors from 0.012818 to 0.12 N at 0.029 kg, and what its rate loop follows.
+const LIMITS: LimitsSetting =
+    LimitsSetting { thrust_min_m_s2: 1.768, thrust_max_m_s2: 16.55, body_rates_max_rad_s: [20.0, 20.0, 10.0] };
+
+/// The command as the motors get it. There are none yet: kept for who asks.
+struct Motors {
+    command: Command,
+}
+
+impl CommandSink for Motors {
+    #[inline]
+    fn put(&mut self, command: &Command) {
+        self.command = *command;
+    }
+}
+
+/// The newest state and when it came.
+struct Arrived {
+    state: StateIn,
+    at: Tick,
+    answered: bool,
+}
+
+/// The newest state, for the step.
+struct Newest<'a>(Option<&'a Arrived>);
+
+impl StateSource for Newest<'_> {
+    #[inline]
+    fn newest(&self) -> Option<&State> {
+        self.0.map(|arrived| &arrived.state.state)
+    }
+}
+
+/// The clock of a step: the board's own, or that of the states in lock-step.
+struct StepClock(Tick);
+
+impl Clock for StepClock {
+    #[inline]
+    fn now(&self) -> Tick {
+        self.0
+    }
+}
+
+/// Everything between the link and the motors.
+pub struct Flight {
+    law: LawChoice,
+    limits: LimitsSetting,
+    tracker: Tracker<'static>,
+    arrived: Option<Arrived>,
+    heard_at: Option<Tick>,
+    /// What is followed.
+    pub playback: Playback,
+    /// The bounds of a flight.
+    pub config: Config,
+    supervisor: Supervisor,
+    decimation: u32,
+    last_report: StepReport,
+    fault: Option<Fault>,
+    motors: Motors,
+    answer: Option<CommandOut>,
+    steps: u32,
+    steps_failed: u32,
+}
+
+impl Flight {
+    /// Disarmed, nothing to follow; faulted where the board restarted because of a fault.
+    pub fn new(store: &'static mut Store, fault: Option<Fault>) -> Self {
+        let mut flight = Self {
+            law: LawChoice::new(Table::LqrE),
+            limits: LIMITS,
+            tracker: Tracker::new(Equilibrium::new(&paper::LQR_E), LIMITS.check().unwrap_or(Limits::NONE)),
+            arrived: None,
+            heard_at: None,
+            playback: Playback::new(store),
+            config: CONFIG,
+            supervisor: Supervisor::new(),
+            decimation: DECIMATION,
+            last_report: StepReport::NoReference,
+            fault,
+            motors: Motors { command: Command::ZERO },
+            answer: None,
+            steps: 0,
+            steps_failed: 0,
+        };
+        flight.supervise(0, StepReport::NoReference, false);
+        flight
+    }
+
+    /// Takes the word that a frame was accepted.
+    pub fn hear(&mut self, now: Tick) {
+        self.heard_at = Some(now);
+    }
+
+    /// Takes a state. In lock-step it is to be stepped on at once.
+    pub fn accept(&mut self, state: StateIn, now: Tick) {
+        self.arrived = Some(Arrived { state, at: now, answered: false });
+    }
+
+    /// Whether a state waits for its step.
+    pub fn is_waiting(&self) -> bool {
+        self.arrived.as_ref().is_some_and(|arrived| !arrived.answered)
+    }
+
+    /// Whether steps are taken when states come.
+    pub fn is_lock_step(&self) -> bool {
+        self.decimation == LOCK_STEP
+    }
+
+    /// Ticks of the loop for one step, or [`LOCK_STEP`].
+    pub fn decimation(&self) -> u32 {
+        self.decimation
+    }
+
+    /// Sets the ticks for one step.
+    pub fn set_decimation(&mut self, decimation: u32) {
+        self.decimation = decimation;
+    }
+
+    /// The law in force.
+    pub fn law(&self) -> LawChoice {
+        self.law
+    }
+
+    /// Chooses a law; whether its table is on board.
+    pub fn select(&mut self, law: LawChoice) -> bool {
+        let Some(built_in) = law.built_in() else { return false };
+        self.law = law;
+        self.tracker = Tracker::new(built_in, *self.tracker.limits());
+        true
+    }
+
+    /// The limits in force.
+    pub fn limits(&self) -> LimitsSetting {
+        self.limits
+    }
+
+    /// Sets the limits.
+    ///
+    /// # Errors
+    /// As [`Limits::new`]; the ones in force stay.
+    pub fn set_limits(&mut self, limits: LimitsSetting) -> Result<(), LimitsError> {
+        let checked = limits.check()?;
+        if let Some(law) = self.law.built_in() {
+            (self.limits, self.tracker) = (limits, Tracker::new(law, checked));
+        }
+        Ok(())
+    }
+
+    /// Takes an arm request.
+    ///
+    /// # Errors
+    /// As [`Supervisor::arm`].
+    pub fn arm(&mut self, now: Tick) -> Result<(), ArmError> {
+        self.last_report = StepReport::NoReference;
+        self.supervisor.arm(&self.config, age(self.heard_at, now))
+    }
+
+    /// Takes a disarm request.
+    pub fn disarm(&mut self) {
+        self.supervisor.disarm();
+        self.motors.put(&Command::ZERO);
+    }
+
+    /// The supervisor's mode.
+    pub fn mode(&self) -> Mode {
+        self.supervisor.mode()
+    }
+
+    /// What the motors are told.
+    pub fn command(&self) -> &Command {
+        &self.motors.command
+    }
+
+    /// The answer to the last state, once.
+    pub fn take_answer(&mut self) -> Option<CommandOut> {
+        self.answer.take()
+    }
+
+    /// Steps taken, and those without a command.
+    pub fn steps(&self) -> (u32, u32) {
+        (self.steps, self.steps_failed)
+    }
+
+    /// Takes a fault: zero from here on, until a restart.
+    pub fn fail(&mut self, fault: Fault, now: Tick) {
+        self.fault = Some(fault);
+        self.supervise(now, StepReport::Failed, false);
+        self.motors.put(&Command::ZERO);
+    }
+
+    /// One control step at a tick of the board: step, supervise, gate, and answer the state if it is new.
+    #[inline]
+    pub fn step(&mut self, now: Tick, overrun: bool) {
+        self.steps = self.steps.wrapping_add(1);
+        let result = if self.supervisor.mode().motors_allowed() {
+            let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
+            let clock = StepClock(if self.is_lock_step() { state_tick } else { now });
+            control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &self.tracker)
+        } else {
+            Err(NoCommand::Mode(self.supervisor.mode()))
+        };
+        let report = match &result {
+            Ok(_) => StepReport::Command,
+            Err(NoCommand::NoReference | NoCommand::Mode(_)) => StepReport::NoReference,
+            Err(NoCommand::Reference(_) | NoCommand::Step(_)) => StepReport::Failed,
+        };
+        let verdict = self.supervise(now, report, overrun);
+        match &result {
+            Ok(step) if verdict.mode.command_passes() => self.motors.put(&step.command),
+            _ => self.stand_still(),
+        }
+        if let Some(arrived) = &mut self.arrived
+            && !arrived.answered
+        {
+            arrived.answered = true;
+            let result = match result {
+                Ok(_) if !verdict.mode.command_passes() => Err(NoCommand::Mode(verdict.mode)),
+                result => result,
+            };
+            self.answer = Some(CommandOut { tick: now, state_tick: arrived.state.tick, result });
+        }
+    }
+
+    #[cold]
+    fn stand_still(&mut self) {
+        self.steps_failed = self.steps_failed.wrapping_add(1);
+        self.motors.put(&Command::ZERO);
+    }
+
+    /// A tick without a step: looks at the ages, and stops the motors where they are too high.
+    pub fn watch(&mut self, now: Tick, overrun: bool) {
+        if !self.supervise(now, self.last_report, overrun).mode.command_passes() {
+            self.motors.put(&Command::ZERO);
+        }
+    }
+
+    #[inline]
+    fn supervise(&mut self, now: Tick, step: StepReport, overrun: bool) -> Verdict {
+        self.last_report = step;
+        let conditions = Conditions {
+            link_silence_ticks: age(self.heard_at, now),
+            state_age_ticks: age(self.arrived.as_ref().map(|arrived| arrived.at), now),
+            step,
+            overrun,
+            fault: self.fault,
+        };
+        self.supervisor.tick(&self.config, &conditions)
+    }
+}
+
+/// Ticks since something happened.
+#[inline]
+fn age(since: Option<Tick>, now: Tick) -> Option<Tick> {
+    since.map(|since| now.wrapping_sub(since))
+}

@@ -1,0 +1,153 @@
+//! What is followed: orders from the link in, the flat output of a tick out.
+
+use quatrack::link::{TRAJECTORY_PIECES, TrajectoryStore};
+use quatrack::{FlatSample, Player, Tick};
+
+use crate::control::ReferenceSource;
+use crate::flight::TICK_RATE;
+
+/// Uploaded trajectories: the one in use and the one that is being checked.
+pub type Store = TrajectoryStore<TRAJECTORY_PIECES>;
+
+/// The source of references.
+pub struct Playback {
+    source: Source,
+    /// Ticks since the start of the trajectory, up to the last step.
+    elapsed: Tick,
+    /// The tick of the clock at which the trajectory would have begun, had it never been paused.
+    base: Option<Tick>,
+    moving: bool,
+    /// Too large for the stack on which everything begins.
+    store: &'static mut Store,
+}
+
+/// Where the flat output comes from.
+enum Source {
+    Nothing,
+    Link(FlatSample),
+    Flash(Player<'static>),
+    /// The uploaded trajectory in use.
+    Uploaded,
+}
+
+impl Playback {
+    /// Nothing to follow, nothing uploaded.
+    pub const fn new(store: &'static mut Store) -> Self {
+        Self { source: Source::Nothing, elapsed: 0, base: None, moving: false, store }
+    }
+
+    /// Follows what came with a state.
+    pub fn follow(&mut self, sample: FlatSample) {
+        self.source = Source::Link(sample);
+    }
+
+    /// Plays a trajectory in flash from its start, which is the next step.
+    pub fn start(&mut self, player: Player<'static>) {
+        self.begin(Source::Flash(player));
+    }
+
+    /// Plays the uploaded trajectory from its start, which is the next step; whether there is one.
+    pub fn start_uploaded(&mut self) -> bool {
+        let uploaded = self.store.active().trajectory().is_some();
+        if uploaded {
+            self.begin(Source::Uploaded);
+        }
+        uploaded
+    }
+
+    fn begin(&mut self, source: Source) {
+        (self.source, self.elapsed, self.base, self.moving) = (source, 0, None, true);
+    }
+
+    /// Rests where the last step was; whether a trajectory is there to be paused.
+    pub fn pause(&mut self) -> bool {
+        (self.base, self.moving) = (None, false);
+        self.is_trajectory()
+    }
+
+    /// Goes on from there; whether there is something to go on with.
+    pub fn resume(&mut self) -> bool {
+        self.moving = true;
+        self.is_trajectory()
+    }
+
+    /// Follows nothing.
+    pub fn stop(&mut self) {
+        self.begin(Source::Nothing);
+    }
+
+    /// The uploaded trajectories. They are checked and swapped only while nothing flies.
+    pub fn store(&mut self) -> &mut Store {
+        self.store
+    }
+
+    fn is_trajectory(&self) -> bool {
+        matches!(self.source, Source::Flash(_) | Source::Uploaded)
+    }
+
+    /// Ticks of the trajectory at a tick of the clock.
+    #[inline]
+    fn trajectory_tick(&mut self, now: Tick) -> Tick {
+        if self.moving {
+            let base = *self.base.get_or_insert(now.wrapping_sub(self.elapsed));
+            self.elapsed = now.wrapping_sub(base);
+        }
+        self.elapsed
+    }
+}
+
+impl ReferenceSource for Playback {
+    #[inline]
+    fn at(&mut self, now: Tick) -> Option<FlatSample> {
+        let tick = self.trajectory_tick(now);
+        let sample = match &mut self.source {
+            Source::Flash(player) => player.at(tick),
+            Source::Nothing => return None,
+            Source::Link(sample) => return Some(*sample),
+            // The pieces are checked anew at every step, some 10,000 instructions, because the store may change.
+            Source::Uploaded => Player::new(self.store.active().trajectory()?, TICK_RATE).at(tick),
+        };
+        Some(if self.moving { sample } else { FlatSample::at_rest(sample.position_m, sample.heading_rad) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stored;
+    use quatrack::Trajectory;
+
+    fn player() -> Player<'static> {
+        Player::new(Trajectory::new(&stored::MILD).unwrap(), TICK_RATE)
+    }
+
+    #[test]
+    fn a_trajectory_begins_with_the_first_step_and_rests_while_paused() {
+        let mut direct = player();
+        let mut playback = Playback::new(Box::leak(Box::default()));
+        assert_eq!(playback.at(5), None, "nothing to follow");
+        playback.start(player());
+        assert_eq!(playback.at(1000), Some(direct.at(0)), "the clock's tick does not matter");
+        assert_eq!(playback.at(6000), Some(direct.at(5000)));
+        assert!(playback.pause());
+        let there = direct.at(5000);
+        let rest = FlatSample::at_rest(there.position_m, there.heading_rad);
+        assert_eq!(playback.at(6010), Some(rest), "rests where it was");
+        assert_eq!(playback.at(9000), Some(rest), "however long");
+        assert!(playback.resume());
+        assert_eq!(playback.at(9002), Some(there), "goes on from there");
+        assert_eq!(playback.at(9004), Some(direct.at(5002)));
+        playback.stop();
+        assert_eq!(playback.at(9006), None);
+        assert!(!playback.pause(), "there is nothing left to pause");
+    }
+
+    #[test]
+    fn the_clock_may_wrap() {
+        let mut direct = player();
+        let mut playback = Playback::new(Box::leak(Box::default()));
+        playback.start(player());
+        assert_eq!(playback.at(u32::MAX - 1), Some(direct.at(0)));
+        assert_eq!(playback.at(4), Some(direct.at(6)));
+    }
+}

@@ -1,0 +1,285 @@
+//! The link's side of the board: bytes in; orders to the flight, and frames, out. Runs whenever nothing else does.
+
+use heapless::Vec;
+use quatrack::link::{
+    BlobError, BlobKind, BlobReceiver, Decoder, Encoder, FRAME_BYTES, FaultReport, FromBoard, Identity, LoopStatistics,
+    Parameter, ParameterId, Received, Refusal, TRAJECTORY_BLOB_BYTES, TRAJECTORY_PIECES, Telemetry, ToBoard,
+    TrajectoryCommand, TrajectoryId, Version,
+};
+use quatrack::{Player, Tick, Trajectory};
+
+use crate::flight::{Flight, TICK_RATE, TICK_RATE_HZ};
+use crate::stored;
+
+/// Identifies what computes commands: a checksum of its sources, by the build script.
+const CONTROL_IMAGE: u32 = include!(concat!(env!("OUT_DIR"), "/control_image.rs"));
+
+/// Longest decimation: one step a second.
+const DECIMATION_MAX: u32 = TICK_RATE_HZ;
+
+/// Longest age and silence that can be set, ticks: ten seconds.
+const AGE_MAX_TICKS: u32 = 10 * TICK_RATE_HZ;
+
+/// Access to the flight, which the control interrupt shares.
+pub trait Shared {
+    /// Runs `access` while the control interrupt waits.
+    fn with<R>(&mut self, access: impl FnOnce(&mut Flight) -> R) -> R;
+}
+
+/// What the board knows of itself beside the flight, for telemetry.
+pub trait Vitals {
+    /// The tick of the loop.
+    fn now(&self) -> Tick;
+    /// Overruns, jitter, longest step, stack, dropped bytes; the steps are the flight's to count.
+    fn statistics(&self) -> LoopStatistics;
+    /// Takes the ticks for one step.
+    fn set_decimation(&self, decimation: u32);
+}
+
+/// Room for the blob that is being uploaded.
+pub type Uploads = BlobReceiver<TRAJECTORY_BLOB_BYTES>;
+
+/// Frames of one connection after the other.
+pub struct Session {
+    decoder: Decoder<ToBoard>,
+    encoder: Option<Encoder>,
+    uploads: &'static mut Uploads,
+    telemetry_period_ticks: Tick,
+    telemetry_at: Tick,
+    /// The fault that made the board restart, or was found since.
+    fault: Option<FaultReport>,
+    fault_told: bool,
+}
+
+/// What a frame is answered with: an identity may bring a fault with it.
+pub type Answers = Vec<FromBoard, 2>;
+
+impl Session {
+    /// Nobody connected.
+    pub const fn new(uploads: &'static mut Uploads, fault: Option<FaultReport>) -> Self {
+        Self {
+            decoder: Decoder::new(),
+            encoder: None,
+            uploads,
+            telemetry_period_ticks: 0,
+            telemetry_at: 0,
+            fault,
+            fault_told: false,
+        }
+    }
+
+    /// Takes a byte from the line; where it ends a sound frame, carries it out and gives the answers.
+    pub fn push(&mut self, byte: u8, flight: &mut impl Shared, vitals: &impl Vitals) -> Option<Answers> {
+        let received = self.decoder.push(byte)?.ok()?;
+        let now = vitals.now();
+        flight.with(|flight| flight.hear(now));
+        let mut answers = Answers::new();
+        let first = match received.message {
+            ToBoard::Hello => self.greet(received.session, flight, &mut answers),
+            ToBoard::State(state) => {
+                flight.with(|flight| flight.accept(state, now));
+                None
+            }
+            ToBoard::StateAndReference(state, sample) => {
+                flight.with(|flight| {
+                    flight.playback.follow(sample);
+                    flight.accept(state, now);
+                });
+                None
+            }
+            ToBoard::TelemetryRequest => Some(self.telemetry(flight, vitals)),
+            ToBoard::GetParameter(id) => Some(FromBoard::Parameter(self.parameter(id, flight))),
+            ToBoard::SetParameter(parameter) => {
+                let set = self.set(parameter, flight, vitals);
+                Some(answer(
+                    received.sequence,
+                    set.map(|()| FromBoard::Parameter(self.parameter(parameter.id(), flight))),
+                ))
+            }
+            _ => {
+                let sequence = received.sequence;
+                let done = self.carry_out(received, flight, now);
+                Some(answer(sequence, done.map(|done| done.unwrap_or(FromBoard::Ack { sequence }))))
+            }
+        };
+        if let Some(first) = first {
+            // There is room for two.
+            let _ = answers.push(first);
+        }
+        Some(answers)
+    }
+
+    /// A message that is due by itself: telemetry at its period, a fault once.
+    pub fn unasked(&mut self, flight: &mut impl Shared, vitals: &impl Vitals) -> Option<FromBoard> {
+        self.encoder.as_ref()?;
+        if let Some(fault) = self.fault.filter(|_| !self.fault_told) {
+            self.fault_told = true;
+            return Some(FromBoard::Fault(fault));
+        }
+        let period = self.telemetry_period_ticks;
+        if period == 0 || vitals.now().wrapping_sub(self.telemetry_at) < period {
+            return None;
+        }
+        self.telemetry_at = vitals.now();
+        Some(self.telemetry(flight, vitals))
+    }
+
+    /// Takes a fault that was found while running.
+    pub fn report(&mut self, fault: FaultReport) {
+        if self.fault.is_none() {
+            self.fault = Some(fault);
+        }
+    }
+
+    /// A message as a frame of the open session; nothing before the first hello.
+    pub fn frame<'b>(&mut self, message: &FromBoard, buffer: &'b mut [u8; FRAME_BYTES]) -> Option<&'b [u8]> {
+        self.encoder.as_mut()?.encode(message, buffer).ok()
+    }
+
+    fn greet(&mut self, session: u32, flight: &mut impl Shared, answers: &mut Answers) -> Option<FromBoard> {
+        if self.encoder.as_ref().is_none_or(|encoder| encoder.session() != session) {
+            self.encoder = Some(Encoder::new(session));
+        }
+        let identity = Identity {
+            firmware: version(),
+            control_image: CONTROL_IMAGE,
+            tick_rate_hz: TICK_RATE_HZ,
+            decimation: flight.with(|flight| flight.decimation()),
+            trajectory_pieces: TRAJECTORY_PIECES as u32,
+        };
+        // There is room for two.
+        let _ = answers.push(FromBoard::Hello(identity));
+        self.fault_told = true;
+        self.fault.map(FromBoard::Fault)
+    }
+
+    fn carry_out(
+        &mut self,
+        received: Received<ToBoard>,
+        flight: &mut impl Shared,
+        now: Tick,
+    ) -> Result<Option<FromBoard>, Refusal> {
+        match received.message {
+            ToBoard::SelectLaw(law) => {
+                flight.with(|flight| flight.select(law)).then_some(None).ok_or(Refusal::Unsupported)
+            }
+            ToBoard::Trajectory(command) => trajectory(command, flight).map(|()| None),
+            ToBoard::Arm => flight.with(|flight| flight.arm(now)).map(|()| None).map_err(Refusal::Arm),
+            ToBoard::Disarm => {
+                flight.with(Flight::disarm);
+                Ok(None)
+            }
+            ToBoard::UploadBegin(begin) if begin.kind != BlobKind::Trajectory => {
+                Err(Refusal::Blob(BlobError::Kind(begin.kind)))
+            }
+            ToBoard::UploadBegin(begin) => {
+                self.uploads.begin(&begin).map(|progress| Some(FromBoard::Upload(progress))).map_err(Refusal::Upload)
+            }
+            ToBoard::UploadChunk(chunk) => {
+                self.uploads.chunk(&chunk).map(|progress| Some(FromBoard::Upload(progress))).map_err(Refusal::Upload)
+            }
+            ToBoard::UploadQuery => {
+                self.uploads.progress().map(|progress| Some(FromBoard::Upload(progress))).map_err(Refusal::Upload)
+            }
+            ToBoard::UploadCommit { id } => {
+                // Checking pieces takes longer than a tick, and must not change what is being flown.
+                disarmed(flight)?;
+                let (_, blob) = self.uploads.finish(id).map_err(Refusal::Upload)?;
+                flight.with(|flight| flight.playback.store().commit(blob)).map(|()| None).map_err(Refusal::Blob)
+            }
+            _ => Err(Refusal::Unsupported),
+        }
+    }
+
+    fn parameter(&self, id: ParameterId, flight: &mut impl Shared) -> Parameter {
+        flight.with(|flight| match id {
+            ParameterId::Decimation => Parameter::Decimation(flight.decimation()),
+            ParameterId::Limits => Parameter::Limits(flight.limits()),
+            ParameterId::StateAgeMaxTicks => Parameter::StateAgeMaxTicks(flight.config.state_age_max_ticks),
+            ParameterId::LinkSilenceMaxTicks => Parameter::LinkSilenceMaxTicks(flight.config.link_silence_max_ticks),
+            ParameterId::OverrunsTolerated => Parameter::OverrunsTolerated(flight.config.overruns_tolerated),
+            ParameterId::TelemetryPeriodTicks => Parameter::TelemetryPeriodTicks(self.telemetry_period_ticks),
+        })
+    }
+
+    fn set(&mut self, parameter: Parameter, flight: &mut impl Shared, vitals: &impl Vitals) -> Result<(), Refusal> {
+        if !matches!(parameter, Parameter::TelemetryPeriodTicks(_)) {
+            disarmed(flight)?;
+        }
+        let within = |value: u32, max: u32| if value <= max { Ok(value) } else { Err(Refusal::OutOfRange) };
+        match parameter {
+            Parameter::Decimation(ticks) => {
+                let decimation = within(ticks, DECIMATION_MAX)?;
+                flight.with(|flight| flight.set_decimation(decimation));
+                vitals.set_decimation(decimation);
+            }
+            Parameter::Limits(limits) => {
+                flight.with(|flight| flight.set_limits(limits)).map_err(Refusal::Limits)?;
+            }
+            Parameter::StateAgeMaxTicks(ticks) => {
+                let ticks = within(ticks, AGE_MAX_TICKS)?;
+                flight.with(|flight| flight.config.state_age_max_ticks = ticks);
+            }
+            Parameter::LinkSilenceMaxTicks(ticks) => {
+                let ticks = within(ticks, AGE_MAX_TICKS)?;
+                flight.with(|flight| flight.config.link_silence_max_ticks = ticks);
+            }
+            Parameter::OverrunsTolerated(count) => {
+                flight.with(|flight| flight.config.overruns_tolerated = count);
+            }
+            Parameter::TelemetryPeriodTicks(ticks) => self.telemetry_period_ticks = ticks,
+        }
+        Ok(())
+    }
+
+    fn telemetry(&self, flight: &mut impl Shared, vitals: &impl Vitals) -> FromBoard {
+        let (mode, (steps, steps_failed)) = flight.with(|flight| (flight.mode(), flight.steps()));
+        let statistics = LoopStatistics { steps, steps_failed, ..vitals.statistics() };
+        FromBoard::Telemetry(Telemetry { tick: vitals.now(), mode, statistics, link: *self.decoder.counters() })
+    }
+}
+
+fn answer(sequence: u32, done: Result<FromBoard, Refusal>) -> FromBoard {
+    done.unwrap_or_else(|reason| FromBoard::Nack { sequence, reason })
+}
+
+fn disarmed(flight: &mut impl Shared) -> Result<(), Refusal> {
+    if flight.with(|flight| flight.mode().motors_allowed()) { Err(Refusal::NotWhileArmed) } else { Ok(()) }
+}
+
+fn trajectory(command: TrajectoryCommand, flight: &mut impl Shared) -> Result<(), Refusal> {
+    // Checked here, where only the link waits for it.
+    let stored = |pieces| Trajectory::new(pieces).map(|t| Player::new(t, TICK_RATE)).map_err(|_| Refusal::NoTrajectory);
+    let found = match command {
+        TrajectoryCommand::Start(TrajectoryId::Mild) => {
+            let player = stored(&stored::MILD)?;
+            flight.with(|flight| flight.playback.start(player));
+            true
+        }
+        TrajectoryCommand::Start(TrajectoryId::Aggressive) => {
+            let player = stored(&stored::AGGRESSIVE)?;
+            flight.with(|flight| flight.playback.start(player));
+            true
+        }
+        TrajectoryCommand::Start(TrajectoryId::Uploaded) => flight.with(|flight| flight.playback.start_uploaded()),
+        TrajectoryCommand::Pause => flight.with(|flight| flight.playback.pause()),
+        TrajectoryCommand::Resume => flight.with(|flight| flight.playback.resume()),
+        TrajectoryCommand::Stop => {
+            flight.with(|flight| flight.playback.stop());
+            true
+        }
+    };
+    if found { Ok(()) } else { Err(Refusal::NoTrajectory) }
+}
+
+/// The package's version.
+fn version() -> Version {
+    let number = |text: &str| {
+        text.bytes().fold(0_u16, |sum, digit| sum.wrapping_mul(10).wrapping_add(u16::from(digit.wrapping_sub(b'0'))))
+    };
+    Version {
+        major: number(env!("CARGO_PKG_VERSION_MAJOR")),
+        minor: number(env!("CARGO_PKG_VERSION_MINOR")),
+        patch: number(env!("CARGO_PKG_VERSION_PATCH")),
+    }
+}

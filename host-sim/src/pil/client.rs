@@ -1,0 +1,191 @@
+//! A board behind its line: requests and states in; answers and commands out, or why there are none.
+
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use quatrack::State;
+use quatrack::link::{
+    CommandOut, Decoder, Encoder, FRAME_BYTES, FaultReport, FromBoard, Identity, Parameter, StateIn, Telemetry, ToBoard,
+};
+
+use super::PilError;
+use super::emulator::Emulator;
+use super::interrupt::Interrupt;
+use super::line::Line;
+
+/// Longest wait for an answer.
+const PATIENCE: Duration = Duration::from_secs(4);
+
+/// After this time a message is sent again: it, or its answer, may have been lost.
+const AGAIN: Duration = Duration::from_millis(300);
+
+/// Between two looks at whether the emulator still runs.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+
+/// A connected board.
+pub struct Client {
+    line: Line,
+    emulator: Option<Emulator>,
+    interrupt: Interrupt,
+    encoder: Encoder,
+    decoder: Decoder<FromBoard>,
+    received: Vec<u8>,
+    identity: Identity,
+    fault: Option<FaultReport>,
+}
+
+impl Client {
+    /// Opens a session. The emulator, where there is one, lives as long as the connection.
+    ///
+    /// # Errors
+    /// [`PilError::Silent`] where nobody answers in the protocol's version.
+    pub fn connect(line: Line, emulator: Option<Emulator>, interrupt: Interrupt) -> Result<Self, PilError> {
+        // Later than any session before it, as the board wants it.
+        let session = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs() as u32;
+        let mut client = Self {
+            line,
+            emulator,
+            interrupt,
+            encoder: Encoder::new(session),
+            decoder: Decoder::for_session(session),
+            received: Vec::new(),
+            identity: NOBODY,
+            fault: None,
+        };
+        // Ends whatever noise stands before it.
+        client.line.send(&[quatrack::link::DELIMITER])?;
+        client.identity =
+            client.exchange(&ToBoard::Hello, "the board does not say hello", |answer, _| match answer {
+                FromBoard::Hello(identity) => Some(*identity),
+                _ => None,
+            })?;
+        Ok(client)
+    }
+
+    /// Who answered.
+    pub fn identity(&self) -> &Identity {
+        &self.identity
+    }
+
+    /// Sends a request that is answered by an acknowledgement.
+    ///
+    /// # Errors
+    /// [`PilError::Refused`] with the board's reason.
+    pub fn request(&mut self, message: &ToBoard) -> Result<(), PilError> {
+        let waiting_for = format!("the board does not answer {message:?}");
+        let result = self.exchange(message, &waiting_for, |answer, sequence| match answer {
+            FromBoard::Ack { sequence: of } if *of >= sequence => Some(Ok(())),
+            FromBoard::Nack { sequence: of, reason } if *of >= sequence => Some(Err(*reason)),
+            _ => None,
+        })?;
+        result.map_err(|reason| PilError::Refused { request: format!("{message:?}"), reason: reason.to_string() })
+    }
+
+    /// Sets a parameter.
+    ///
+    /// # Errors
+    /// [`PilError::Refused`] where the board does not put it in force.
+    pub fn set(&mut self, parameter: Parameter) -> Result<(), PilError> {
+        let message = ToBoard::SetParameter(parameter);
+        let result =
+            self.exchange(&message, "the board does not answer a parameter", |answer, sequence| match answer {
+                FromBoard::Parameter(in_force) if *in_force == parameter => Some(Ok(())),
+                FromBoard::Nack { sequence: of, reason } if *of >= sequence => Some(Err(*reason)),
+                _ => None,
+            })?;
+        result.map_err(|reason| PilError::Refused { request: format!("{parameter:?}"), reason: reason.to_string() })
+    }
+
+    /// What the loop has been doing.
+    ///
+    /// # Errors
+    /// [`PilError`].
+    pub fn telemetry(&mut self) -> Result<Telemetry, PilError> {
+        self.exchange(&ToBoard::TelemetryRequest, "the board sends no telemetry", |answer, _| match answer {
+            FromBoard::Telemetry(telemetry) => Some(*telemetry),
+            _ => None,
+        })
+    }
+
+    /// Sends a state and waits for the command that answers it.
+    ///
+    /// # Errors
+    /// [`PilError`].
+    pub fn step(&mut self, tick: u32, state: &State) -> Result<CommandOut, PilError> {
+        let message = ToBoard::State(StateIn { tick, state: *state });
+        self.exchange(&message, "the board does not answer a state", |answer, _| match answer {
+            FromBoard::Command(command) if command.state_tick == tick => Some(*command),
+            _ => None,
+        })
+    }
+
+    /// Sends `message`, again where no answer comes, until `pick` takes an answer; it is given the sequence number of
+    /// the first sending.
+    fn exchange<T>(
+        &mut self,
+        message: &ToBoard,
+        waiting_for: &str,
+        pick: impl Fn(&FromBoard, u32) -> Option<T>,
+    ) -> Result<T, PilError> {
+        let sequence = self.encoder.next_sequence().unwrap_or_default();
+        let start = Instant::now();
+        let mut sent_at = start;
+        self.send(message)?;
+        let mut chunk = [0; 256];
+        loop {
+            while let Some((received, rest)) = self.decoder.next(&self.received) {
+                let left = rest.len();
+                self.received.drain(..self.received.len() - left);
+                if let FromBoard::Fault(fault) = received.message {
+                    self.fault = Some(fault);
+                }
+                if let Some(found) = pick(&received.message, sequence) {
+                    return Ok(found);
+                }
+            }
+            self.received.clear();
+            let count = self.line.receive(&mut chunk, LOOK_EVERY)?;
+            self.received.extend_from_slice(chunk.get(..count).unwrap_or_default());
+            if count > 0 {
+                continue;
+            }
+            self.interrupt.check()?;
+            if let Some(emulator) = &mut self.emulator
+                && let Some(status) = emulator.ended()?
+            {
+                return Err(emulator.ended_early(status));
+            }
+            if start.elapsed() > PATIENCE {
+                return Err(self.silent(waiting_for));
+            }
+            if sent_at.elapsed() > AGAIN {
+                sent_at = Instant::now();
+                self.send(message)?;
+            }
+        }
+    }
+
+    fn silent(&self, waiting_for: &str) -> PilError {
+        let rejected = self.decoder.counters().rejected();
+        let heard = match (self.fault, rejected) {
+            (Some(fault), _) => format!("{waiting_for}; it has reported a {} at {:#010x}", fault.fault, fault.address),
+            (None, 0) => format!("{waiting_for}; check the line, and that the image is quatrack's"),
+            (None, _) => format!("{waiting_for}; {rejected} frames came that were none of this protocol version"),
+        };
+        PilError::Silent { seconds: PATIENCE.as_secs(), waiting_for: heard }
+    }
+
+    fn send(&mut self, message: &ToBoard) -> Result<(), PilError> {
+        let mut buffer = [0; FRAME_BYTES];
+        let frame = self.encoder.encode(message, &mut buffer).map_err(|error| PilError::Answer(error.to_string()))?;
+        self.line.send(frame)
+    }
+}
+
+/// Stands for a board that has not answered yet.
+const NOBODY: Identity = Identity {
+    firmware: quatrack::link::Version { major: 0, minor: 0, patch: 0 },
+    control_image: 0,
+    tick_rate_hz: 0,
+    decimation: 0,
+    trajectory_pieces: 0,
+};

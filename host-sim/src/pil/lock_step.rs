@@ -1,0 +1,253 @@
+//! Lock-step: a connected board in; the paper's flights under its commands, compared bit for bit with the host's core.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use quatrack::link::{LawChoice, LimitsSetting, Parameter, Table, ToBoard, TrajectoryCommand, TrajectoryId};
+use quatrack::{Command, ErrorForm, State, Step};
+use serde::Serialize;
+
+use super::PilError;
+use super::client::Client;
+use super::flights::{COURSES, HostCore, Plans, RATE_HZ, fly};
+use crate::flight::metrics::Metrics;
+use crate::reproduction::report::digits;
+use crate::reproduction::table::{Controller, Course};
+
+/// Ages beyond which the board ends a flight, ticks. A host that is held up for seconds is no danger here.
+const PATIENCE_TICKS: u32 = 10_000;
+
+/// What came of all flights.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// IAE of the flights that the target commanded, m s; nothing for a flight that was cut short.
+    pub iae: BTreeMap<Course, BTreeMap<Controller, Option<f64>>>,
+    /// Whether every command had the host's bits.
+    pub bit_exact: bool,
+    /// Commands compared.
+    pub steps: u64,
+    /// FNV-1a of all commands, in the order of flight.
+    pub hash: String,
+    /// The first command that differed.
+    #[serde(skip)]
+    pub difference: Option<Difference>,
+    /// Longest step on the target, ns.
+    #[serde(skip)]
+    pub worst_step_ns: u32,
+    /// Most stack in use on the target, bytes.
+    #[serde(skip)]
+    pub stack_bytes: u32,
+    /// Steps that ran past their period.
+    #[serde(skip)]
+    pub overruns: u32,
+}
+
+/// Two commands for one state that are not the same.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    course: Course,
+    controller: Controller,
+    step: u32,
+    state: State,
+    host: Command,
+    target: Command,
+}
+
+/// Flies all flights; the first `limit` steps of them, spread evenly, where one is given. `advance` is told every step.
+///
+/// # Errors
+/// [`PilError`].
+pub fn fly_all(client: &mut Client, limit: Option<u32>, advance: &dyn Fn()) -> Result<Report, PilError> {
+    let plans = Plans::solve()?;
+    prepare(client)?;
+    let flights = COURSES.iter().flat_map(|course| Controller::ALL.map(|controller| (*course, controller)));
+    let mut comparison = Comparison { hash: Fnv1a::new(), steps: 0, difference: None };
+    let mut iae: BTreeMap<Course, BTreeMap<Controller, Option<f64>>> = BTreeMap::new();
+    for (index, (course, controller)) in flights.enumerate() {
+        let share = limit.map(|limit| share(limit, index as u32));
+        let flown = fly_one(client, &plans, (course, controller), share, &mut comparison, advance)?;
+        iae.entry(course).or_default().insert(controller, flown);
+    }
+    client.request(&ToBoard::Disarm)?;
+    let telemetry = client.telemetry()?;
+    Ok(Report {
+        iae,
+        bit_exact: comparison.difference.is_none(),
+        steps: comparison.steps,
+        hash: format!("{:016x}", comparison.hash.0),
+        difference: comparison.difference,
+        worst_step_ns: telemetry.statistics.worst_step_ns,
+        stack_bytes: telemetry.statistics.stack_bytes,
+        overruns: telemetry.statistics.overruns,
+    })
+}
+
+/// Steps of all flights together.
+pub fn step_count(limit: Option<u32>) -> u64 {
+    let whole: u64 = COURSES
+        .iter()
+        .map(|course| super::stored::pieces(*course).iter().map(|piece| piece.duration_ns).sum::<u64>())
+        .map(|duration_ns| duration_ns * u64::from(RATE_HZ) / 1_000_000_000 + 1)
+        .sum();
+    limit.map_or(whole * FLIGHTS, u64::from)
+}
+
+/// Flights of both courses.
+const FLIGHTS: u64 = Controller::ALL.len() as u64;
+
+/// What flight `index` of eight gets of a number of steps.
+fn share(limit: u32, index: u32) -> u32 {
+    let flights = COURSES.len() as u32 * FLIGHTS as u32;
+    limit / flights + u32::from(index < limit % flights)
+}
+
+fn prepare(client: &mut Client) -> Result<(), PilError> {
+    client.request(&ToBoard::Disarm)?;
+    // Lock-step, with the limits off as in the reproduction of the paper.
+    client.set(Parameter::Decimation(0))?;
+    client.set(Parameter::Limits(LimitsSetting {
+        thrust_min_m_s2: f32::MIN,
+        thrust_max_m_s2: f32::MAX,
+        body_rates_max_rad_s: [f32::MAX; 3],
+    }))?;
+    client.set(Parameter::StateAgeMaxTicks(PATIENCE_TICKS))?;
+    client.set(Parameter::LinkSilenceMaxTicks(PATIENCE_TICKS))
+}
+
+/// One flight's IAE.
+fn fly_one(
+    client: &mut Client,
+    plans: &Plans,
+    (course, controller): (Course, Controller),
+    limit: Option<u32>,
+    comparison: &mut Comparison,
+    advance: &dyn Fn(),
+) -> Result<Option<f64>, PilError> {
+    let mut host = HostCore::new(course, controller)?;
+    client.request(&ToBoard::Disarm)?;
+    client.request(&ToBoard::SelectLaw(law(controller)))?;
+    client.request(&ToBoard::Trajectory(TrajectoryCommand::Start(match course {
+        Course::Mild => TrajectoryId::Mild,
+        Course::Aggressive => TrajectoryId::Aggressive,
+    })))?;
+    client.request(&ToBoard::Arm)?;
+    let ticks_per_step = client.identity().tick_rate_hz / RATE_HZ;
+    let mut failed = None;
+    let flight = fly(plans.of(course), |step, state| {
+        if limit.is_some_and(|limit| step >= limit) {
+            return Err("as far as was asked for".to_owned());
+        }
+        let expected = host.step(step, state)?;
+        let answer = client.step(step * ticks_per_step, state).and_then(|answer| {
+            answer.result.map_err(|reason| PilError::NoCommand {
+                flight: format!("{course:?}, {controller}"),
+                step,
+                reason: reason.to_string(),
+            })
+        });
+        match answer {
+            Ok(Step { command, .. }) => {
+                comparison.compare((course, controller, step), state, &expected, &command);
+                advance();
+                Ok(command)
+            }
+            Err(error) => {
+                failed = Some(error);
+                Err("no command".to_owned())
+            }
+        }
+    });
+    match failed {
+        Some(error) => Err(error),
+        None => Ok(Metrics::of(&flight).iae_m_s),
+    }
+}
+
+fn law(controller: Controller) -> LawChoice {
+    let table = match controller {
+        Controller::LyapF => Table::LyapF,
+        Controller::LyapE => Table::LyapE,
+        Controller::LqrF => Table::LqrF,
+        Controller::LqrE => Table::LqrE,
+    };
+    LawChoice { error_form: ErrorForm::Paper, ..LawChoice::new(table) }
+}
+
+struct Comparison {
+    hash: Fnv1a,
+    steps: u64,
+    difference: Option<Difference>,
+}
+
+impl Comparison {
+    fn compare(&mut self, at: (Course, Controller, u32), state: &State, host: &Command, target: &Command) {
+        self.steps += 1;
+        for word in words(target) {
+            self.hash.add(word);
+        }
+        if words(host) != words(target) && self.difference.is_none() {
+            let (course, controller, step) = at;
+            self.difference =
+                Some(Difference { course, controller, step, state: *state, host: *host, target: *target });
+        }
+    }
+}
+
+/// The bits of a command.
+pub(super) fn words(command: &Command) -> [u32; 4] {
+    let rates = &command.body_rates_rad_s;
+    [command.thrust_m_s2, rates.x, rates.y, rates.z].map(f32::to_bits)
+}
+
+/// The hash FNV-1a of 64 bits.
+struct Fnv1a(u64);
+
+impl Fnv1a {
+    const fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn add(&mut self, word: u32) {
+        for byte in word.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}
+
+impl fmt::Display for Difference {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { course, controller, step, state, host, target } = self;
+        writeln!(f, "first difference: {course:?}, {controller}, step {step}")?;
+        writeln!(f, "  state   {state:?}")?;
+        for (name, command) in [("host", host), ("target", target)] {
+            writeln!(f, "  {name:<7} {command:?}")?;
+            writeln!(f, "          {:08x?}", words(command))?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "IAE (23) of the position, m s, commanded by the target at {RATE_HZ} Hz")?;
+        for (course, row) in &self.iae {
+            write!(f, "\n{:<14}", "")?;
+            for controller in row.keys() {
+                write!(f, "{controller:>12}")?;
+            }
+            write!(f, "\n{:<14}", format!("{course:?}"))?;
+            for iae in row.values() {
+                let text = iae.map_or_else(|| "-".to_owned(), |iae| digits(Some(iae)));
+                write!(f, "{text:>12}")?;
+            }
+            writeln!(f)?;
+        }
+        let verdict = if self.bit_exact { "every bit as on the host" } else { "NOT as on the host" };
+        writeln!(f, "\n{} commands, {verdict}; hash {}", self.steps, self.hash)?;
+        if let Some(difference) = &self.difference {
+            write!(f, "{difference}")?;
+        }
+        let (step_us, stack, overruns) = (f64::from(self.worst_step_ns) / 1e3, self.stack_bytes, self.overruns);
+        writeln!(f, "on the target: longest step {step_us} us, stack {stack} bytes, {overruns} overruns")
+    }
+}
