@@ -12,7 +12,6 @@ mod app {
     use heapless::spsc::Queue;
     use quatrack::Tick;
     use quatrack::link::{FRAME_BYTES, FromBoard, LoopStatistics};
-    use quatrack::supervisor::Fault;
     use quatrack_firmware::board::crazyflie_2_1 as board;
     use quatrack_firmware::counter::Counter;
     use quatrack_firmware::flight::Flight;
@@ -76,22 +75,8 @@ mod app {
 
     #[task(binds = CAN2_SCE, priority = 1, shared = [flight, &timing, &counter])]
     fn control(mut context: control::Context) {
-        let (timing, counter) = (context.shared.timing, context.shared.counter);
-        let begun = counter.now();
-        let (due, overran) = timing.on_begin();
-        let now = timing.now();
-        context.shared.flight.lock(|flight| {
-            if !stack::is_within_bound() {
-                flight.fail(Fault::StackExhausted, now);
-            }
-            let steps = if flight.is_lock_step() { flight.is_waiting() } else { due };
-            if steps {
-                flight.step(now, overran);
-            } else {
-                flight.watch(now, overran);
-            }
-        });
-        timing.on_end(begun, counter.now(), due);
+        let (timing, counter) = (context.shared.timing, *context.shared.counter);
+        context.shared.flight.lock(|flight| quatrack_firmware::tick::control(flight, timing, counter));
     }
 
     #[idle(local = [session, line], shared = [flight, &timing])]

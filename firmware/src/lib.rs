@@ -6,6 +6,7 @@
 //!     transport               bytes over a USART, or over files of the emulating machine (feature `semihosting`)
 //!     counter, stack, record  the free-running timer; the painted stack; what outlives a restart
 //!     panic                   the handler that cannot link
+//!   tick                      what the timer's interrupts run
 //!   session                   frames in, orders to the flight, frames out
 //!     flight                  states, orders, ticks in; gated commands out
 //!       playback, stored      what is followed; the trajectories in flash
@@ -35,5 +36,7 @@ pub mod record;
 pub mod semihosting;
 #[cfg(target_os = "none")]
 pub mod stack;
+#[cfg(target_os = "none")]
+pub mod tick;
 #[cfg(target_os = "none")]
 pub mod transport;

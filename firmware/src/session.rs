@@ -1,14 +1,14 @@
 //! The link's side of the board: bytes in; orders to the flight, and frames, out. Runs whenever nothing else does.
 
 use heapless::Vec;
+use quatrack::Tick;
 use quatrack::link::{
     BlobError, BlobKind, BlobReceiver, Decoder, Encoder, FRAME_BYTES, FaultReport, FromBoard, Identity, LoopStatistics,
     Parameter, ParameterId, Received, Refusal, TRAJECTORY_BLOB_BYTES, TRAJECTORY_PIECES, Telemetry, ToBoard,
     TrajectoryCommand, TrajectoryId, Version,
 };
-use quatrack::{Player, Tick, Trajectory};
 
-use crate::flight::{Flight, TICK_RATE, TICK_RATE_HZ};
+use crate::flight::{Flight, TICK_RATE_HZ};
 use crate::stored;
 
 /// Identifies what computes commands: a checksum of its sources, by the build script.
@@ -248,20 +248,14 @@ fn disarmed(flight: &mut impl Shared) -> Result<(), Refusal> {
 }
 
 fn trajectory(command: TrajectoryCommand, flight: &mut impl Shared) -> Result<(), Refusal> {
-    // Checked here, where only the link waits for it.
-    let stored = |pieces| Trajectory::new(pieces).map(|t| Player::new(t, TICK_RATE)).map_err(|_| Refusal::NoTrajectory);
     let found = match command {
-        TrajectoryCommand::Start(TrajectoryId::Mild) => {
-            let player = stored(&stored::MILD)?;
-            flight.with(|flight| flight.playback.start(player));
-            true
-        }
-        TrajectoryCommand::Start(TrajectoryId::Aggressive) => {
-            let player = stored(&stored::AGGRESSIVE)?;
-            flight.with(|flight| flight.playback.start(player));
-            true
-        }
         TrajectoryCommand::Start(TrajectoryId::Uploaded) => flight.with(|flight| flight.playback.start_uploaded()),
+        TrajectoryCommand::Start(id) => {
+            // Checked here, where only the link waits for it.
+            let player = stored::player(id).ok_or(Refusal::NoTrajectory)?;
+            flight.with(|flight| flight.playback.start(player));
+            true
+        }
         TrajectoryCommand::Pause => flight.with(|flight| flight.playback.pause()),
         TrajectoryCommand::Resume => flight.with(|flight| flight.playback.resume()),
         TrajectoryCommand::Stop => {
