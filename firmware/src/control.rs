@@ -39,7 +39,10 @@ pub fn step(
     tracker: &Tracker<'_>,
 ) -> Result<Step, NoCommand> {
     let state = states.newest().ok_or(NoCommand::NoReference)?;
-    let sample = references.at(clock.now()).ok_or(NoCommand::NoReference)?;
-    let reference = Reference::from_flat(&sample).map_err(NoCommand::Reference)?;
-    tracker.step(state, &reference).map_err(NoCommand::Step)
+    // Looked at where they lie: to move a sample or a reference out costs as many instructions as a law's product.
+    let Some(sample) = &references.at(clock.now()) else { return Err(NoCommand::NoReference) };
+    match &Reference::from_flat(sample) {
+        Ok(reference) => tracker.step(state, reference).map_err(NoCommand::Step),
+        Err(error) => Err(NoCommand::Reference(*error)),
+    }
 }

@@ -100,10 +100,21 @@ impl ReferenceSource for Playback {
     #[inline]
     fn at(&mut self, now: Tick) -> Option<FlatSample> {
         let tick = self.trajectory_tick(now);
+        match &mut self.source {
+            Source::Flash(player) if self.moving => Some(player.at(tick)),
+            _ => self.otherwise(tick),
+        }
+    }
+}
+
+impl Playback {
+    /// The flat output of everything but a moving trajectory in flash.
+    #[cold]
+    fn otherwise(&mut self, tick: Tick) -> Option<FlatSample> {
         let sample = match &mut self.source {
-            Source::Flash(player) => player.at(tick),
             Source::Nothing => return None,
             Source::Link(sample) => return Some(*sample),
+            Source::Flash(player) => player.at(tick),
             // The pieces are checked anew at every step, some 10,000 instructions, because the store may change.
             Source::Uploaded => Player::new(self.store.active().trajectory()?, TICK_RATE).at(tick),
         };
