@@ -277,3 +277,148 @@ impl Default for Supervisor {
 fn within(age_ticks: Option<Tick>, max_ticks: Tick) -> bool {
     age_ticks.is_some_and(|age| age <= max_ticks)
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    const CONFIG: Config = Config { state_age_max_ticks: 10, link_silence_max_ticks: 20, overruns_tolerated: 0 };
+
+    /// Everything as it should be.
+    const SOUND: Conditions = Conditions {
+        link_silence_ticks: Some(20),
+        state_age_ticks: Some(10),
+        step: StepReport::Command,
+        overrun: false,
+        fault: None,
+    };
+
+    const STOPPED: Mode = Mode::Disarmed(Some(StopReason::Requested));
+    const FAULTED: Mode = Mode::Faulted(Fault::HardFault);
+    const MODES: [Mode; 5] = [Mode::Disarmed(None), STOPPED, Mode::Armed, Mode::Flying, FAULTED];
+
+    fn stop(reason: StopReason) -> Mode {
+        Mode::Disarmed(Some(reason))
+    }
+
+    /// The mode after one tick in `mode`.
+    fn after(mode: Mode, conditions: Conditions) -> Mode {
+        let mut supervisor = Supervisor { mode, overruns_in_a_row: 0 };
+        let verdict = supervisor.tick(&CONFIG, &conditions);
+        assert_eq!(verdict.mode, supervisor.mode());
+        let stopped = matches!(mode, Mode::Armed | Mode::Flying) && !matches!(verdict.mode, Mode::Armed | Mode::Flying);
+        assert_eq!(verdict.stopped, stopped, "{mode:?} to {:?}", verdict.mode);
+        verdict.mode
+    }
+
+    #[test]
+    fn every_transition_of_a_tick() {
+        use StepReport::{Failed, NoReference};
+        let with = |change: fn(&mut Conditions)| {
+            let mut conditions = SOUND;
+            change(&mut conditions);
+            conditions
+        };
+        // Conditions, then what armed and what flying become.
+        let rows = [
+            (SOUND, Mode::Flying, Mode::Flying),
+            (with(|c| c.state_age_ticks = Some(11)), Mode::Armed, stop(StopReason::StaleState)),
+            (with(|c| c.state_age_ticks = None), Mode::Armed, stop(StopReason::StaleState)),
+            (with(|c| c.step = NoReference), Mode::Armed, stop(StopReason::NoReference)),
+            (with(|c| c.step = Failed), stop(StopReason::StepFailed), stop(StopReason::StepFailed)),
+            (with(|c| c.link_silence_ticks = Some(21)), stop(StopReason::LinkLost), stop(StopReason::LinkLost)),
+            (with(|c| c.link_silence_ticks = None), stop(StopReason::LinkLost), stop(StopReason::LinkLost)),
+            (with(|c| c.overrun = true), stop(StopReason::Overrun), stop(StopReason::Overrun)),
+            (with(|c| c.fault = Some(Fault::HardFault)), FAULTED, FAULTED),
+        ];
+        for (conditions, from_armed, from_flying) in rows {
+            assert_eq!(after(Mode::Armed, conditions), from_armed, "armed, {conditions:?}");
+            assert_eq!(after(Mode::Flying, conditions), from_flying, "flying, {conditions:?}");
+            // Without a fault, nothing that a tick sees leaves a mode in which the motors are off.
+            for off in [Mode::Disarmed(None), STOPPED, Mode::Faulted(Fault::StackExhausted)] {
+                let expected = match (off, conditions.fault) {
+                    (Mode::Disarmed(_), Some(fault)) => Mode::Faulted(fault),
+                    _ => off,
+                };
+                assert_eq!(after(off, conditions), expected, "{off:?}, {conditions:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_of_several_reasons_is_named() {
+        let mut conditions = Conditions {
+            link_silence_ticks: None,
+            state_age_ticks: None,
+            step: StepReport::Failed,
+            overrun: true,
+            fault: Some(Fault::HardFault),
+        };
+        assert_eq!(after(Mode::Flying, conditions), FAULTED);
+        conditions.fault = None;
+        assert_eq!(after(Mode::Flying, conditions), stop(StopReason::Overrun));
+        conditions.overrun = false;
+        assert_eq!(after(Mode::Flying, conditions), stop(StopReason::LinkLost));
+        conditions.link_silence_ticks = Some(0);
+        assert_eq!(after(Mode::Flying, conditions), stop(StopReason::StepFailed));
+        conditions.step = StepReport::NoReference;
+        assert_eq!(after(Mode::Flying, conditions), stop(StopReason::StaleState));
+        conditions.state_age_ticks = Some(0);
+        assert_eq!(after(Mode::Flying, conditions), stop(StopReason::NoReference));
+    }
+
+    #[test]
+    fn every_transition_of_a_request() {
+        for mode in MODES {
+            let mut armed = Supervisor { mode, overruns_in_a_row: 7 };
+            let answer = armed.arm(&CONFIG, Some(20));
+            let (expected, mode_after) = match mode {
+                Mode::Disarmed(_) => (Ok(()), Mode::Armed),
+                Mode::Faulted(fault) => (Err(ArmError::Faulted(fault)), mode),
+                Mode::Armed | Mode::Flying => (Ok(()), mode),
+            };
+            assert_eq!((answer, armed.mode()), (expected, mode_after), "arm in {mode:?}");
+
+            let mut disarmed = Supervisor { mode, overruns_in_a_row: 0 };
+            disarmed.disarm();
+            let mode_after = if matches!(mode, Mode::Armed | Mode::Flying) { STOPPED } else { mode };
+            assert_eq!(disarmed.mode(), mode_after, "disarm in {mode:?}");
+        }
+    }
+
+    #[test]
+    fn a_silent_link_cannot_arm() {
+        for silence in [None, Some(21)] {
+            let mut supervisor = Supervisor::new();
+            assert_eq!(supervisor.arm(&CONFIG, silence), Err(ArmError::LinkSilent));
+            assert_eq!(supervisor.mode(), Mode::Disarmed(None));
+        }
+    }
+
+    #[test]
+    fn only_overruns_in_a_row_add_up_and_arming_forgets_them() {
+        let config = Config { overruns_tolerated: 2, ..CONFIG };
+        let mut supervisor = Supervisor::new();
+        let tick =
+            |supervisor: &mut Supervisor, overrun| supervisor.tick(&config, &Conditions { overrun, ..SOUND }).mode;
+        (0..5).for_each(|_| assert_eq!(tick(&mut supervisor, true), Mode::Disarmed(None)));
+        supervisor.arm(&config, Some(0)).unwrap();
+        for overrun in [true, true, false, true, true] {
+            assert_eq!(tick(&mut supervisor, overrun), Mode::Flying);
+        }
+        assert_eq!(tick(&mut supervisor, true), stop(StopReason::Overrun), "the third in a row");
+    }
+
+    #[test]
+    fn only_flying_lets_a_command_through() {
+        let command = Command { thrust_m_s2: 9.81, body_rates_rad_s: Vector3::new(1.0, 2.0, 3.0) };
+        for mode in MODES {
+            let passed = Verdict { mode, stopped: false }.gate(&command);
+            let expected = if mode == Mode::Flying { command } else { Command::ZERO };
+            assert_eq!(passed, expected, "{mode}");
+            assert_eq!(mode.motors_allowed(), matches!(mode, Mode::Armed | Mode::Flying));
+        }
+    }
+}

@@ -36,6 +36,13 @@ pub struct UploadBegin {
     pub checksum: u32,
 }
 
+impl UploadBegin {
+    /// Announces `blob`; nothing if it is longer than a `u32` counts.
+    pub fn of(kind: BlobKind, id: u32, blob: &[u8]) -> Option<Self> {
+        Some(Self { kind, id, length: u32::try_from(blob.len()).ok()?, checksum: crc32c(blob) })
+    }
+}
+
 /// Some bytes of the announced blob.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -48,6 +55,13 @@ pub struct Chunk {
     pub bytes: heapless::Vec<u8, CHUNK_BYTES>,
 }
 
+impl Chunk {
+    /// From its parts; nothing if there are more bytes than [`CHUNK_BYTES`].
+    pub fn new(id: u32, offset: u32, bytes: &[u8]) -> Option<Self> {
+        Some(Self { id, offset, bytes: heapless::Vec::from_slice(bytes).ok()? })
+    }
+}
+
 /// How far an upload is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -58,6 +72,15 @@ pub struct Progress {
     pub wanted_offset: u32,
     /// Bytes in all.
     pub length: u32,
+}
+
+impl Progress {
+    /// The chunk that the receiver wants next, for the sender of `blob`; nothing when all is there.
+    pub fn next_chunk(&self, blob: &[u8]) -> Option<Chunk> {
+        let rest = blob.get(self.wanted_offset as usize..)?;
+        let bytes = rest.chunks(CHUNK_BYTES).next()?;
+        Chunk::new(self.id, self.wanted_offset, bytes)
+    }
 }
 
 /// Why a part of an upload is refused. What has been received so far stays.
@@ -124,17 +147,19 @@ impl fmt::Display for UploadError {
 
 impl core::error::Error for UploadError {}
 
-/// Collects one blob of at most `N` bytes.
+/// Collects one blob of at most `N` bytes. A new one is all zeros, so that a static costs no flash.
 #[derive(Clone, Debug)]
 pub struct BlobReceiver<const N: usize> {
-    announced: Option<UploadBegin>,
+    /// Of length 0 as long as nothing has been announced.
+    announced: UploadBegin,
     bytes: heapless::Vec<u8, N>,
 }
 
 impl<const N: usize> BlobReceiver<N> {
     /// Nothing announced.
     pub const fn new() -> Self {
-        Self { announced: None, bytes: heapless::Vec::new() }
+        let announced = UploadBegin { kind: BlobKind::Trajectory, id: 0, length: 0, checksum: 0 };
+        Self { announced, bytes: heapless::Vec::new() }
     }
 
     /// Takes an announcement. The one in force again changes nothing; another one drops what has been received.
@@ -146,8 +171,8 @@ impl<const N: usize> BlobReceiver<N> {
         if begin.length == 0 || begin.length > capacity {
             return Err(UploadError::Length { length: begin.length, capacity });
         }
-        if self.announced != Some(*begin) {
-            self.announced = Some(*begin);
+        if self.announced != *begin {
+            self.announced = *begin;
             self.bytes.clear();
         }
         Ok(self.progress_of(begin))
@@ -164,7 +189,7 @@ impl<const N: usize> BlobReceiver<N> {
             return Err(UploadError::Offset { wanted });
         }
         let left = announced.length.saturating_sub(wanted) as usize;
-        let fits = !chunk.bytes.is_empty() && chunk.bytes.len() <= left;
+        let fits = (1..=left).contains(&chunk.bytes.len());
         if !fits || self.bytes.extend_from_slice(&chunk.bytes).is_err() {
             return Err(UploadError::ChunkLength { wanted, length: announced.length });
         }
@@ -176,7 +201,7 @@ impl<const N: usize> BlobReceiver<N> {
     /// # Errors
     /// [`UploadError::NotBegun`].
     pub fn progress(&self) -> Result<Progress, UploadError> {
-        self.announced.map(|begin| self.progress_of(&begin)).ok_or(UploadError::NotBegun)
+        self.announced().map(|begin| self.progress_of(&begin))
     }
 
     /// The whole blob, checked, with its announcement. It stays until another one is announced.
@@ -197,8 +222,12 @@ impl<const N: usize> BlobReceiver<N> {
         Ok((announced, &self.bytes))
     }
 
+    fn announced(&self) -> Result<UploadBegin, UploadError> {
+        if self.announced.length > 0 { Ok(self.announced) } else { Err(UploadError::NotBegun) }
+    }
+
     fn announced_as(&self, id: u32) -> Result<UploadBegin, UploadError> {
-        let announced = self.announced.ok_or(UploadError::NotBegun)?;
+        let announced = self.announced()?;
         if announced.id == id { Ok(announced) } else { Err(UploadError::OtherBlob { announced: announced.id }) }
     }
 
@@ -214,5 +243,100 @@ impl<const N: usize> BlobReceiver<N> {
 impl<const N: usize> Default for BlobReceiver<N> {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BLOB: [u8; 200] = {
+        let mut blob = [0; 200];
+        let mut i = 0;
+        while i < blob.len() {
+            blob[i] = (i * 7) as u8;
+            i += 1;
+        }
+        blob
+    };
+
+    fn announcement(id: u32) -> UploadBegin {
+        UploadBegin::of(BlobKind::Trajectory, id, &BLOB).unwrap()
+    }
+
+    fn receiver_with(bytes: usize) -> BlobReceiver<256> {
+        let mut receiver = BlobReceiver::new();
+        let mut progress = receiver.begin(&announcement(1)).unwrap();
+        while (progress.wanted_offset as usize) < bytes {
+            progress = receiver.chunk(&progress.next_chunk(&BLOB[..bytes]).unwrap()).unwrap();
+        }
+        receiver
+    }
+
+    #[test]
+    fn a_whole_blob_comes_out_as_often_as_it_is_asked_for() {
+        let mut receiver = receiver_with(BLOB.len());
+        assert_eq!(receiver.progress().unwrap().next_chunk(&BLOB), None, "all is there");
+        for _ in 0..2 {
+            assert_eq!(receiver.finish(1), Ok((announcement(1), &BLOB[..])));
+        }
+    }
+
+    #[test]
+    fn the_same_announcement_resumes_and_another_starts_over() {
+        let mut receiver = receiver_with(96);
+        assert_eq!(receiver.begin(&announcement(1)).map(|p| p.wanted_offset), Ok(96));
+        assert_eq!(receiver.progress(), Ok(Progress { id: 1, wanted_offset: 96, length: 200 }));
+        assert_eq!(receiver.begin(&announcement(2)).map(|p| p.wanted_offset), Ok(0));
+    }
+
+    #[test]
+    fn chunks_out_of_place_are_refused_with_the_wanted_offset() {
+        let mut receiver = receiver_with(96);
+        let cases = [
+            (1, 0, 96, UploadError::Offset { wanted: 96 }, "the one before again"),
+            (1, 95, 1, UploadError::Offset { wanted: 96 }, "overlapping"),
+            (1, 97, 1, UploadError::Offset { wanted: 96 }, "one byte skipped"),
+            (2, 96, 1, UploadError::OtherBlob { announced: 1 }, "of another blob"),
+            (1, 96, 0, UploadError::ChunkLength { wanted: 96, length: 200 }, "empty"),
+        ];
+        for (id, offset, bytes, error, what) in cases {
+            let chunk = Chunk::new(id, offset, &BLOB[..bytes]).unwrap();
+            assert_eq!(receiver.chunk(&chunk), Err(error), "{what}");
+        }
+        let mut nearly = receiver_with(192);
+        let beyond = Chunk::new(1, 192, &[0; 9]).unwrap();
+        assert_eq!(nearly.chunk(&beyond), Err(UploadError::ChunkLength { wanted: 192, length: 200 }), "beyond the end");
+        assert_eq!(nearly.progress().map(|p| p.wanted_offset), Ok(192), "nothing of it is kept");
+    }
+
+    #[test]
+    fn nothing_is_taken_before_an_announcement_that_fits() {
+        let mut receiver = BlobReceiver::<199>::new();
+        let chunk = Chunk::new(0, 0, &BLOB[..1]).unwrap();
+        assert_eq!(receiver.chunk(&chunk), Err(UploadError::NotBegun));
+        assert_eq!(receiver.progress(), Err(UploadError::NotBegun));
+        assert_eq!(receiver.finish(0), Err(UploadError::NotBegun));
+        assert_eq!(receiver.begin(&announcement(1)), Err(UploadError::Length { length: 200, capacity: 199 }));
+        let empty = UploadBegin::of(BlobKind::Trajectory, 1, &[]).unwrap();
+        assert_eq!(receiver.begin(&empty), Err(UploadError::Length { length: 0, capacity: 199 }));
+        assert_eq!(receiver.progress(), Err(UploadError::NotBegun), "refused announcements announce nothing");
+    }
+
+    #[test]
+    fn an_incomplete_or_altered_blob_does_not_come_out() {
+        assert_eq!(receiver_with(96).finish(1), Err(UploadError::Incomplete { wanted: 96 }));
+        let mut receiver = receiver_with(96);
+        for offset in [96, 192] {
+            let chunk = Chunk::new(1, offset, &[0; 96][..usize::min(96, 200 - offset as usize)]).unwrap();
+            receiver.chunk(&chunk).unwrap();
+        }
+        let announced = announcement(1).checksum;
+        let refused = receiver.finish(1);
+        assert!(
+            matches!(refused, Err(UploadError::Checksum { announced: a, found }) if a == announced && found != a),
+            "{refused:?}"
+        );
+        assert_eq!(receiver.progress().map(|p| p.wanted_offset), Ok(0), "to be sent again from the start");
     }
 }
