@@ -2,6 +2,7 @@
 //! is counted.
 
 mod messages;
+mod schema;
 
 use std::collections::BTreeSet;
 
