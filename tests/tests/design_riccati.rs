@@ -149,6 +149,22 @@ fn an_input_weight_that_is_nearly_singular_costs_no_digits() {
 }
 
 #[test]
+fn a_mode_twelve_orders_slower_than_the_rest_is_stabilised() {
+    // Q and B B' of rank 1 see one mode only; the other one lives on A = 2^-40 [1 2; 3 -1] alone, below the rounding of
+    // the Hamiltonian's square. Reference: sign function of the Hamiltonian in 120 digits (mpmath 1.4.1).
+    let a = matrix(2, 2, &[1.0, 2.0, 3.0, -1.0]) * f64::from(-40).exp2();
+    let q = matrix(2, 2, &[9.0, 3.0, 3.0, 1.0]);
+    let solution = lqr(&a, &matrix(2, 1, &[1.0, 2.0]), &q, &identity(1)).expect("controllable, observable");
+    let want = [1.800_000_000_000_335_6, 0.600_000_000_000_377_9, 0.200_000_000_000_265_8];
+    for (i, j, want) in [(0, 0, want[0]), (0, 1, want[1]), (1, 1, want[2])] {
+        assert!((solution.p[(i, j)] - want).abs() <= 2.0 * f64::EPSILON * want, "{i}{j}: {}", solution.p[(i, j)]);
+    }
+    // Poles of the rounded closed loop: the slow one to eps of the fast one.
+    assert!((solution.poles[0].re + 5.0).abs() < 1e-14);
+    assert!((solution.poles[1].re + 2.910_383_045_673_37e-12).abs() < 1e-15);
+}
+
+#[test]
 fn poles_on_the_axis_are_refused_and_accepted_as_a_strong_solution() {
     // CAREX 2.5 (Laub 1992) at eps = 0: P = [2 1; 1 1] leaves the poles +-i.
     let (a, b) = (matrix(2, 2, &[3.0, 1.0, 4.0, 2.0]), matrix(2, 1, &[1.0, 1.0]));

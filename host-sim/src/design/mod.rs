@@ -10,6 +10,7 @@
 mod double_double;
 mod equation;
 mod error;
+mod existence;
 mod hamiltonian;
 mod lyapunov;
 mod newton;
