@@ -9,7 +9,10 @@ use num_complex::Complex64;
 use super::DesignError;
 use super::equation::Equation;
 use super::newton::Refined;
-use crate::analysis::{balance, eigenvalues, staircase};
+use crate::analysis::{balance, eigenvalues, pbh_test, staircase};
+
+/// States up to which a singular value decomposition per unstable eigenvalue costs little.
+const MAX_PBH_STATES: usize = 40;
 
 /// Refuses a Q with a negative eigenvalue, after its diagonal has been brought to about 1.
 pub(super) fn require_positive_semidefinite(q: &DMatrix<f64>) -> Result<(), DesignError> {
@@ -27,15 +30,31 @@ pub(super) fn require_positive_semidefinite(q: &DMatrix<f64>) -> Result<(), Desi
 }
 
 /// Refuses a pair whose input does not reach an unstable or marginal mode.
+///
+/// By the staircase, and for up to [`MAX_PBH_STATES`] states by the PBH test at each unstable eigenvalue too: where a
+/// step of the staircase hangs on a weak coupling, the rounding behind it can hide an unreached simple mode.
 pub(super) fn require_stabilisable(equation: &Equation) -> Result<(), DesignError> {
     let stairs = staircase(&equation.a, &equation.factor.hi)?;
-    if stairs.uncontrollable == 0 {
+    let n = equation.a.nrows();
+    let norm = equation.a.norm();
+    if stairs.uncontrollable > 0 {
+        let unreached = stairs.uncontrollable_a();
+        let tolerance = unreached.nrows() as f64 * f64::EPSILON * norm;
+        for eigenvalue in eigenvalues(&unreached)?.into_iter().rev() {
+            if eigenvalue.re >= -tolerance || on_axis(&unreached, eigenvalue, tolerance) {
+                return Err(DesignError::NotStabilisable { eigenvalue: snapped(eigenvalue, tolerance) });
+            }
+        }
+    }
+    if n > MAX_PBH_STATES {
         return Ok(());
     }
-    let unreached = stairs.uncontrollable_a();
-    let tolerance = unreached.nrows() as f64 * f64::EPSILON * equation.a.norm();
-    for eigenvalue in eigenvalues(&unreached)?.into_iter().rev() {
-        if eigenvalue.re >= -tolerance || on_axis(&unreached, eigenvalue, tolerance) {
+    let tolerance = n as f64 * f64::EPSILON * norm;
+    // The size of B says nothing about what it reaches.
+    let size = if norm > 0.0 { norm } else { 1.0 };
+    let input = &equation.factor.hi * (size / equation.factor.hi.norm().max(f64::MIN_POSITIVE));
+    for eigenvalue in eigenvalues(&equation.a)?.into_iter().filter(|value| value.re >= -tolerance) {
+        if !pbh_test(&equation.a, &input, eigenvalue)?.controllable {
             return Err(DesignError::NotStabilisable { eigenvalue: snapped(eigenvalue, tolerance) });
         }
     }
