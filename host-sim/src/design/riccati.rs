@@ -5,7 +5,7 @@
 //!
 //! **Method.** (1) R is factorised in 32 digits and only `F = B R^-1/2` is kept, so that an R that is nearly singular
 //! costs no digits. (2) The Hamiltonian matrix is balanced by powers of two. (3) The staircase forms of (A, F) and
-//! (A', Q) decide whether an unstable mode is out of reach, or a mode on the imaginary axis out of sight. (4) The
+//! (A', Q), with PBH tests beside the former, decide whether an unstable mode is out of reach, or a mode on the imaginary axis out of sight. (4) The
 //! matrix sign function of the Hamiltonian gives a first P; where that fails, its ordered Schur form, or for up to 40
 //! states the sign function in 32 digits. (5)
 //! Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below what an f64 can hold.
