@@ -3,13 +3,15 @@
 //! In flow A (n x n), B (n x m), Q (n x n), R (m x m); out flow P, `K = R^-1 B' P`, the poles of `A - B K` and what is
 //! known about their accuracy.
 //!
-//! **Method.** (1) R is factorised in 32 digits and only `F = B R^-1/2` is kept, so that an R that is nearly singular
-//! costs no digits. (2) The Hamiltonian matrix is balanced by powers of two. (3) The staircase forms of (A, F) and
-//! (A', Q), with PBH tests beside the former, decide whether an unstable mode is out of reach, or a mode on the imaginary axis out of sight. (4) The
-//! matrix sign function of the Hamiltonian gives a first P; where that fails, its ordered Schur form, or for up to 40
-//! states the sign function in 32 digits. (5)
-//! Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below what an f64 can hold.
-//! (6) The result counts only if the corrections have vanished and every pole of the closed loop is stable.
+//! **Method.**
+//! 1. R is factorised in 32 digits and only `F = B R^-1/2` is kept, so that an R that is nearly singular costs none.
+//! 2. The Hamiltonian matrix is balanced by powers of two.
+//! 3. The staircase forms of (A, F), with PBH tests beside them, and of (A', Q) decide whether an unstable mode is out
+//!    of reach, or a mode on the imaginary axis out of sight.
+//! 4. The matrix sign function of the Hamiltonian gives a first P; where that fails, its ordered Schur form does, or for
+//!    up to 40 states the sign function in 32 digits.
+//! 5. Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below what an f64 can hold.
+//! 6. The result counts only if the corrections have vanished and every pole of the closed loop is stable.
 //!
 //! **Conditions.** A stabilising solution exists and is unique if (A, B) is stabilisable and the Hamiltonian has no
 //! eigenvalue on the imaginary axis; for Q >= 0 the latter says that Q sees every mode of A there. [`lqr`] demands
