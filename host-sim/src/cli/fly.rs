@@ -7,7 +7,8 @@ use std::str::FromStr;
 use clap::ValueEnum;
 use quatrack::nalgebra::Vector3;
 use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Rate};
-use quatrack_sim::design::synthesis;
+use quatrack_sim::design::codegen::rounded;
+use quatrack_sim::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
 use quatrack_sim::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
 use quatrack_sim::flight::core_loop::{self, CoreLoop};
 use quatrack_sim::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
@@ -188,7 +189,6 @@ fn default_rate() -> Result<Rate, Failure> {
 }
 
 fn design(args: &Args) -> Result<Gain, Failure> {
-    const PAPER_MU: f64 = 2.0;
     let mu = args.mu.unwrap_or(PAPER_MU);
     if matches!(args.controller, Controller::LqrE | Controller::LqrF) && args.mu.is_some() {
         return Err(Failure::input("--mu belongs to the Lyapunov designs; leave it out or choose lyap-e or lyap-f"));
@@ -196,8 +196,10 @@ fn design(args: &Args) -> Result<Gain, Failure> {
     let gain = match args.controller {
         Controller::LyapF => synthesis::lyapunov_flat(mu).map(|design| Gain::FlatOutput(design.gain)),
         Controller::LyapE => synthesis::lyapunov_equilibrium(mu).map(|design| Gain::Equilibrium(design.gain)),
-        Controller::LqrF => synthesis::lqr_flat().map(|design| Gain::FlatOutput(design.gain)),
-        Controller::LqrE => synthesis::lqr_equilibrium().map(|design| Gain::Equilibrium(design.gain)),
+        Controller::LqrF => synthesis::lqr_flat(&FlatWeights::paper()).map(|design| Gain::FlatOutput(design.gain)),
+        Controller::LqrE => {
+            synthesis::lqr_equilibrium(&EquilibriumWeights::paper()).map(|design| Gain::Equilibrium(design.gain))
+        }
     };
     gain.map_err(|error| Failure::input(format!("--mu {mu}: {error}")))
 }
@@ -240,11 +242,11 @@ fn fly_core(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial, rate: Ra
     let (equilibrium_gain, flat_gain);
     let law: AnyLaw<'_> = match gain {
         Gain::Equilibrium(gain) => {
-            equilibrium_gain = core_loop::to_core_gain(gain).map_err(Failure::input)?;
+            equilibrium_gain = quatrack::law::EquilibriumGain::new(rounded(gain)).map_err(Failure::input)?;
             Equilibrium { gain: &equilibrium_gain, error_form, feed_forward }.into()
         }
         Gain::FlatOutput(gain) => {
-            flat_gain = core_loop::to_core_gain(gain).map_err(Failure::input)?;
+            flat_gain = quatrack::law::FlatOutputGain::new(rounded(gain)).map_err(Failure::input)?;
             FlatOutput { gain: &flat_gain, feed_forward }.into()
         }
     };

@@ -1,5 +1,6 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
+mod analyze;
 mod fly;
 mod output;
 mod plan;
@@ -38,6 +39,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Analyze(analyze::Args),
     Fly(fly::Args),
     Plan(plan::Args),
     Reproduce(reproduce::Args),
@@ -50,6 +52,7 @@ pub(crate) fn main() -> ExitCode {
         Err(error) => return output::argument_error(&error),
     };
     let outcome: Result<(), Failure> = match &arguments.command {
+        Command::Analyze(args) => analyze::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Reproduce(args) => reproduce::run(args),

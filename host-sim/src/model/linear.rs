@@ -62,7 +62,7 @@ mod tests {
         printed_a[(9, 3)] = 2.0 * GRAVITY_M_S2;
         let mut printed_b = SMatrix::<f64, 10, 4>::zeros();
         printed_b[(9, 0)] = 1.0;
-        printed_b.fixed_view_mut::<3, 3>(4, 1).fill_with_diagonal(0.5);
+        printed_b.fixed_view_mut::<3, 3>(4, 1).fill_diagonal(0.5);
         // Small integers times g: the complex step is exact to the last bit of the division by the step.
         assert!((a - printed_a).amax() <= 1e-14);
         assert!((b - printed_b).amax() <= 1e-14);

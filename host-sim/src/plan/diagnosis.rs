@@ -7,6 +7,8 @@
 
 use std::fmt;
 
+use nalgebra::Vector3;
+
 use super::program::Program;
 use super::socp::{self, Accuracy, Outcome};
 use super::{Corridor, Plan};
@@ -66,7 +68,9 @@ impl fmt::Display for Infeasibility {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("no curve meets the plan: ")?;
         if self.ways_out.is_empty() {
-            return f.write_str("its bounds contradict each other; relax several, or allow a longer duration_s");
+            return f.write_str(
+                "no values of its bounds were found with which one does; allow a longer duration_s, or move waypoints",
+            );
         }
         let way = |remedies: &Vec<Remedy>| remedies.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and ");
         write!(f, "{}; the rest kept", self.ways_out.iter().map(way).collect::<Vec<_>>().join(", or "))
@@ -174,6 +178,12 @@ impl Plan {
         bounded.chain(corridors).chain(waypoints).collect()
     }
 
+    /// Whether a curve keeps to every limit, by its control points and at the waypoints.
+    pub(super) fn kept_by(&self, curve: &BSpline) -> bool {
+        let kept = |limit| self.needed(limit, curve).is_some_and(|needed| self.remedy(limit, needed).is_none());
+        self.limits().into_iter().all(kept)
+    }
+
     /// A limit and what is needed of it, with room; `None` if it is not too tight at all.
     fn remedy(&self, limit: Limit, needed: f64) -> Option<Remedy> {
         let given = self.given(limit);
@@ -218,10 +228,10 @@ impl Plan {
 
     /// The value of a limit that a curve needs so that the bound can be proved by control points; `None` if none can be.
     pub(super) fn needed(&self, limit: Limit, curve: &BSpline) -> Option<f64> {
-        let gravity = nalgebra::Vector3::new(0.0, 0.0, GRAVITY_M_S2);
+        let gravity = Vector3::new(0.0, 0.0, GRAVITY_M_S2);
         let thrusts = || curve.derivative_control_points(2).into_iter().map(|acceleration| acceleration + gravity);
         match limit {
-            Limit::Speed => Some(largest(curve.derivative_control_points(1).iter().map(|v| v.norm()))),
+            Limit::Speed => Some(largest(curve.derivative_control_points(1).iter().map(Vector3::norm))),
             Limit::Tilt => {
                 let tilt_rad = largest(thrusts().map(|thrust| thrust.xy().norm().atan2(thrust.z)));
                 (tilt_rad < std::f64::consts::FRAC_PI_2).then_some(tilt_rad)
@@ -233,7 +243,7 @@ impl Plan {
                 let jerks = curve.derivative_control_points(3);
                 let rate = |span: usize| {
                     let lift = -largest(lifts[span..span + self.degree() - 1].iter().map(|lift| -lift));
-                    let jerk = largest(jerks[span..span + self.degree() - 2].iter().map(|jerk| jerk.norm()));
+                    let jerk = largest(jerks[span..span + self.degree() - 2].iter().map(Vector3::norm));
                     (lift > 0.0).then_some(jerk / lift)
                 };
                 let rates: Option<Vec<f64>> = (0..self.spans()).map(rate).collect();

@@ -1,6 +1,6 @@
 //! Planning: waypoints and bounds in, a B-spline that holds them for all t out.
 //!
-//! The method of the paper's reference [10], "virtual control points". The flat output `sigma(t) = (x, y, z)` is a
+//! The method of the paper's reference \[10\], "virtual control points". The flat output `sigma(t) = (x, y, z)` is a
 //! clamped uniform B-spline with control points `P_j`; its `k`-th derivative is a B-spline too, of degree `degree - k`,
 //! whose control points `Pk_j` are scaled differences of those of derivative `k - 1`, and so linear in `P`. In each span a
 //! B-spline is a mean of `degree - k + 1` consecutive control points with weights that are never negative: whatever
@@ -19,7 +19,7 @@
 //!
 //! `|n_dot|` is the part of the body rate across the thrust axis, `sqrt(p^2 + q^2)`; with the paper's `q3 = 0` the part
 //! along it is at most `tan(tilt / 2)` of that. Rest at both ends means that the first four control points are equal,
-//! and so are the last four. The objective is that of [10] with the flights of the paper: the snap at samples, less a
+//! and so are the last four. The objective is that of \[10\] with the flights of the paper: the snap at samples, less a
 //! reward for slack in the body rate's bound, `sum_k |sigma''''(k T)|^2 - reward sum_l zeta_l`, in SI units.
 
 mod diagnosis;
@@ -104,8 +104,8 @@ impl Plan {
         file::read(text)
     }
 
-    /// Finds the curve. Equalities hold to rounding, bounds on control points to 1e-7 of their size (1e-6 at the edge of
-    /// what they allow).
+    /// Finds the curve. Start and end are as given; bounds and waypoints are kept within 1e-6 of their size and 1e-6 in SI
+    /// units, the solver's accuracy; mostly it is 1e-9.
     ///
     /// # Errors
     /// [`PlanError::Infeasible`] with the bounds that are too tight, or [`PlanError::NotConverged`].
@@ -116,7 +116,15 @@ impl Plan {
             outcome => outcome,
         };
         match outcome {
-            socp::Outcome::Solved(values) => self.curve(&values),
+            socp::Outcome::Solved(values) => {
+                let curve = self.curve(&values)?;
+                // The solver's residuals are relative to the whole program; this looks at each bound.
+                if self.kept_by(&curve) {
+                    Ok(curve)
+                } else {
+                    Err(PlanError::NotConverged("bounds not kept".to_owned()))
+                }
+            }
             socp::Outcome::Infeasible => Err(PlanError::Infeasible(diagnosis::diagnose(self))),
             socp::Outcome::Failed(reason) => Err(PlanError::NotConverged(reason)),
         }

@@ -7,7 +7,7 @@ pub const MILD_TOML: &str = include_str!("../../../plans/mild.toml");
 /// Text of `plans/aggressive.toml`.
 pub const AGGRESSIVE_TOML: &str = include_str!("../../../plans/aggressive.toml");
 
-/// The mild flight, 30 s: Example 1 of the paper's reference [10].
+/// The mild flight, 30 s: Example 1 of the paper's reference \[10\].
 ///
 /// # Errors
 /// None with the file as it stands; [`PlanError`] if it was edited out of range.

@@ -7,8 +7,9 @@ use std::thread;
 
 use serde::Serialize;
 
-use super::table::{CORE_RATES_HZ, CRASH_MU, Controller, Course, Gains, Outcome, PAPER_MU, fly_cell, fly_crash};
-use crate::design::synthesis::SynthesisError;
+use super::table::{CORE_RATES_HZ, CRASH_MU, Controller, Course, Gains, Outcome, fly_cell, fly_crash};
+use crate::design::DesignError;
+use crate::design::synthesis::PAPER_MU;
 use crate::flight::metrics::Metrics;
 use crate::trajectory::Trajectory;
 use crate::trajectory::polynomial::PiecewisePolynomial;
@@ -31,8 +32,8 @@ impl Reproduction {
     /// Flies everything, the two courses side by side.
     ///
     /// # Errors
-    /// [`SynthesisError`] where a gain cannot be designed.
-    pub fn fly(mild: &PiecewisePolynomial, aggressive: &PiecewisePolynomial) -> Result<Self, SynthesisError> {
+    /// [`DesignError`] where a gain cannot be designed.
+    pub fn fly(mild: &PiecewisePolynomial, aggressive: &PiecewisePolynomial) -> Result<Self, DesignError> {
         let gains = Gains::design(PAPER_MU)?;
         let fly_course = |course: Course, trajectory: &PiecewisePolynomial| {
             Controller::ALL.map(|controller| (controller, fly_cell(course, trajectory, controller, &gains)))
@@ -87,14 +88,14 @@ impl Reproduction {
     }
 }
 
-/// An IAE to five digits; below what an integrator can tell from zero it says so.
+/// An IAE to four digits; below what an integrator can tell from zero it says so.
 fn digits(iae: Option<f64>) -> String {
     const RESOLUTION: f64 = 1e-6;
     match iae {
         None => "lost".to_owned(),
         Some(iae) if iae < RESOLUTION => format!("< {RESOLUTION:.0e}"),
         Some(iae) => {
-            let decimals = (4 - iae.log10().floor() as i32).clamp(0, 9) as usize;
+            let decimals = (3 - iae.log10().floor() as i32).clamp(0, 9) as usize;
             if iae < 1e-3 { format!("{iae:.1e}") } else { format!("{iae:.decimals$}") }
         }
     }

@@ -9,7 +9,10 @@ use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, 
 use serde::Serialize;
 
 use super::published;
-use crate::design::synthesis::{self, SynthesisError};
+use crate::design::DesignError;
+use crate::design::synthesis::{
+    EquilibriumWeights, FlatWeights, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat,
+};
 use crate::flight::closed_loop::{Flight, SAMPLE_PERIOD_S, Solver, fly_continuous, fly_sampled};
 use crate::flight::core_loop::{self, CoreLoop};
 use crate::flight::integrator::DormandPrince;
@@ -22,14 +25,11 @@ use crate::trajectory::polynomial::PiecewisePolynomial;
 /// Rates at which the core is flown, Hz.
 pub const CORE_RATES_HZ: [u32; 3] = [100, 500, 1000];
 
-/// Decay rate of the paper's Lyapunov design, 1/s.
-pub const PAPER_MU: f64 = 2.0;
-
 /// Decay rate of the case that crashes in the paper's text, 1/s.
 pub const CRASH_MU: f64 = 1.0;
 
 /// The integrator of the flights with feed-forward, whose errors are as small as an integrator's own.
-const TRUTH: Solver = Solver::Adaptive(DormandPrince { tolerance: 1e-11, step_min_s: 1e-7 });
+const TRUTH: Solver = Solver::Adaptive(DormandPrince { tolerance: 1e-13, step_min_s: 1e-7 });
 
 /// The paper's controllers, in the order of its Table I.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -104,14 +104,22 @@ impl Gains {
     /// The paper's designs, with the decay rate `mu` of the Lyapunov ones.
     ///
     /// # Errors
-    /// [`SynthesisError`] where the design has no solution: `mu` not positive.
-    pub fn design(mu: f64) -> Result<Self, SynthesisError> {
+    /// [`DesignError`] where the design has no solution: `mu` not positive.
+    pub fn design(mu: f64) -> Result<Self, DesignError> {
         Ok(Self {
-            lyap_f: synthesis::lyapunov_flat(mu)?.gain,
-            lyap_e: synthesis::lyapunov_equilibrium(mu)?.gain,
-            lqr_f: synthesis::lqr_flat()?.gain,
-            lqr_e: synthesis::lqr_equilibrium()?.gain,
+            lyap_f: lyapunov_flat(mu)?.gain,
+            lyap_e: lyapunov_equilibrium(mu)?.gain,
+            lqr_f: lqr_flat(&FlatWeights::paper())?.gain,
+            lqr_e: lqr_equilibrium(&EquilibriumWeights::paper())?.gain,
         })
+    }
+
+    /// The gain of an equilibrium controller; nothing for the others.
+    pub fn equilibrium(&self, controller: Controller) -> Option<EquilibriumGain> {
+        match self.of(controller) {
+            AnyGain::Equilibrium(gain) => Some(gain),
+            AnyGain::FlatOutput(_) => None,
+        }
     }
 
     fn of(&self, controller: Controller) -> AnyGain {
@@ -193,7 +201,7 @@ pub fn fly_cell(course: Course, trajectory: &PiecewisePolynomial, controller: Co
 }
 
 /// The published flight of a Lyapunov controller at the decay rate that crashes in the paper's text.
-pub fn fly_crash(trajectory: &PiecewisePolynomial, controller: Controller) -> Result<Flight, SynthesisError> {
+pub fn fly_crash(trajectory: &PiecewisePolynomial, controller: Controller) -> Result<Flight, DesignError> {
     Ok(fly_published(trajectory, &Gains::design(CRASH_MU)?.of(controller)))
 }
 

@@ -1,7 +1,7 @@
 //! Clamped uniform B-splines: control points in, position and any derivative at a time out.
 //!
 //! The control points of a derivative are scaled differences of the curve's own ("virtual control points", reference
-//! [10] of the paper); since a B-spline lies in the convex hull of its control points, a bound on them holds for all t.
+//! \[10\] of the paper); since a B-spline lies in the convex hull of its control points, a bound on them holds for all t.
 
 use nalgebra::Vector3;
 

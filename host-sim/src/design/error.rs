@@ -1,0 +1,139 @@
+//! Why a design is refused or fails, in one line each: which matrix, which value, what to do.
+
+use num_complex::Complex64;
+use thiserror::Error;
+
+use crate::analysis::MatrixError;
+
+/// A design problem without an answer, or one whose answer was not found to working precision.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum DesignError {
+    /// A matrix that cannot be worked with.
+    #[error(transparent)]
+    Matrix(#[from] MatrixError),
+    /// A weight is not symmetric.
+    #[error(
+        "{name}[{row},{column}] is {value} but {name}[{column},{row}] is {mirrored}; {name} must be symmetric: \
+         use ({name} + {name}')/2"
+    )]
+    NotSymmetric {
+        /// Name of the matrix.
+        name: &'static str,
+        /// Row of the entry, from 0.
+        row: usize,
+        /// Column of the entry, from 0.
+        column: usize,
+        /// The entry.
+        value: f64,
+        /// The entry across the diagonal.
+        mirrored: f64,
+    },
+    /// The weight of the state has a negative eigenvalue.
+    #[error("Q has the eigenvalue {eigenvalue:.3e}; the weight of the state must be positive semidefinite")]
+    NotPositiveSemidefinite {
+        /// Its smallest eigenvalue.
+        eigenvalue: f64,
+    },
+    /// The weight of the input is singular or has a negative eigenvalue.
+    #[error(
+        "R is not positive definite: pivot {row} of its Cholesky factorisation is {pivot:.3e} of R[{row},{row}]; \
+         give every input a positive weight"
+    )]
+    NotPositiveDefinite {
+        /// Row of the pivot, from 0.
+        row: usize,
+        /// The pivot as a share of the diagonal entry.
+        pivot: f64,
+    },
+    /// The input does not reach an unstable mode.
+    #[error(
+        "(A, B) is not stabilisable: the input does not reach the mode with eigenvalue {}; \
+         remove that mode or add an actuator for it", complex(.eigenvalue)
+    )]
+    NotStabilisable {
+        /// The eigenvalue that no feedback moves, 1/s.
+        eigenvalue: Complex64,
+    },
+    /// The input does not reach some mode, stable or not.
+    #[error(
+        "(A, B) is not controllable: the input does not reach the mode with eigenvalue {}; \
+         remove that mode or add an actuator for it", complex(.eigenvalue)
+    )]
+    NotControllable {
+        /// The eigenvalue that no feedback moves, 1/s.
+        eigenvalue: Complex64,
+    },
+    /// The weight does not see a mode on the imaginary axis.
+    #[error(
+        "(Q, A) is not detectable: Q does not see the mode with eigenvalue {} on the imaginary axis, so no optimal \
+         feedback moves it; give its states a weight", complex(.eigenvalue)
+    )]
+    NotDetectable {
+        /// The eigenvalue that the optimal feedback would leave where it is, 1/s.
+        eigenvalue: Complex64,
+    },
+    /// The Hamiltonian matrix has an eigenvalue on the imaginary axis.
+    #[error(
+        "the Hamiltonian matrix has the eigenvalue {} on the imaginary axis to working precision, so no stabilising \
+         solution can be told from its neighbours; change Q or scale the weights", complex(.eigenvalue)
+    )]
+    HamiltonianOnAxis {
+        /// The eigenvalue, 1/s.
+        eigenvalue: Complex64,
+    },
+    /// The required decay rate is no positive number.
+    #[error("mu is {mu}; the decay rate must be a positive number")]
+    DecayRate {
+        /// The given rate, 1/s.
+        mu: f64,
+    },
+    /// The plant already decays faster than asked for, so that (15) has no positive definite solution.
+    #[error(
+        "mu is {mu}, but A has the eigenvalue {}, which already decays faster; (15) has a positive definite solution \
+         only for mu above {}", complex(.eigenvalue), -.eigenvalue.re
+    )]
+    AlreadyFaster {
+        /// The given rate, 1/s.
+        mu: f64,
+        /// The fastest eigenvalue of A, 1/s.
+        eigenvalue: Complex64,
+    },
+    /// The linear Lyapunov equation is singular.
+    #[error(
+        "the Lyapunov equation has no unique solution: the eigenvalues {} and {} of A add up to zero",
+        complex(.first), complex(.second)
+    )]
+    OppositeEigenvalues {
+        /// One of the two, 1/s.
+        first: Complex64,
+        /// The other, 1/s.
+        second: Complex64,
+    },
+    /// The answer is not good to working precision.
+    #[error(
+        "{equation} was not solved to working precision: the relative residual stays at {residual:.1e}; \
+         scale the states or the weights"
+    )]
+    Inaccurate {
+        /// Which equation.
+        equation: &'static str,
+        /// Relative residual of the best attempt.
+        residual: f64,
+    },
+}
+
+/// A complex number as people write it: without an imaginary part of zero.
+fn complex(value: &Complex64) -> String {
+    if value.im == 0.0 {
+        real(value.re)
+    } else {
+        format!("{} {} {}i", real(value.re), if value.im < 0.0 { '-' } else { '+' }, real(value.im.abs()))
+    }
+}
+
+/// Six digits, whatever the size.
+fn real(value: f64) -> String {
+    // Adding zero makes -0 a plain 0.
+    let value = value + 0.0;
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) { format!("{value:.6}") } else { format!("{value:.5e}") }
+}
