@@ -122,9 +122,16 @@ impl<'b> Framer<'b> {
 impl<'b> Flavor for Framer<'b> {
     type Output = &'b [u8];
 
+    // Messages have a hundred fields: inlined into each, these two make the encoder several times as large.
+    #[inline(never)]
     fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
         self.checksum.update(byte);
         self.stuff(byte)
+    }
+
+    #[inline(never)]
+    fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+        bytes.iter().try_for_each(|byte| self.try_push(*byte))
     }
 
     fn finalize(mut self) -> postcard::Result<&'b [u8]> {
