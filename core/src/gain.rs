@@ -41,6 +41,16 @@ impl fmt::Display for GainError {
 
 impl core::error::Error for GainError {}
 
+impl GainError {
+    /// For tables in the source: a bad one does not compile when it initialises a constant.
+    pub(crate) const fn refuse_to_compile(&self) -> ! {
+        match self {
+            Self::NonFinite { .. } => panic!("the gain table holds an entry that is not finite"),
+            Self::UnusedError { .. } => panic!("the gain table has a column of zeros"),
+        }
+    }
+}
+
 impl<const M: usize, const N: usize> Gain<M, N> {
     /// Checks a matrix given by rows.
     ///
@@ -67,18 +77,6 @@ impl<const M: usize, const N: usize> Gain<M, N> {
         Ok(Self { rows })
     }
 
-    /// For tables in the source: a bad one does not compile when it initialises a constant.
-    ///
-    /// # Panics
-    /// At compile time, on what [`Gain::new`] refuses.
-    pub const fn table(rows: [[f32; N]; M]) -> Self {
-        match Self::new(rows) {
-            Ok(gain) => gain,
-            Err(GainError::NonFinite { .. }) => panic!("the gain table holds an entry that is not finite"),
-            Err(GainError::UnusedError { .. }) => panic!("the gain table has a column of zeros"),
-        }
-    }
-
     /// The rows.
     pub const fn rows(&self) -> &[[f32; N]; M] {
         &self.rows
@@ -93,7 +91,35 @@ impl<const M: usize, const N: usize> Gain<M, N> {
     /// with it other last bits.
     #[inline]
     pub(crate) fn times(&self, error: &[f32; N]) -> [f32; M] {
-        self.rows.map(|row| row.iter().zip(error).fold(0.0, |sum, (k, e)| sum + k * e))
+        let mut product = [0.0; M];
+        for (sum, row) in product.iter_mut().zip(&self.rows) {
+            for (k, e) in row.iter().zip(error) {
+                *sum += k * e;
+            }
+        }
+        product
+    }
+
+    /// Whether every entry outside the listed ones, as (row, column), is zero.
+    pub(crate) const fn is_zero_outside(&self, entries: &[(usize, usize)]) -> bool {
+        let mut row = 0;
+        while row < M {
+            let mut column = 0;
+            while column < N {
+                let mut listed = false;
+                let mut i = 0;
+                while i < entries.len() {
+                    listed |= entries[i].0 == row && entries[i].1 == column;
+                    i += 1;
+                }
+                if !listed && self.rows[row][column] != 0.0 {
+                    return false;
+                }
+                column += 1;
+            }
+            row += 1;
+        }
+        true
     }
 }
 

@@ -85,7 +85,8 @@ impl Reference {
     #[inline]
     pub fn from_flat(sample: &FlatSample) -> Result<Self, ReferenceError> {
         let tilt = Tilt::new(sample.acceleration_m_s2, sample.jerk_m_s3);
-        let heading = Heading::from_angle(sample.heading_rad);
+        // Most flights do not turn: heading 0 needs no sine.
+        let heading = if sample.heading_rad == 0.0 { Heading::ZERO } else { Heading::from_angle(sample.heading_rad) };
         let mapped = tilt.with_heading(heading, sample.heading_rate_rad_s);
         let (r, v, rates) = (&sample.position_m, &sample.velocity_m_s, &mapped.input.body_rates_rad_s);
         // Every number of the sample reaches one of these; a sum is finite only if all of them are.

@@ -47,6 +47,8 @@ pub struct Trajectory<'a> {
     following: &'a [Piece],
     duration_ns: u64,
     end: FlatSample,
+    /// Whether any piece has a heading other than 0.
+    turns: bool,
 }
 
 /// Why pieces are no trajectory; pieces are counted from 0.
@@ -104,7 +106,7 @@ impl<'a> Trajectory<'a> {
     pub fn new(pieces: &'a [Piece]) -> Result<Self, TrajectoryError> {
         let (first, following) = pieces.split_first().ok_or(TrajectoryError::Empty)?;
         let mut duration_ns = 0_u64;
-        let mut end = first.at(0);
+        let mut end = first.at(0, true);
         for (index, piece) in pieces.iter().enumerate() {
             if piece.duration_ns == 0 {
                 return Err(TrajectoryError::NoDuration { piece: index });
@@ -119,9 +121,11 @@ impl<'a> Trajectory<'a> {
             if let Some(size) = piece.jump_from(&end) {
                 return Err(TrajectoryError::Jump { piece: index, size });
             }
-            end = piece.at(piece.duration_ns);
+            end = piece.at(piece.duration_ns, true);
         }
-        Ok(Self { first, following, duration_ns, end: FlatSample::at_rest(end.position_m, end.heading_rad) })
+        let turns = pieces.iter().any(|piece| piece.heading.iter().any(|c| *c != 0.0));
+        let end = FlatSample::at_rest(end.position_m, end.heading_rad);
+        Ok(Self { first, following, duration_ns, end, turns })
     }
 
     /// Length in time, ns.
@@ -133,12 +137,12 @@ impl<'a> Trajectory<'a> {
 impl Piece {
     /// The flat output `time_ns` after the piece began.
     #[inline]
-    fn at(&self, time_ns: u64) -> FlatSample {
-        let t = time_ns as f32 * 1e-9;
+    fn at(&self, time_ns: u64, turns: bool) -> FlatSample {
+        let t = seconds(time_ns);
         let [x, vx, ax, jx] = derivatives(&self.x, t);
         let [y, vy, ay, jy] = derivatives(&self.y, t);
         let [z, vz, az, jz] = derivatives(&self.z, t);
-        let [heading_rad, heading_rate_rad_s, _, _] = derivatives(&self.heading, t);
+        let [heading_rad, heading_rate_rad_s] = if turns { value_and_rate(&self.heading, t) } else { [0.0, 0.0] };
         FlatSample {
             position_m: Vector3::new(x, y, z),
             velocity_m_s: Vector3::new(vx, vy, vz),
@@ -161,7 +165,7 @@ impl Piece {
 
     /// How far this piece begins from `end`, if further than allowed.
     fn jump_from(&self, end: &FlatSample) -> Option<f32> {
-        let start = self.at(0);
+        let start = self.at(0, true);
         let position = (start.position_m - end.position_m).amax();
         let heading = (start.heading_rad - end.heading_rad).abs();
         let jumps = [(position, MAX_JUMP_M), (heading, MAX_HEADING_JUMP_RAD)];
@@ -169,17 +173,42 @@ impl Piece {
     }
 }
 
-/// A polynomial and its first three derivatives at `t`, all by one pass of Horner's scheme.
+/// A polynomial and its first three derivatives at `t`, all by one pass of Horner's scheme. The first steps are written
+/// out: what is still zero there costs nothing.
 #[inline]
 fn derivatives(coefficients: &Coefficients, t: f32) -> [f32; 4] {
-    let (mut p, mut d1, mut d2, mut d3) = (0.0, 0.0, 0.0, 0.0);
-    for c in coefficients.iter().rev() {
+    let [c0, c1, c2, c3, c4, c5, c6, c7] = *coefficients;
+    let p = c7;
+    let (d1, p) = (p, p * t + c6);
+    let (d2, d1, p) = (d1, d1 * t + p, p * t + c5);
+    let (mut d3, mut d2, mut d1, mut p) = (d2, d2 * t + d1, d1 * t + p, p * t + c4);
+    for c in [c3, c2, c1, c0] {
         d3 = d3 * t + d2;
         d2 = d2 * t + d1;
         d1 = d1 * t + p;
         p = p * t + c;
     }
     [p, d1, 2.0 * d2, 6.0 * d3]
+}
+
+/// A polynomial and its first derivative at `t`.
+#[inline]
+fn value_and_rate(coefficients: &Coefficients, t: f32) -> [f32; 2] {
+    let [c0, c1, c2, c3, c4, c5, c6, c7] = *coefficients;
+    let (mut d1, mut p) = (c7, c7 * t + c6);
+    for c in [c5, c4, c3, c2, c1, c0] {
+        d1 = d1 * t + p;
+        p = p * t + c;
+    }
+    [p, d1]
+}
+
+/// A time within a piece in seconds. Nearly all are below 2^32 ns, which the FPU converts in one instruction, to the
+/// same bits.
+#[inline]
+fn seconds(time_ns: u64) -> f32 {
+    let ns = u32::try_from(time_ns).map_or_else(|_| time_ns as f32, |ns| ns as f32);
+    ns * 1e-9
 }
 
 /// Walks along a trajectory, one tick at a time.
@@ -226,7 +255,7 @@ impl<'a> Player<'a> {
             self.start_ns += self.piece.duration_ns;
             (self.piece, self.following) = (next, following);
         }
-        self.piece.at(time_ns - self.start_ns)
+        self.piece.at(time_ns - self.start_ns, self.trajectory.turns)
     }
 
     #[cold]

@@ -85,8 +85,8 @@ fn the_equilibrium_law_agrees_to_f32_rounding() {
             let heading = Equilibrium { gain, error_form: ErrorForm::HeadingFrame, feed_forward };
             let paper_form = Equilibrium { gain, error_form: ErrorForm::Paper, feed_forward };
             for (core, law, heading_max_rad) in [
-                (heading, Law::EquilibriumHeading(f64_gain(gain)), 9.0),
-                (paper_form, Law::EquilibriumPaper(f64_gain(gain)), 1.0),
+                (heading, Law::EquilibriumHeading(f64_gain(gain.gain())), 9.0),
+                (paper_form, Law::EquilibriumPaper(f64_gain(gain.gain())), 1.0),
             ] {
                 let errors = errors(core.into(), law, heading_max_rad);
                 // Nine products of errors below 1 with gains up to 100, summed in f32: 2^-24 of their size each.
@@ -103,7 +103,7 @@ fn the_flat_output_law_agrees_to_f32_rounding() {
     for gain in [&paper::LQR_F, &paper::LYAP_F] {
         for feed_forward in [FeedForward::Without, FeedForward::With] {
             let core = FlatOutput { gain, feed_forward };
-            let errors = errors(core.into(), Law::FlatOutput(f64_gain(gain)), 9.0);
+            let errors = errors(core.into(), Law::FlatOutput(f64_gain(gain.gain())), 9.0);
             // The flat map divides by thrust and by q0; where the asked acceleration comes near free fall the rates
             // grow, and their error with them.
             assert!(quantile(errors.clone(), 0.5) < 1e-7);

@@ -77,7 +77,7 @@ fn triple_integrator(q: [f64; 3]) -> [f64; 3] {
 
 #[test]
 fn lyapunov_gains_are_the_closed_forms() {
-    for mu in [1.0, 2.0, 3.7] {
+    for mu in [1e-4, 1.0, 2.0, 3.7, 1e4] {
         let flat = lyapunov_flat(mu).expect("controllable");
         assert_gain(&flat.gain, &flat_gain(2.0 * mu * mu, 2.0 * mu, mu, mu));
         let equilibrium = lyapunov_equilibrium(mu).expect("controllable");

@@ -83,10 +83,10 @@ fn riccati_gains_are_their_closed_forms() {
 
 #[test]
 fn the_committed_tables_are_the_synthesis_rounded_to_f32() {
-    assert_eq!(*paper::LYAP_E.rows(), rounded(&lyapunov_equilibrium(PAPER_MU).unwrap().gain));
-    assert_eq!(*paper::LYAP_F.rows(), rounded(&lyapunov_flat(PAPER_MU).unwrap().gain));
-    assert_eq!(*paper::LQR_E.rows(), rounded(&lqr_equilibrium(&EquilibriumWeights::paper()).unwrap().gain));
-    assert_eq!(*paper::LQR_F.rows(), rounded(&lqr_flat(&FlatWeights::paper()).unwrap().gain));
+    assert_eq!(*paper::LYAP_E.gain().rows(), rounded(&lyapunov_equilibrium(PAPER_MU).unwrap().gain));
+    assert_eq!(*paper::LYAP_F.gain().rows(), rounded(&lyapunov_flat(PAPER_MU).unwrap().gain));
+    assert_eq!(*paper::LQR_E.gain().rows(), rounded(&lqr_equilibrium(&EquilibriumWeights::paper()).unwrap().gain));
+    assert_eq!(*paper::LQR_F.gain().rows(), rounded(&lqr_flat(&FlatWeights::paper()).unwrap().gain));
 }
 
 #[test]

@@ -2,15 +2,85 @@
 
 use nalgebra::Vector3;
 
-use super::{ControlLaw, FeedForward};
+use super::{ControlLaw, FeedForward, difference};
 use crate::command::Command;
 use crate::flatness::GRAVITY_M_S2;
-use crate::gain::Gain;
+use crate::gain::{Gain, GainError};
 use crate::reference::Reference;
 use crate::state::State;
 
 /// Outputs `[T p q r]` from errors `[x y z q1 q2 q3 vx vy vz]`.
-pub type EquilibriumGain = Gain<4, 9>;
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EquilibriumGain {
+    gain: Gain<4, 9>,
+    chains: Option<Chains>,
+}
+
+/// The gain of a design in which the hover model falls apart, as the paper's do: thrust answers to height, roll rate to
+/// y, pitch rate to x, yaw rate to heading. A quarter of the products of the whole matrix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Chains {
+    /// From z and vz.
+    thrust: [f32; 2],
+    /// From y, q1 and vy.
+    roll: [f32; 3],
+    /// From x, q2 and vx.
+    pitch: [f32; 3],
+    /// From q3.
+    yaw: f32,
+}
+
+impl EquilibriumGain {
+    /// Checks a matrix given by rows.
+    ///
+    /// # Errors
+    /// [`GainError`] names the entry or column.
+    pub const fn new(rows: [[f32; 9]; 4]) -> Result<Self, GainError> {
+        match Gain::new(rows) {
+            Ok(gain) => Ok(Self { chains: Chains::of(&gain), gain }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// For tables in the source: a bad one does not compile when it initialises a constant.
+    ///
+    /// # Panics
+    /// At compile time, on what [`EquilibriumGain::new`] refuses.
+    pub const fn table(rows: [[f32; 9]; 4]) -> Self {
+        match Self::new(rows) {
+            Ok(gain) => gain,
+            Err(error) => error.refuse_to_compile(),
+        }
+    }
+
+    /// The matrix.
+    pub const fn gain(&self) -> &Gain<4, 9> {
+        &self.gain
+    }
+
+    /// The same sums in the same order either way: leaving out a product with zero changes no bit of them.
+    #[inline]
+    fn times(&self, error: &[f32; 9]) -> [f32; 4] {
+        let Some(Chains { thrust, roll, pitch, yaw }) = &self.chains else { return self.gain.times(error) };
+        let [x, y, z, q1, q2, q3, vx, vy, vz] = error;
+        [
+            thrust[0] * z + thrust[1] * vz,
+            roll[0] * y + roll[1] * q1 + roll[2] * vy,
+            pitch[0] * x + pitch[1] * q2 + pitch[2] * vx,
+            yaw * q3,
+        ]
+    }
+}
+
+impl Chains {
+    const fn of(gain: &Gain<4, 9>) -> Option<Self> {
+        if !gain.is_zero_outside(&[(0, 2), (0, 8), (1, 1), (1, 3), (1, 7), (2, 0), (2, 4), (2, 6), (3, 5)]) {
+            return None;
+        }
+        let [t, p, q, r] = gain.rows();
+        Some(Self { thrust: [t[2], t[8]], roll: [p[1], p[3], p[7]], pitch: [q[0], q[4], q[6]], yaw: r[5] })
+    }
+}
 
 /// What `x - x_r` means when the craft is turned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,16 +115,16 @@ impl<'a> Equilibrium<'a> {
 
     fn error(&self, state: &State, reference: &Reference) -> [f32; 9] {
         let target = &reference.state;
-        let r = state.position_m - target.position_m;
-        let v = state.velocity_m_s - target.velocity_m_s;
+        let r = difference(&state.position_m, &target.position_m);
+        let v = difference(&state.velocity_m_s, &target.velocity_m_s);
         match self.error_form {
             ErrorForm::HeadingFrame => {
                 let r = reference.heading.to_heading_frame(r);
                 let v = reference.heading.to_heading_frame(v);
                 let q = target.attitude.conjugate() * state.attitude;
                 // The measured attitude in the reference's hemisphere: its error has a scalar part above zero.
-                let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
-                [r.x, r.y, r.z, sign * q.x, sign * q.y, sign * q.z, v.x, v.y, v.z]
+                let q = if q.w < 0.0 { -q } else { q };
+                [r.x, r.y, r.z, q.x, q.y, q.z, v.x, v.y, v.z]
             }
             ErrorForm::Paper => {
                 let q = state.attitude.in_hemisphere_of(target.attitude);

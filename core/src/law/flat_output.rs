@@ -6,16 +6,93 @@
 
 use nalgebra::Vector3;
 
-use super::{ControlLaw, FeedForward};
+use super::{ControlLaw, FeedForward, difference};
 use crate::command::Command;
 use crate::flatness::{GRAVITY_M_S2, Tilt};
-use crate::gain::Gain;
+use crate::gain::{Gain, GainError};
 use crate::math::sqrt;
 use crate::reference::Reference;
 use crate::state::State;
 
 /// Outputs `[a(3) j(3) q3']` from errors `[r(3) v(3) a(3) q3]`.
-pub type FlatOutputGain = Gain<7, 10>;
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlatOutputGain {
+    gain: Gain<7, 10>,
+    chains: Option<Chains>,
+}
+
+/// The gain of a design in which the flat chain falls apart, as the paper's do: acceleration answers to position and
+/// velocity of its axis, jerk to acceleration, the rate of `q3` to `q3`. A seventh of the products of the whole matrix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Chains {
+    position: [f32; 3],
+    velocity: [f32; 3],
+    acceleration: [f32; 3],
+    q3: f32,
+}
+
+impl FlatOutputGain {
+    /// Checks a matrix given by rows.
+    ///
+    /// # Errors
+    /// [`GainError`] names the entry or column.
+    pub const fn new(rows: [[f32; 10]; 7]) -> Result<Self, GainError> {
+        match Gain::new(rows) {
+            Ok(gain) => Ok(Self { chains: Chains::of(&gain), gain }),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// For tables in the source: a bad one does not compile when it initialises a constant.
+    ///
+    /// # Panics
+    /// At compile time, on what [`FlatOutputGain::new`] refuses.
+    pub const fn table(rows: [[f32; 10]; 7]) -> Self {
+        match Self::new(rows) {
+            Ok(gain) => gain,
+            Err(error) => error.refuse_to_compile(),
+        }
+    }
+
+    /// The matrix.
+    pub const fn gain(&self) -> &Gain<7, 10> {
+        &self.gain
+    }
+
+    /// The same sums in the same order either way: leaving out a product with zero changes no bit of them.
+    #[inline]
+    fn times(&self, error: &[f32; 10]) -> [f32; 7] {
+        let Some(Chains { position: kr, velocity: kv, acceleration: ka, q3: kq }) = &self.chains else {
+            return self.gain.times(error);
+        };
+        let [x, y, z, vx, vy, vz, ax, ay, az, q3] = error;
+        [
+            kr[0] * x + kv[0] * vx,
+            kr[1] * y + kv[1] * vy,
+            kr[2] * z + kv[2] * vz,
+            ka[0] * ax,
+            ka[1] * ay,
+            ka[2] * az,
+            kq * q3,
+        ]
+    }
+}
+
+impl Chains {
+    const fn of(gain: &Gain<7, 10>) -> Option<Self> {
+        let listed = [(0, 0), (0, 3), (1, 1), (1, 4), (2, 2), (2, 5), (3, 6), (4, 7), (5, 8), (6, 9)];
+        if !gain.is_zero_outside(&listed) {
+            return None;
+        }
+        let [a0, a1, a2, j0, j1, j2, q] = gain.rows();
+        Some(Self {
+            position: [a0[0], a1[1], a2[2]],
+            velocity: [a0[3], a1[4], a2[5]],
+            acceleration: [j0[6], j1[7], j2[8]],
+            q3: q[9],
+        })
+    }
+}
 
 /// The flat output law.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +115,8 @@ impl ControlLaw for FlatOutput<'_> {
     fn command(&self, state: &State, reference: &Reference) -> Command {
         let heading = reference.heading;
         let target = &reference.state;
-        let r = heading.to_heading_frame(state.position_m - target.position_m);
-        let v = heading.to_heading_frame(state.velocity_m_s - target.velocity_m_s);
+        let r = heading.to_heading_frame(difference(&state.position_m, &target.position_m));
+        let v = heading.to_heading_frame(difference(&state.velocity_m_s, &target.velocity_m_s));
         let attitude = heading.attitude_to_heading_frame(state.attitude);
         // The chart's own hemisphere is q0 >= 0.
         let attitude = if attitude.w < 0.0 { -attitude } else { attitude };
@@ -51,14 +128,16 @@ impl ControlLaw for FlatOutput<'_> {
         let az = thrust * axis.z - GRAVITY_M_S2 - target_acceleration.z;
 
         let [v0, v1, v2, v3, v4, v5, v6] = self.gain.times(&[r.x, r.y, r.z, v.x, v.y, v.z, ax, ay, az, attitude.z]);
-        let (mut acceleration, mut jerk, mut q3_rate) = (Vector3::new(-v0, -v1, -v2), Vector3::new(-v3, -v4, -v5), -v6);
-        if self.feed_forward == FeedForward::With {
-            acceleration += target_acceleration;
-            jerk += heading.to_heading_frame(reference.jerk_m_s3);
-            // q3 = cos(tilt/2) sin(psi/2) in the frame that the heading passes through: psi = 0 there, psi' is not.
-            let q = &target.attitude;
-            q3_rate += 0.5 * sqrt(q.w * q.w + q.z * q.z) * reference.heading_rate_rad_s;
-        }
+        let (acceleration, jerk, q3_rate) = match self.feed_forward {
+            FeedForward::Without => (Vector3::new(-v0, -v1, -v2), Vector3::new(-v3, -v4, -v5), -v6),
+            FeedForward::With => {
+                let (a, j) = (target_acceleration, heading.to_heading_frame(reference.jerk_m_s3));
+                // q3 = cos(tilt/2) sin(psi/2) in the frame that the heading passes through: psi = 0 there, psi' is not.
+                let q = &target.attitude;
+                let q3_rate = 0.5 * sqrt(q.w * q.w + q.z * q.z) * reference.heading_rate_rad_s;
+                (Vector3::new(a.x - v0, a.y - v1, a.z - v2), Vector3::new(j.x - v3, j.y - v4, j.z - v5), q3_rate - v6)
+            }
+        };
         Tilt::new(acceleration, jerk).with_q3(attitude.z, q3_rate).input
     }
 }

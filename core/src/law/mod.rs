@@ -9,6 +9,8 @@ mod flat_output;
 pub use equilibrium::{Equilibrium, EquilibriumGain, ErrorForm};
 pub use flat_output::{FlatOutput, FlatOutputGain};
 
+use nalgebra::Vector3;
+
 use crate::command::Command;
 use crate::reference::Reference;
 use crate::state::State;
@@ -60,4 +62,10 @@ impl<'a> From<FlatOutput<'a>> for AnyLaw<'a> {
     fn from(law: FlatOutput<'a>) -> Self {
         Self::FlatOutput(law)
     }
+}
+
+/// `a - b`, component by component: three subtractions in registers, where the matrix type's operator loops over memory.
+#[inline]
+fn difference(a: &Vector3<f32>, b: &Vector3<f32>) -> Vector3<f32> {
+    Vector3::new(a.x - b.x, a.y - b.y, a.z - b.z)
 }

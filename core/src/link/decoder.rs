@@ -125,8 +125,8 @@ struct Unstuffer {
     length: usize,
     /// Bytes of the block still to come; 0 where a code byte is next.
     block_left: u8,
-    /// Whether a zero stands between the block and the next one.
-    zero_follows: bool,
+    /// Whether a block has begun; a zero stands between it and the next one. A block of 254 bytes, which COBS would
+    /// not follow by a zero, is longer than any frame.
     begun: bool,
     overlong: bool,
     checksum: Crc32c,
@@ -138,7 +138,6 @@ impl Unstuffer {
             bytes: [0; RAW_FRAME_BYTES],
             length: 0,
             block_left: 0,
-            zero_follows: false,
             begun: false,
             overlong: false,
             checksum: Crc32c::new(),
@@ -149,7 +148,6 @@ impl Unstuffer {
     fn reset(&mut self) {
         self.length = 0;
         self.block_left = 0;
-        self.zero_follows = false;
         self.begun = false;
         self.overlong = false;
         self.checksum = Crc32c::new();
@@ -157,17 +155,16 @@ impl Unstuffer {
 
     /// Takes a byte that is not zero.
     fn push(&mut self, byte: u8) {
-        self.begun = true;
         if self.block_left > 0 {
             self.block_left -= 1;
             self.store(byte);
             return;
         }
-        if self.zero_follows {
+        if self.begun {
             self.store(0);
         }
+        self.begun = true;
         self.block_left = byte.wrapping_sub(1);
-        self.zero_follows = byte != u8::MAX;
     }
 
     fn store(&mut self, byte: u8) {

@@ -42,9 +42,17 @@ impl fmt::Display for EncodeError {
 impl core::error::Error for EncodeError {}
 
 impl Encoder {
-    /// The frames of a session, counted from 0. The board takes the session of the hello that it answers.
+    /// The frames of a session, counted from 0.
     pub const fn new(session: u32) -> Self {
         Self { session, sequence: Some(0) }
+    }
+
+    /// Goes over to the session of a received frame, and on in it if it is the same. For the board, which is silent
+    /// until the first one.
+    pub fn follow(&mut self, session: u32) {
+        if session != self.session {
+            *self = Self::new(session);
+        }
     }
 
     /// The session.
@@ -72,7 +80,8 @@ impl Encoder {
     }
 }
 
-/// Takes the bytes of a frame one by one: checksum and COBS on the way into the buffer.
+/// Takes the bytes of a frame one by one: checksum and COBS on the way into the buffer. No frame is long enough for a
+/// block that ends without a zero.
 struct Framer<'b> {
     buffer: &'b mut [u8],
     /// Where the block's code byte stands.
@@ -81,9 +90,6 @@ struct Framer<'b> {
     next: usize,
     checksum: Crc32c,
 }
-
-/// A code byte and 254 others: the longest block, after which no zero follows.
-const FULL_BLOCK: usize = 255;
 
 impl<'b> Framer<'b> {
     fn new(buffer: &'b mut [u8]) -> Self {
@@ -104,10 +110,6 @@ impl<'b> Framer<'b> {
     }
 
     fn stuff(&mut self, byte: u8) -> postcard::Result<()> {
-        // A full block ends only when something follows it.
-        if self.next.wrapping_sub(self.code_at) == FULL_BLOCK {
-            self.end_block()?;
-        }
         if byte == 0 {
             return self.end_block();
         }
@@ -120,9 +122,16 @@ impl<'b> Framer<'b> {
 impl<'b> Flavor for Framer<'b> {
     type Output = &'b [u8];
 
+    // Messages have a hundred fields: inlined into each, these two make the encoder several times as large.
+    #[inline(never)]
     fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
         self.checksum.update(byte);
         self.stuff(byte)
+    }
+
+    #[inline(never)]
+    fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
+        bytes.iter().try_for_each(|byte| self.try_push(*byte))
     }
 
     fn finalize(mut self) -> postcard::Result<&'b [u8]> {
@@ -132,5 +141,60 @@ impl<'b> Flavor for Framer<'b> {
         self.end_block()?;
         self.put(self.code_at, DELIMITER)?;
         self.buffer.get(..self.next).ok_or(postcard::Error::SerializeBufferFull)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::{FRAME_BYTES, FromBoard, ToBoard};
+
+    #[test]
+    fn a_frame_is_these_bytes() {
+        let mut buffer = [0xAA; FRAME_BYTES];
+        let mut encoder = Encoder::new(0x81);
+        // Version, session 0x81 as a varint, sequence 0, kind 0; then the checksum of these.
+        let checksum = crate::link::crc32c(&[PROTOCOL_VERSION, 0x81, 0x01, 0, 0]).to_le_bytes();
+        assert!(checksum.iter().all(|byte| *byte != 0), "the frame below takes the checksum to be one block");
+        let [a, b, c, d] = checksum;
+        let frame = encoder.encode(&ToBoard::Hello, &mut buffer);
+        assert_eq!(frame, Ok(&[4, PROTOCOL_VERSION, 0x81, 0x01, 1, 5, a, b, c, d, DELIMITER][..]));
+    }
+
+    #[test]
+    fn a_buffer_too_short_uses_up_no_number() {
+        let mut encoder = Encoder::new(1);
+        let mut buffer = [0; FRAME_BYTES];
+        let needed = Encoder::new(1).encode(&ToBoard::Arm, &mut buffer).unwrap().len();
+        for bytes in 0..needed {
+            let short = &mut buffer[..bytes];
+            assert_eq!(encoder.encode(&ToBoard::Arm, short), Err(EncodeError::BufferTooShort { bytes }));
+        }
+        assert_eq!(encoder.next_sequence(), Some(0));
+        assert_eq!(encoder.encode(&ToBoard::Arm, &mut buffer[..needed]).map(<[u8]>::len), Ok(needed));
+        assert_eq!(encoder.next_sequence(), Some(1));
+    }
+
+    #[test]
+    fn no_number_is_used_twice() {
+        let mut encoder = Encoder { session: 1, sequence: Some(u32::MAX) };
+        let mut buffer = [0; FRAME_BYTES];
+        assert!(encoder.encode(&ToBoard::Arm, &mut buffer).is_ok());
+        assert_eq!(encoder.encode(&ToBoard::Arm, &mut buffer), Err(EncodeError::SessionOver));
+        encoder.follow(1);
+        assert_eq!(encoder.next_sequence(), None, "the same session is no new one");
+        encoder.follow(2);
+        assert_eq!((encoder.session(), encoder.next_sequence()), (2, Some(0)));
+    }
+
+    #[test]
+    fn the_longest_message_with_the_longest_numbers_fills_a_frame() {
+        let chunk = crate::link::Chunk::new(u32::MAX, u32::MAX, &[0xFF; crate::link::CHUNK_BYTES]).unwrap();
+        let mut encoder = Encoder { session: u32::MAX, sequence: Some(u32::MAX) };
+        let mut buffer = [0; FRAME_BYTES];
+        assert_eq!(encoder.encode(&ToBoard::UploadChunk(chunk), &mut buffer).map(<[u8]>::len), Ok(FRAME_BYTES));
+        let mut encoder = Encoder { session: u32::MAX, sequence: Some(u32::MAX) };
+        let short = encoder.encode(&FromBoard::Ack { sequence: u32::MAX }, &mut buffer).unwrap().len();
+        assert!(short < FRAME_BYTES, "{short}");
     }
 }

@@ -20,7 +20,11 @@
 //! [`ToBoard::Hello`] with a session number ahead of the current one (in serial-number arithmetic), the host on its own
 //! choice: a restarted host takes a later number, the seconds since 1970 say, and is not locked out. A session ends with
 //! its last sequence number, after 49 days at 1 kHz. None of this authenticates: who can write to the line can fly.
+//!
+//! On the target, [`BlobReceiver`] and [`TrajectoryStore`] are best statics of their own: they start as zeros and take
+//! no flash.
 
+mod blob_receiver;
 mod checksum;
 mod counters;
 mod decoder;
@@ -33,6 +37,7 @@ mod trajectory_store;
 mod upload;
 mod window;
 
+pub use blob_receiver::BlobReceiver;
 pub use checksum::{Crc32c, crc32c};
 pub use counters::{Counters, Rejected};
 pub use decoder::{Decoder, Received};
@@ -46,7 +51,7 @@ pub use to_board::{LimitsSetting, Parameter, ParameterId, StateIn, ToBoard, Traj
 pub use trajectory_store::{
     BlobError, TRAJECTORY_BLOB_BYTES, TRAJECTORY_PIECES, TrajectorySlot, TrajectoryStore, encode_trajectory,
 };
-pub use upload::{BlobKind, BlobReceiver, Chunk, Progress, UploadBegin, UploadError};
+pub use upload::{BlobKind, Chunk, Progress, UploadBegin, UploadError};
 
 /// Version of the frame layout and of every message in it. A changed message is a changed version.
 pub const PROTOCOL_VERSION: u8 = 1;

@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
+use super::Message;
 use super::law_choice::LawChoice;
 use super::upload::{Chunk, UploadBegin};
-use super::{Message, size};
 use crate::clock::Tick;
 use crate::command::{Limits, LimitsError};
 use crate::reference::FlatSample;
@@ -164,5 +164,3 @@ impl LimitsSetting {
         Limits::new(self.thrust_min_m_s2, self.thrust_max_m_s2, Vector3::from(self.body_rates_max_rad_s))
     }
 }
-
-const _: () = assert!(size::CHUNK_BYTES <= 127, "a chunk's length is one byte on the wire");

@@ -174,3 +174,86 @@ impl<const P: usize> Default for TrajectoryStore<P> {
         Self::new()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At rest at a height for a second, as often as asked.
+    fn hover(pieces: usize, height_m: f32) -> std::vec::Vec<Piece> {
+        let mut z = [0.0; 8];
+        z[0] = height_m;
+        std::vec![Piece { duration_ns: 1_000_000_000, x: [0.0; 8], y: [0.0; 8], z, heading: [0.0; 8] }; pieces]
+    }
+
+    fn blob(pieces: &[Piece]) -> std::vec::Vec<u8> {
+        let mut buffer = std::vec![0; TRAJECTORY_BLOB_BYTES];
+        encode_trajectory(pieces, &mut buffer).unwrap().to_vec()
+    }
+
+    #[test]
+    fn as_many_pieces_as_stated_go_through_with_all_their_bits() {
+        let mut pieces = hover(TRAJECTORY_PIECES, 1.0);
+        for (i, piece) in pieces.iter_mut().enumerate() {
+            piece.duration_ns += i as u64;
+            piece.x[7] = f32::from_bits(i as u32 + 1);
+        }
+        let mut slot = TrajectorySlot::<TRAJECTORY_PIECES>::new();
+        slot.load(&blob(&pieces)).unwrap();
+        assert_eq!(slot.pieces[..], pieces[..]);
+        assert_eq!(slot.trajectory(), Some(Trajectory::new(&pieces).unwrap()));
+        // The longest duration that a varint holds, in every piece.
+        pieces.iter_mut().for_each(|piece| piece.duration_ns = u64::MAX);
+        assert_eq!(blob(&pieces).len(), TRAJECTORY_BLOB_BYTES - 1, "64 takes one byte of the two for the number");
+    }
+
+    #[test]
+    fn every_fault_of_a_blob_is_named_and_leaves_the_slot_empty() {
+        let whole = blob(&hover(3, 1.0));
+        let mut jump = hover(2, 1.0);
+        jump.extend(hover(1, 2.0));
+        let (mut longer, mut endless) = (whole.clone(), whole.clone());
+        longer.extend([0; 5]);
+        endless[1..11].fill(0xFF);
+        let cases: [(&[u8], BlobError); 8] = [
+            (&[], BlobError::Malformed { piece: 0 }),
+            (&whole[..whole.len() - 1], BlobError::Malformed { piece: 2 }),
+            (&whole[..1], BlobError::Malformed { piece: 0 }),
+            (&endless, BlobError::Malformed { piece: 0 }),
+            (&longer, BlobError::BytesLeft { bytes: 5 }),
+            (&blob(&hover(5, 1.0)), BlobError::TooManyPieces { pieces: 5, capacity: 4 }),
+            (&blob(&[]), BlobError::Trajectory(TrajectoryError::Empty)),
+            (&blob(&jump), BlobError::Trajectory(TrajectoryError::Jump { piece: 2, size: 1.0 })),
+        ];
+        for (bytes, error) in cases {
+            let mut slot = TrajectorySlot::<4>::new();
+            slot.load(&whole).unwrap();
+            assert_eq!(slot.load(bytes), Err(error));
+            assert_eq!(slot.trajectory(), None, "after {error}");
+        }
+    }
+
+    #[test]
+    fn a_refused_blob_leaves_what_is_in_use() {
+        let mut store = TrajectoryStore::<4>::new();
+        assert_eq!(store.active().trajectory(), None);
+        for pieces in 1..=4 {
+            store.commit(&blob(&hover(pieces, 1.0))).unwrap();
+            assert!(store.commit(&[9]).is_err());
+            let in_use = store.active().trajectory().map(|trajectory| trajectory.duration_ns());
+            assert_eq!(in_use, Some(pieces as u64 * 1_000_000_000));
+        }
+    }
+
+    #[test]
+    fn one_slot_plays_while_the_other_one_is_loaded() {
+        let mut store = TrajectoryStore::<4>::new();
+        store.commit(&blob(&hover(1, 1.0))).unwrap();
+        let (active, spare) = store.split();
+        let playing = active.trajectory().unwrap();
+        spare.load(&blob(&hover(2, 1.0))).unwrap();
+        assert_eq!(playing.duration_ns(), 1_000_000_000);
+        store.swap();
+        assert_eq!(store.active().trajectory().map(|t| t.duration_ns()), Some(2_000_000_000));
+    }
+}

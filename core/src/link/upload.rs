@@ -1,9 +1,8 @@
-//! Uploads: an announcement and chunks in, a whole and checked blob out.
+//! Uploads as messages: a blob at the sender in; its announcement, its chunks, and the receiver's answers out.
 //!
 //! The sender announces a blob by kind, id, length and checksum, then sends chunks in order, each at the offset that the
-//! last answer wanted. A chunk at another offset is refused with the wanted one; a sender that lost touch asks, or
-//! announces the same blob again, and goes on from there. [`BlobReceiver::finish`] may be called again, should its
-//! answer be lost.
+//! last answer wanted ([`Progress::next_chunk`]). A chunk at another offset is refused with the wanted one; a sender that
+//! lost touch asks, or announces the same blob again, and goes on from there.
 
 use core::fmt;
 
@@ -36,6 +35,13 @@ pub struct UploadBegin {
     pub checksum: u32,
 }
 
+impl UploadBegin {
+    /// Announces `blob`; nothing if it is longer than a `u32` counts.
+    pub fn of(kind: BlobKind, id: u32, blob: &[u8]) -> Option<Self> {
+        Some(Self { kind, id, length: u32::try_from(blob.len()).ok()?, checksum: crc32c(blob) })
+    }
+}
+
 /// Some bytes of the announced blob.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -48,6 +54,13 @@ pub struct Chunk {
     pub bytes: heapless::Vec<u8, CHUNK_BYTES>,
 }
 
+impl Chunk {
+    /// From its parts; nothing if there are more bytes than [`CHUNK_BYTES`].
+    pub fn new(id: u32, offset: u32, bytes: &[u8]) -> Option<Self> {
+        Some(Self { id, offset, bytes: heapless::Vec::from_slice(bytes).ok()? })
+    }
+}
+
 /// How far an upload is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -58,6 +71,15 @@ pub struct Progress {
     pub wanted_offset: u32,
     /// Bytes in all.
     pub length: u32,
+}
+
+impl Progress {
+    /// The chunk that the receiver wants next, for the sender of `blob`; nothing when all is there.
+    pub fn next_chunk(&self, blob: &[u8]) -> Option<Chunk> {
+        let rest = blob.get(self.wanted_offset as usize..)?;
+        let bytes = rest.chunks(CHUNK_BYTES).next()?;
+        Chunk::new(self.id, self.wanted_offset, bytes)
+    }
 }
 
 /// Why a part of an upload is refused. What has been received so far stays.
@@ -123,96 +145,3 @@ impl fmt::Display for UploadError {
 }
 
 impl core::error::Error for UploadError {}
-
-/// Collects one blob of at most `N` bytes.
-#[derive(Clone, Debug)]
-pub struct BlobReceiver<const N: usize> {
-    announced: Option<UploadBegin>,
-    bytes: heapless::Vec<u8, N>,
-}
-
-impl<const N: usize> BlobReceiver<N> {
-    /// Nothing announced.
-    pub const fn new() -> Self {
-        Self { announced: None, bytes: heapless::Vec::new() }
-    }
-
-    /// Takes an announcement. The one in force again changes nothing; another one drops what has been received.
-    ///
-    /// # Errors
-    /// [`UploadError::Length`].
-    pub fn begin(&mut self, begin: &UploadBegin) -> Result<Progress, UploadError> {
-        let capacity = u32::try_from(N).unwrap_or(u32::MAX);
-        if begin.length == 0 || begin.length > capacity {
-            return Err(UploadError::Length { length: begin.length, capacity });
-        }
-        if self.announced != Some(*begin) {
-            self.announced = Some(*begin);
-            self.bytes.clear();
-        }
-        Ok(self.progress_of(begin))
-    }
-
-    /// Takes the next chunk.
-    ///
-    /// # Errors
-    /// [`UploadError`]; nothing of the chunk is kept then.
-    pub fn chunk(&mut self, chunk: &Chunk) -> Result<Progress, UploadError> {
-        let announced = self.announced_as(chunk.id)?;
-        let wanted = self.received();
-        if chunk.offset != wanted {
-            return Err(UploadError::Offset { wanted });
-        }
-        let left = announced.length.saturating_sub(wanted) as usize;
-        let fits = !chunk.bytes.is_empty() && chunk.bytes.len() <= left;
-        if !fits || self.bytes.extend_from_slice(&chunk.bytes).is_err() {
-            return Err(UploadError::ChunkLength { wanted, length: announced.length });
-        }
-        Ok(self.progress_of(&announced))
-    }
-
-    /// How far the announced upload is.
-    ///
-    /// # Errors
-    /// [`UploadError::NotBegun`].
-    pub fn progress(&self) -> Result<Progress, UploadError> {
-        self.announced.map(|begin| self.progress_of(&begin)).ok_or(UploadError::NotBegun)
-    }
-
-    /// The whole blob, checked, with its announcement. It stays until another one is announced.
-    ///
-    /// # Errors
-    /// [`UploadError`]. A blob of the wrong checksum is dropped, but stays announced.
-    pub fn finish(&mut self, id: u32) -> Result<(UploadBegin, &[u8]), UploadError> {
-        let announced = self.announced_as(id)?;
-        let wanted = self.received();
-        if wanted != announced.length {
-            return Err(UploadError::Incomplete { wanted });
-        }
-        let found = crc32c(&self.bytes);
-        if found != announced.checksum {
-            self.bytes.clear();
-            return Err(UploadError::Checksum { announced: announced.checksum, found });
-        }
-        Ok((announced, &self.bytes))
-    }
-
-    fn announced_as(&self, id: u32) -> Result<UploadBegin, UploadError> {
-        let announced = self.announced.ok_or(UploadError::NotBegun)?;
-        if announced.id == id { Ok(announced) } else { Err(UploadError::OtherBlob { announced: announced.id }) }
-    }
-
-    fn progress_of(&self, begin: &UploadBegin) -> Progress {
-        Progress { id: begin.id, wanted_offset: self.received(), length: begin.length }
-    }
-
-    fn received(&self) -> u32 {
-        u32::try_from(self.bytes.len()).unwrap_or(u32::MAX)
-    }
-}
-
-impl<const N: usize> Default for BlobReceiver<N> {
-    fn default() -> Self {
-        Self::new()
-    }
-}

@@ -27,10 +27,10 @@ pub(crate) struct Args {
 /// Runs the command.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let section = SectionThree::new().map_err(Failure::input)?;
-    print!("{}", text(&section));
+    output::print(&text(&section))?;
     if let Some(path) = &args.json {
         output::write_json(path, &Document::new(&section))?;
-        println!("\nWrote the analysis of both models as JSON to {}.", path.display());
+        output::print(&format!("\nwrote {}\n", path.display()))?;
     }
     Ok(())
 }

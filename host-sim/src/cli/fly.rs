@@ -7,6 +7,7 @@ use std::str::FromStr;
 use clap::ValueEnum;
 use quatrack::nalgebra::Vector3;
 use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Rate};
+use quatrack_sim::design::codegen::rounded;
 use quatrack_sim::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
 use quatrack_sim::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
 use quatrack_sim::flight::core_loop::{self, CoreLoop};
@@ -241,11 +242,11 @@ fn fly_core(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial, rate: Ra
     let (equilibrium_gain, flat_gain);
     let law: AnyLaw<'_> = match gain {
         Gain::Equilibrium(gain) => {
-            equilibrium_gain = core_loop::to_core_gain(gain).map_err(Failure::input)?;
+            equilibrium_gain = quatrack::law::EquilibriumGain::new(rounded(gain)).map_err(Failure::input)?;
             Equilibrium { gain: &equilibrium_gain, error_form, feed_forward }.into()
         }
         Gain::FlatOutput(gain) => {
-            flat_gain = core_loop::to_core_gain(gain).map_err(Failure::input)?;
+            flat_gain = quatrack::law::FlatOutputGain::new(rounded(gain)).map_err(Failure::input)?;
             FlatOutput { gain: &flat_gain, feed_forward }.into()
         }
     };

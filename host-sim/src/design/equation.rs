@@ -66,17 +66,16 @@ impl Equation {
     /// columns of state i by powers of its `d_i` (symplectic balancing, Benner 2001).
     pub(super) fn balanced(self) -> Self {
         let mut equation = self.uniformly_scaled();
-        let n = equation.a.nrows();
         let mut g = &equation.factor.hi * equation.factor.hi.transpose();
-        let mut exponents = vec![0_i32; n];
+        let mut exponents = vec![0_i32; equation.a.nrows()];
         let total = 2.0 * equation.a.norm_squared() + g.norm_squared() + equation.q.norm_squared();
         for _ in 0..20 {
             let mut changed = false;
-            for i in 0..n {
+            for (i, exponent) in exponents.iter_mut().enumerate() {
                 let shift = equation.best_shift(i, &g, 1e-30 * total);
-                if shift != 0 && (exponents[i] + shift).abs() <= MAX_EXPONENT {
+                if shift != 0 && (*exponent + shift).abs() <= MAX_EXPONENT {
                     equation.scale_state(i, shift, &mut g);
-                    exponents[i] += shift;
+                    *exponent += shift;
                     changed = true;
                 }
             }
@@ -127,15 +126,21 @@ impl Equation {
         self.factor.lo.row_mut(i).unscale_mut(factor);
     }
 
-    /// The Hamiltonian matrix `[A -FF'; -Q -A']`, 2n x 2n, in f64: good for a start, not for a residual.
-    pub(super) fn hamiltonian(&self) -> DMatrix<f64> {
+    /// The Hamiltonian matrix `[A -FF'; -Q -A']`, 2n x 2n, with `F F'` in 32 digits.
+    pub(super) fn precise_hamiltonian(&self) -> DoubleMatrix {
         let n = self.a.nrows();
-        let mut h = DMatrix::zeros(2 * n, 2 * n);
-        h.view_mut((0, 0), (n, n)).copy_from(&self.a);
-        h.view_mut((0, n), (n, n)).copy_from(&(-(&self.factor.hi * self.factor.hi.transpose())));
-        h.view_mut((n, 0), (n, n)).copy_from(&(-&self.q));
-        h.view_mut((n, n), (n, n)).copy_from(&(-self.a.transpose()));
-        h
+        let g = self.factor.times(&self.factor.transposed());
+        DoubleMatrix::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
+            (true, true) => Double::new(self.a[(i, j)]),
+            (true, false) => Double::new(0.0).minus(g.get(i, j - n)),
+            (false, true) => Double::new(-self.q[(i - n, j)]),
+            (false, false) => Double::new(-self.a[(j - n, i - n)]),
+        })
+    }
+
+    /// The Hamiltonian matrix rounded to f64: good for a start, not for a residual.
+    pub(super) fn hamiltonian(&self) -> DMatrix<f64> {
+        self.precise_hamiltonian().hi
     }
 
     /// The residual of a symmetric X, with the products in 32 digits.

@@ -133,5 +133,7 @@ fn complex(value: &Complex64) -> String {
 
 /// Six digits, whatever the size.
 fn real(value: f64) -> String {
+    // Adding zero makes -0 a plain 0.
+    let value = value + 0.0;
     if value == 0.0 || (1e-3..1e6).contains(&value.abs()) { format!("{value:.6}") } else { format!("{value:.5e}") }
 }

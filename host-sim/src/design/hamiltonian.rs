@@ -5,10 +5,10 @@
 //! in f64 and lose digits on hard problems; the refinement brings them back. Where they lose them all, the sign function
 //! is taken once more in 32 digits.
 
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::double_double::{Double, DoubleMatrix};
+use super::equation::Equation;
 use crate::analysis::{ComplexSchur, complex_schur};
 
 /// Sign iterations at most; 10 are usual.
@@ -17,9 +17,9 @@ const MAX_SIGN_STEPS: usize = 80;
 const MAX_PRECISE_STATES: usize = 40;
 
 /// X by the scaled Newton iteration for `sign(H)`.
-pub(super) fn by_sign_function(h: &DMatrix<f64>) -> Option<DoubleMatrix> {
-    let n = h.nrows() / 2;
-    let mut z = h.clone();
+pub(super) fn by_sign_function(equation: &Equation) -> Option<DoubleMatrix> {
+    let n = equation.a.nrows();
+    let mut z = equation.hamiltonian();
     let mut previous = f64::INFINITY;
     for _ in 0..MAX_SIGN_STEPS {
         let inverse = z.clone().try_inverse()?;
@@ -52,12 +52,12 @@ pub(super) fn by_sign_function(h: &DMatrix<f64>) -> Option<DoubleMatrix> {
 }
 
 /// X by the sign function in 32 digits: slow, for small problems on which the other two leave no digit.
-pub(super) fn by_precise_sign_function(h: &DMatrix<f64>) -> Option<DoubleMatrix> {
-    let n = h.nrows() / 2;
+pub(super) fn by_precise_sign_function(equation: &Equation) -> Option<DoubleMatrix> {
+    let n = equation.a.nrows();
     if n > MAX_PRECISE_STATES {
         return None;
     }
-    let mut z = DoubleMatrix::new(h.clone());
+    let mut z = equation.precise_hamiltonian();
     let mut previous = f64::INFINITY;
     for _ in 0..MAX_SIGN_STEPS {
         let inverse = z.inverse()?;
@@ -92,9 +92,9 @@ pub(super) fn by_precise_sign_function(h: &DMatrix<f64>) -> Option<DoubleMatrix>
 }
 
 /// X by the ordered complex Schur form of H.
-pub(super) fn by_schur_vectors(h: &DMatrix<f64>) -> Option<DoubleMatrix> {
-    let n = h.nrows() / 2;
-    let mut schur = complex_schur(h).ok()?;
+pub(super) fn by_schur_vectors(equation: &Equation) -> Option<DoubleMatrix> {
+    let n = equation.a.nrows();
+    let mut schur = complex_schur(&equation.hamiltonian()).ok()?;
     // The n eigenvalues furthest left are the stable ones, wherever rounding has put those near the axis.
     let mut by_real_part: Vec<usize> = (0..2 * n).collect();
     let eigenvalues = schur.eigenvalues();

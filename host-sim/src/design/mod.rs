@@ -11,6 +11,7 @@ pub mod codegen;
 mod double_double;
 mod equation;
 mod error;
+mod existence;
 mod hamiltonian;
 mod lyapunov;
 mod newton;

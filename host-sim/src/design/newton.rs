@@ -54,6 +54,9 @@ pub(super) fn refine(equation: &Equation, start: DoubleMatrix) -> Option<Refined
             break;
         }
         let relative = size / x.hi.norm().max(size);
+        if relative < SETTLED && relative > 0.7 * last_correction {
+            break;
+        }
         growing = if relative > 0.9 * last_correction { growing + 1 } else { 0 };
         if growing > 20 {
             return None;

@@ -3,13 +3,15 @@
 //! In flow A (n x n), B (n x m), Q (n x n), R (m x m); out flow P, `K = R^-1 B' P`, the poles of `A - B K` and what is
 //! known about their accuracy.
 //!
-//! **Method.** (1) R is factorised in 32 digits and only `F = B R^-1/2` is kept, so that an R that is nearly singular
-//! costs no digits. (2) The Hamiltonian matrix is balanced by powers of two. (3) The staircase forms of (A, F) and
-//! (A', Q) decide whether an unstable mode is out of reach, or a mode on the imaginary axis out of sight. (4) The
-//! matrix sign function of the Hamiltonian gives a first P; where that fails, its ordered Schur form, or for up to 40
-//! states the sign function in 32 digits. (5)
-//! Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below what an f64 can hold.
-//! (6) The result counts only if the corrections have vanished and every pole of the closed loop is stable.
+//! **Method.**
+//! 1. R is factorised in 32 digits and only `F = B R^-1/2` is kept, so that an R that is nearly singular costs none.
+//! 2. The Hamiltonian matrix is balanced by powers of two.
+//! 3. The staircase forms of (A, F), with PBH tests beside them, and of (A', Q) decide whether an unstable mode is out
+//!    of reach, or a mode on the imaginary axis out of sight.
+//! 4. The matrix sign function of the Hamiltonian gives a first P; where that fails, its ordered Schur form does, or for
+//!    up to 40 states the sign function in 32 digits.
+//! 5. Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below what an f64 can hold.
+//! 6. The result counts only if the corrections have vanished and every pole of the closed loop is stable.
 //!
 //! **Conditions.** A stabilising solution exists and is unique if (A, B) is stabilisable and the Hamiltonian has no
 //! eigenvalue on the imaginary axis; for Q >= 0 the latter says that Q sees every mode of A there. [`lqr`] demands
@@ -25,13 +27,14 @@ use num_complex::Complex64;
 
 use super::double_double::DoubleMatrix;
 use super::equation::{Equation, InputWeight};
+use super::existence::{
+    marginal_pole, no_solution, require_detectable, require_positive_semidefinite, require_stabilisable,
+};
 use super::hamiltonian::{by_precise_sign_function, by_schur_vectors, by_sign_function};
 use super::lyapunov::LyapunovOperator;
 use super::newton::{Refined, refine};
 use super::{DesignError, require_symmetric};
-use crate::analysis::{
-    MatrixError, balance, eigenvalues, require_finite, require_square, spectral_abscissa, staircase,
-};
+use crate::analysis::{MatrixError, eigenvalues, require_finite, require_square, spectral_abscissa};
 
 /// A solution counts as found if the last correction, relative to P, is below this.
 const ACCURATE: f64 = 1e-13;
@@ -141,8 +144,10 @@ fn solve(
     let good = match accepted {
         Poles::Stable => {
             // For Q >= 0 the test of detectability has already settled that the axis is free.
-            let indefinite = require_positive_semidefinite(&given.q).is_err();
-            if let Some(eigenvalue) = marginal_pole(equation, &refined, abscissa).filter(|_| indefinite || !stable) {
+            if let Some(eigenvalue) = marginal_pole(equation, &refined, abscissa)
+                && (!stable || require_positive_semidefinite(&given.q).is_err())
+            {
+                require_detectable(&given)?;
                 return Err(DesignError::HamiltonianOnAxis { eigenvalue });
             }
             stable
@@ -153,8 +158,9 @@ fn solve(
         }
     };
     if !good || !relative_residual.is_finite() {
+        // Balancing may lift what is zero up to rounding: ask once more as given, to name the mode.
+        require_stabilisable(&given)?;
         if accepted == Poles::Stable {
-            // Balancing may lift what is zero up to rounding: ask once more as given, to name the mode.
             require_detectable(&given)?;
         }
         return Err(no_solution(equation, relative_residual));
@@ -169,6 +175,9 @@ fn solve(
     })
 }
 
+/// From an equation to a first approximation.
+type Start = fn(&Equation) -> Option<DoubleMatrix>;
+
 /// A refined solution in the coordinates of its equation.
 struct Attempt<'a> {
     equation: &'a Equation,
@@ -180,12 +189,9 @@ struct Attempt<'a> {
 /// Tries the starts in each scaling until one refines to full accuracy; otherwise the best there was.
 fn best_attempt(scalings: &[Equation]) -> Option<Attempt<'_>> {
     let mut best: Option<Attempt> = None;
-    let starts: [fn(&DMatrix<f64>) -> Option<DoubleMatrix>; 3] =
-        [by_sign_function, by_schur_vectors, by_precise_sign_function];
-    for start in starts {
+    for start in [by_sign_function as Start, by_schur_vectors, by_precise_sign_function] {
         for equation in scalings {
-            let h = equation.hamiltonian();
-            let Some(refined) = start(&h).and_then(|x| refine(equation, x)) else { continue };
+            let Some(refined) = start(equation).and_then(|x| refine(equation, x)) else { continue };
             let Ok(abscissa) = spectral_abscissa(&refined.closed_loop) else { continue };
             let attempt = Attempt { equation, refined, abscissa };
             // A stable attempt beats an unstable one; among equals the better known one wins.
@@ -199,113 +205,6 @@ fn best_attempt(scalings: &[Equation]) -> Option<Attempt<'_>> {
         }
     }
     best
-}
-
-/// Refuses a Q with a negative eigenvalue, after its diagonal has been brought to about 1.
-fn require_positive_semidefinite(q: &DMatrix<f64>) -> Result<(), DesignError> {
-    let n = q.nrows();
-    let scale: Vec<f64> =
-        q.diagonal().iter().map(|d| if *d > 0.0 { (-0.5 * d.log2()).round().exp2() } else { 1.0 }).collect();
-    let scaled = DMatrix::from_fn(n, n, |i, j| q[(i, j)] * scale[i] * scale[j]);
-    // Sorted by real part.
-    let smallest = eigenvalues(&scaled)?[0].re;
-    if smallest >= -10.0 * n as f64 * f64::EPSILON * scaled.norm() {
-        return Ok(());
-    }
-    let eigenvalue = eigenvalues(q)?[0].re;
-    Err(DesignError::NotPositiveSemidefinite { eigenvalue: if eigenvalue < 0.0 { eigenvalue } else { smallest } })
-}
-
-/// Refuses a pair whose input does not reach an unstable or marginal mode.
-fn require_stabilisable(equation: &Equation) -> Result<(), DesignError> {
-    let stairs = staircase(&equation.a, &equation.factor.hi)?;
-    if stairs.uncontrollable == 0 {
-        return Ok(());
-    }
-    let unreached = stairs.uncontrollable_a();
-    let tolerance = unreached.nrows() as f64 * f64::EPSILON * equation.a.norm();
-    for eigenvalue in eigenvalues(&unreached)?.into_iter().rev() {
-        if eigenvalue.re >= -tolerance || on_axis(&unreached, eigenvalue, tolerance) {
-            return Err(DesignError::NotStabilisable { eigenvalue });
-        }
-    }
-    Ok(())
-}
-
-/// Refuses a Q that does not see a mode of A on the imaginary axis.
-fn require_detectable(equation: &Equation) -> Result<(), DesignError> {
-    let stairs = staircase(&equation.a.transpose(), &equation.q)?;
-    if stairs.uncontrollable == 0 {
-        return Ok(());
-    }
-    let unseen = stairs.uncontrollable_a();
-    let tolerance = unseen.nrows() as f64 * f64::EPSILON * equation.a.norm();
-    for eigenvalue in eigenvalues(&unseen)? {
-        if on_axis(&unseen, eigenvalue, tolerance) {
-            return Err(DesignError::NotDetectable { eigenvalue });
-        }
-    }
-    Ok(())
-}
-
-/// Whether the point of the axis beside `eigenvalue` is an eigenvalue of `m` up to a change of `m` by `tolerance`.
-///
-/// The distance of a computed eigenvalue from the axis would not tell: a double one is off by the root of the rounding.
-fn on_axis(m: &DMatrix<f64>, eigenvalue: Complex64, tolerance: f64) -> bool {
-    if eigenvalue.re.abs() > 1e-2 * m.norm() {
-        return false;
-    }
-    let mut shifted = m.map(|value| Complex64::new(value, 0.0));
-    for i in 0..m.nrows() {
-        shifted[(i, i)] -= Complex64::new(0.0, eigenvalue.im);
-    }
-    // The inverse's Frobenius norm bounds the smallest singular value from below within sqrt(n).
-    shifted.try_inverse().is_none_or(|inverse| {
-        let norm = inverse.norm();
-        !norm.is_finite() || norm * tolerance >= 1.0
-    })
-}
-
-/// A pole of the closed loop that is on the axis as far as the entries of the Hamiltonian are known.
-///
-/// Decided in three scalings, since one in which the matrix is far from singular settles that it is not: the equation's
-/// own, the one in which X has a unit diagonal, and the balanced one.
-fn marginal_pole(equation: &Equation, refined: &Refined, abscissa: f64) -> Option<Complex64> {
-    if abscissa.abs() > 1e-5 * refined.closed_loop.norm() {
-        return None;
-    }
-    let h = equation.hamiltonian();
-    let n = equation.a.nrows();
-    let unit = |i: usize| {
-        let diagonal = refined.x.hi[(i % n, i % n)].abs();
-        let d = if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 };
-        if i < n { d } else { 1.0 / d }
-    };
-    let unit_diagonal = DMatrix::from_fn(2 * n, 2 * n, |i, j| h[(i, j)] / unit(i) * unit(j));
-    let poles = eigenvalues(&refined.closed_loop).ok()?;
-    let nearest = poles.last().filter(|pole| {
-        [&h, &unit_diagonal, &balance(&h).0].into_iter().all(|scaled| {
-            let tolerance = 10.0 * scaled.nrows() as f64 * f64::EPSILON * scaled.norm();
-            on_axis(scaled, **pole, tolerance)
-        })
-    })?;
-    Some(Complex64::new(0.0, nearest.im.abs()))
-}
-
-/// Why there is no solution: an eigenvalue on the axis, or only too little accuracy.
-fn no_solution(equation: &Equation, residual: f64) -> DesignError {
-    let inaccurate = DesignError::Inaccurate { equation: "the Riccati equation", residual };
-    let h = balance(&equation.hamiltonian()).0;
-    let tolerance = 10.0 * h.nrows() as f64 * f64::EPSILON * h.norm();
-    let Ok(mut nearest) = eigenvalues(&h) else { return inaccurate };
-    nearest.retain(|value| value.im >= 0.0);
-    nearest.sort_by(|x, y| x.re.abs().total_cmp(&y.re.abs()));
-    // The few that are nearest to the axis: each costs an inverse.
-    nearest
-        .iter()
-        .take(4)
-        .find(|value| on_axis(&h, **value, tolerance))
-        .map_or(inaccurate, |value| DesignError::HamiltonianOnAxis { eigenvalue: Complex64::new(0.0, value.im) })
 }
 
 /// Kenney and Hewer's upper estimate of the condition number.

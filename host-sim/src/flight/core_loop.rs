@@ -3,13 +3,11 @@
 //! The one crossing between f64 and f32: states go in rounded, as from an estimator; trajectories go in as the pieces
 //! that the board stores; commands come out exactly.
 
-use nalgebra::{SMatrix, Vector3, Vector4};
-use quatrack::gain::{Gain, GainError};
+use nalgebra::{Vector3, Vector4};
 use quatrack::trajectory::TrajectoryError;
 use quatrack::{AnyLaw, Command, Limits, Piece, Player, Quaternion, Rate, Reference, State, Tracker};
 
 use super::closed_loop::HeldCommand;
-use crate::design::codegen::rounded;
 use crate::model::{InputVector, StateVector, attitude, position, velocity};
 use crate::trajectory::polynomial::PiecewisePolynomial;
 
@@ -30,14 +28,6 @@ pub fn state(x: &StateVector) -> State {
 pub fn input(command: &Command) -> InputVector {
     let rates = command.body_rates_rad_s.map(f64::from);
     InputVector::new(f64::from(command.thrust_m_s2), rates.x, rates.y, rates.z)
-}
-
-/// A designed gain as the core flies it: every entry rounded to f32.
-///
-/// # Errors
-/// [`GainError`] where the rounded gain is none: an entry too large for f32, or a column of zeros.
-pub fn to_core_gain<const M: usize, const N: usize>(gain: &SMatrix<f64, M, N>) -> Result<Gain<M, N>, GainError> {
-    Gain::new(rounded(gain))
 }
 
 /// An input cut to the core's limits, and whether it was; nothing where it is not finite. An input within the limits
