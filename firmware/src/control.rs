@@ -46,7 +46,7 @@ fn climb(state: &State) -> Command {
     let mut player = Player::new(trajectory, rate);
     let mut command = Command::ZERO;
     for tick in 0..player.end_tick() {
-        let Ok(reference) = Reference::from_flat(&player.at(tick)) else { return Command::ZERO };
+        let Ok(reference) = player.reference(tick) else { return Command::ZERO };
         for tracker in &trackers {
             let Ok(step) = tracker.step(black_box(state), &reference) else { return Command::ZERO };
             command = black_box(step.command);

@@ -2,6 +2,7 @@
 
 mod analyze;
 mod fly;
+mod limits;
 mod output;
 mod plan;
 mod reproduce;
