@@ -4,7 +4,7 @@ use core::hint::black_box;
 
 use quatrack::gains::paper;
 use quatrack::nalgebra::Vector3;
-use quatrack::{Command, Equilibrium, FlatOutput, Limits, Piece, Player, Rate, Reference, State, Tracker, Trajectory};
+use quatrack::{Command, Equilibrium, FlatOutput, Limits, Piece, Player, Rate, State, Tracker, Trajectory};
 
 /// Rest to rest, half a metre up in two seconds: `z = 0.5 (35 s^4 - 84 s^5 + 70 s^6 - 20 s^7)` with `s = t / 2 s`.
 static CLIMB: [Piece; 1] = [Piece {
