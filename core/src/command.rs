@@ -64,19 +64,37 @@ impl core::error::Error for LimitsError {}
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limited {
-    /// Thrust.
-    pub thrust: bool,
-    /// Body rates `p q r`, each.
-    pub body_rates: [bool; 3],
+    /// Bit i for the i-th of `T p q r`.
+    bits: u8,
 }
 
 impl Limited {
     /// Nothing was cut.
-    pub const NOTHING: Self = Self { thrust: false, body_rates: [false; 3] };
+    pub const NOTHING: Self = Self { bits: 0 };
 
     /// Whether anything was cut.
-    pub fn any(self) -> bool {
-        self != Self::NOTHING
+    pub const fn any(self) -> bool {
+        self.bits != 0
+    }
+
+    /// Whether the thrust was cut.
+    pub const fn thrust(self) -> bool {
+        self.bits & 1 != 0
+    }
+
+    /// Whether the body rates `p q r` were cut, each.
+    pub const fn body_rates(self) -> [bool; 3] {
+        [self.bits & 2 != 0, self.bits & 4 != 0, self.bits & 8 != 0]
+    }
+
+    /// One bit for each of `T p q r`, lowest first; for a log or a link.
+    pub const fn bits(self) -> u8 {
+        self.bits
+    }
+
+    /// From [`Self::bits`]; higher bits are dropped.
+    pub const fn from_bits(bits: u8) -> Self {
+        Self { bits: bits & 0b1111 }
     }
 }
 
@@ -107,49 +125,47 @@ impl Limits {
         }
     }
 
-    /// Whether the command is finite and within the limits; false for NaN.
-    #[inline]
-    pub fn contain(&self, command: &Command) -> bool {
-        let rates = &command.body_rates_rad_s;
-        let max = &self.body_rates_max_rad_s;
-        command.thrust_m_s2 >= self.thrust_min_m_s2
-            && command.thrust_m_s2 <= self.thrust_max_m_s2
-            && rates.x.abs() <= max.x
-            && rates.y.abs() <= max.y
-            && rates.z.abs() <= max.z
-    }
-
     /// The command cut to the limits and what was cut; nothing where a number is not finite.
     #[inline]
     pub fn saturate(&self, command: &Command) -> Option<(Command, Limited)> {
-        if self.contain(command) { Some((*command, Limited::NOTHING)) } else { self.cut(command) }
-    }
-
-    #[cold]
-    fn cut(&self, command: &Command) -> Option<(Command, Limited)> {
-        let rates = &command.body_rates_rad_s;
+        let Command { thrust_m_s2: thrust, body_rates_rad_s: rates } = *command;
         let max = &self.body_rates_max_rad_s;
-        if !(command.thrust_m_s2.is_finite() && rates.iter().all(|rate| rate.is_finite())) {
-            return None;
-        }
-        let cut = Command {
-            thrust_m_s2: command.thrust_m_s2.max(self.thrust_min_m_s2).min(self.thrust_max_m_s2),
-            body_rates_rad_s: Vector3::new(
-                rates.x.max(-max.x).min(max.x),
-                rates.y.max(-max.y).min(max.y),
-                rates.z.max(-max.z).min(max.z),
-            ),
-        };
-        let limited = Limited {
-            thrust: cut.thrust_m_s2 != command.thrust_m_s2,
-            body_rates: [
-                cut.body_rates_rad_s.x != rates.x,
-                cut.body_rates_rad_s.y != rates.y,
-                cut.body_rates_rad_s.z != rates.z,
-            ],
-        };
-        Some((cut, limited))
+        let mut limited = Limited::NOTHING;
+        let thrust = within(thrust, self.thrust_min_m_s2, self.thrust_max_m_s2, 1, &mut limited)?;
+        let p = within_size(rates.x, max.x, 2, &mut limited)?;
+        let q = within_size(rates.y, max.y, 4, &mut limited)?;
+        let r = within_size(rates.z, max.z, 8, &mut limited)?;
+        Some((Command { thrust_m_s2: thrust, body_rates_rad_s: Vector3::new(p, q, r) }, limited))
     }
+}
+
+// Both tests below fail for NaN, and what fails is looked at again. `f32::min` and `max` would be library calls on the
+// Cortex-M4, and turn NaN into a limit.
+
+/// A value cut to `[min, max]`, noted as `bit` where it was; nothing where it is not finite.
+#[inline(always)]
+fn within(value: f32, min: f32, max: f32, bit: u8, limited: &mut Limited) -> Option<f32> {
+    if value >= min && value <= max {
+        return Some(value);
+    }
+    limited.bits |= bit;
+    is_finite(value).then_some(if value > max { max } else { min })
+}
+
+/// A value cut to `[-max, max]`, likewise.
+#[inline(always)]
+fn within_size(value: f32, max: f32, bit: u8, limited: &mut Limited) -> Option<f32> {
+    if value.abs() <= max {
+        return Some(value);
+    }
+    limited.bits |= bit;
+    is_finite(value).then_some(if value > 0.0 { max } else { -max })
+}
+
+/// By a comparison, as the rest of the step: the integer test of `f32::is_finite` moves the value out of the FPU.
+#[inline(always)]
+fn is_finite(value: f32) -> bool {
+    value.abs() <= f32::MAX
 }
 
 #[cfg(test)]
@@ -174,7 +190,8 @@ mod tests {
     fn each_part_is_cut_and_reported_alone() {
         let (cut, limited) = limits().saturate(&command(1.0, 11.0, 0.0, -4.0)).unwrap();
         assert_eq!(cut, command(2.0, 10.0, 0.0, -3.0));
-        assert_eq!(limited, Limited { thrust: true, body_rates: [true, false, true] });
+        assert_eq!((limited.thrust(), limited.body_rates()), (true, [true, false, true]));
+        assert_eq!(Limited::from_bits(limited.bits()), limited);
         assert!(limited.any());
     }
 

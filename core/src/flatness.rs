@@ -8,7 +8,7 @@
 use nalgebra::Vector3;
 
 use crate::command::Command;
-use crate::error::ReferenceError;
+use crate::error::{Field, ReferenceError};
 use crate::math::sqrt;
 use crate::quaternion::{Heading, Quaternion};
 
@@ -54,7 +54,9 @@ pub fn phi(
     q3_rate_1_s: f32,
 ) -> Result<AttitudeAndInput, ReferenceError> {
     let tilt = Tilt::new(acceleration_m_s2, jerk_m_s3);
-    tilt.check()?;
+    if !tilt.is_regular() {
+        return Err(tilt.fault());
+    }
     let mapped = tilt.with_q3(q3, q3_rate_1_s);
     // Zero at the end of the chart, NaN beyond.
     if mapped.attitude.w > 0.0 { Ok(mapped) } else { Err(ReferenceError::HeadingInfeasible { q3 }) }
@@ -71,7 +73,9 @@ pub fn phi_at_heading(
     heading_rate_rad_s: f32,
 ) -> Result<AttitudeAndInput, ReferenceError> {
     let tilt = Tilt::new(acceleration_m_s2, jerk_m_s3);
-    tilt.check()?;
+    if !tilt.is_regular() {
+        return Err(tilt.fault());
+    }
     Ok(tilt.with_heading(heading, heading_rate_rad_s))
 }
 
@@ -123,16 +127,25 @@ impl Tilt {
         Self { thrust_m_s2: thrust, axis: n, scale, rate_a: n_rate.x - n.x * k, rate_b: n_rate.y - n.y * k }
     }
 
-    /// Refuses the two singularities; NaN is let through for the caller's check of the result.
+    /// Whether the map is away from its singularities and all of it finite; false for NaN.
     #[inline]
-    pub(crate) fn check(&self) -> Result<(), ReferenceError> {
+    pub(crate) fn is_regular(&self) -> bool {
+        self.thrust_m_s2 >= MIN_THRUST_M_S2
+            && self.axis.z >= MIN_AXIS_Z
+            // Thrust and jerk beyond the range of f32 show here.
+            && (self.rate_a + self.rate_b).abs() <= f32::MAX
+    }
+
+    /// Why it is not.
+    #[cold]
+    pub(crate) fn fault(&self) -> ReferenceError {
         if self.thrust_m_s2 < MIN_THRUST_M_S2 {
-            return Err(ReferenceError::NoThrust { thrust_m_s2: self.thrust_m_s2 });
+            ReferenceError::NoThrust { thrust_m_s2: self.thrust_m_s2 }
+        } else if self.axis.z < MIN_AXIS_Z {
+            ReferenceError::Inverted { axis_z: self.axis.z }
+        } else {
+            ReferenceError::NonFinite { field: Field::Jerk, value: self.rate_a + self.rate_b }
         }
-        if self.axis.z < MIN_AXIS_Z {
-            return Err(ReferenceError::Inverted { axis_z: self.axis.z });
-        }
-        Ok(())
     }
 
     /// `s = cos^2(tilt/2) = q0^2 + q3^2`.
@@ -165,6 +178,16 @@ impl Tilt {
         let (p, q) = self.turned(cos, sin);
         let r = heading_rate_rad_s + (self.rate_a * self.axis.y - self.rate_b * self.axis.x) * self.scale;
         self.mapped(attitude, Vector3::new(p, q, r))
+    }
+
+    /// [`Self::with_heading`] at heading 0.
+    #[inline]
+    pub(crate) fn straight(&self, heading_rate_rad_s: f32) -> AttitudeAndInput {
+        let root = sqrt(self.cos_half_tilt_squared());
+        let (n, half) = (self.axis, root * self.scale);
+        let attitude = Quaternion::new(root, -n.y * half, n.x * half, 0.0);
+        let r = heading_rate_rad_s + (self.rate_a * n.y - self.rate_b * n.x) * self.scale;
+        self.mapped(attitude, Vector3::new(-self.rate_b, self.rate_a, r))
     }
 
     fn turned(&self, cos: f32, sin: f32) -> (f32, f32) {

@@ -93,11 +93,24 @@ impl<const M: usize, const N: usize> Gain<M, N> {
     pub(crate) fn times(&self, error: &[f32; N]) -> [f32; M] {
         let mut product = [0.0; M];
         for (sum, row) in product.iter_mut().zip(&self.rows) {
-            for (k, e) in row.iter().zip(error) {
-                *sum += k * e;
-            }
+            *sum = row.iter().zip(error).fold(0.0, |sum, (k, e)| sum + k * e);
         }
         product
+    }
+
+    /// The rows of `-K`.
+    pub(crate) const fn negated(&self) -> [[f32; N]; M] {
+        let mut rows = self.rows;
+        let mut row = 0;
+        while row < M {
+            let mut column = 0;
+            while column < N {
+                rows[row][column] = -rows[row][column];
+                column += 1;
+            }
+            row += 1;
+        }
+        rows
     }
 
     /// Whether every entry outside the listed ones, as (row, column), is zero.

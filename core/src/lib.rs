@@ -13,7 +13,7 @@
 //! let step = tracker.step(&State::at_rest(Vector3::new(0.0, 0.0, 0.9)), &reference)?;
 //! // 10 cm too low: 100 m/s^2 per metre on top of gravity, cut to what the motors can do.
 //! assert_eq!(step.command.thrust_m_s2, 16.5);
-//! assert!(step.limited.thrust);
+//! assert!(step.limited.thrust());
 //! # Ok::<(), Box<dyn core::error::Error>>(())
 //! ```
 //!

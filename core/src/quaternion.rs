@@ -63,12 +63,9 @@ impl Quaternion {
         )
     }
 
-    /// The quaternion scaled to norm 1, for a squared norm within 0.02 of 1, which the caller has checked.
+    /// Every component times `scale`.
     #[inline]
-    pub(crate) fn normalised(self, norm_squared: f32) -> Self {
-        // The series of 1 / sqrt(1 + e): its next term, 63/256 e^5, is below 8e-10 there. No root, no division.
-        let e = norm_squared - 1.0;
-        let scale = 1.0 - e * (0.5 - e * (0.375 - e * (0.3125 - e * 0.273_437_5)));
+    pub(crate) fn scaled(self, scale: f32) -> Self {
         Self::new(self.w * scale, self.x * scale, self.y * scale, self.z * scale)
     }
 }
@@ -100,21 +97,23 @@ impl Neg for Quaternion {
 /// smallest rotation that tilts the thrust axis to `n` is taken off. Not Z-Y-X yaw, from which it differs away from
 /// hover.
 ///
-/// Held as cosine and sine of half the angle; always of unit norm.
+/// Held as cosine and sine of half the angle and of the angle; always of unit norm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heading {
     cos_half: f32,
     sin_half: f32,
+    cos: f32,
+    sin: f32,
 }
 
 impl Heading {
     /// Heading 0, the paper's.
-    pub const ZERO: Self = Self { cos_half: 1.0, sin_half: 0.0 };
+    pub const ZERO: Self = Self { cos_half: 1.0, sin_half: 0.0, cos: 1.0, sin: 0.0 };
 
     /// From the angle psi in radians, within +-2000; turns are kept apart (psi and psi + 2 pi give `q` and `-q`).
     pub fn from_angle(psi_rad: f32) -> Self {
-        let (sin_half, cos_half) = sin_cos(0.5 * psi_rad);
-        Self { cos_half, sin_half }
+        let (s, c) = sin_cos(0.5 * psi_rad);
+        Self { cos_half: c, sin_half: s, cos: c * c - s * s, sin: 2.0 * c * s }
     }
 
     /// Cosine of half the angle.
@@ -129,8 +128,7 @@ impl Heading {
 
     /// Cosine and sine of the angle itself.
     pub fn cos_sin(self) -> (f32, f32) {
-        let (c, s) = (self.cos_half, self.sin_half);
-        (c * c - s * s, 2.0 * c * s)
+        (self.cos, self.sin)
     }
 
     /// The quaternion `q_z(psi)`.

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::command::Command;
 use crate::error::{Field, ReferenceError};
-use crate::flatness::{GRAVITY_M_S2, Tilt};
+use crate::flatness::Tilt;
 use crate::quaternion::Heading;
 use crate::state::State;
 
@@ -40,9 +40,9 @@ impl FlatSample {
         }
     }
 
-    /// Names the first number that is not finite.
+    /// Names the first number that is not finite; where only their sum is not, the largest is beyond any flight.
     #[cold]
-    fn non_finite(&self) -> Option<ReferenceError> {
+    fn fault(&self) -> ReferenceError {
         let vectors = [
             (Field::Position, &self.position_m),
             (Field::Velocity, &self.velocity_m_s),
@@ -51,10 +51,12 @@ impl FlatSample {
         ];
         let scalars = [(Field::Heading, self.heading_rad), (Field::HeadingRate, self.heading_rate_rad_s)];
         let in_vectors = vectors.iter().flat_map(|(field, v)| [(*field, v.x), (*field, v.y), (*field, v.z)]);
-        in_vectors
-            .chain(scalars)
-            .find(|(_, value)| !value.is_finite())
-            .map(|(field, value)| ReferenceError::NonFinite { field, value })
+        let worst = |worst: (Field, f32), next: (Field, f32)| {
+            // Keeps what is not finite, else the larger; NaN is no smaller than anything.
+            if !worst.1.is_finite() || next.1.abs() <= worst.1.abs() { worst } else { next }
+        };
+        let (field, value) = in_vectors.chain(scalars).fold((Field::Position, 0.0), worst);
+        ReferenceError::NonFinite { field, value }
     }
 }
 
@@ -82,19 +84,30 @@ impl Reference {
     ///
     /// # Errors
     /// [`ReferenceError`] where a number is not finite and at the map's singularities.
-    #[inline]
     pub fn from_flat(sample: &FlatSample) -> Result<Self, ReferenceError> {
-        let tilt = Tilt::new(sample.acceleration_m_s2, sample.jerk_m_s3);
-        // Most flights do not turn: heading 0 needs no sine.
-        let heading = if sample.heading_rad == 0.0 { Heading::ZERO } else { Heading::from_angle(sample.heading_rad) };
-        let mapped = tilt.with_heading(heading, sample.heading_rate_rad_s);
-        let (r, v, rates) = (&sample.position_m, &sample.velocity_m_s, &mapped.input.body_rates_rad_s);
-        // Every number of the sample reaches one of these; a sum is finite only if all of them are.
-        let witness = (r.x + r.y + r.z) + (v.x + v.y + v.z) + (rates.x + rates.y + rates.z);
-        if !witness.is_finite() {
-            return Err(sample.singular_or_non_finite(mapped.input.thrust_m_s2));
+        let (r, v, a, j) = (&sample.position_m, &sample.velocity_m_s, &sample.acceleration_m_s2, &sample.jerk_m_s3);
+        // A sum is finite only if all of its terms are.
+        let witness = (r.x + r.y + r.z) + (v.x + v.y + v.z) + (a.x + a.y + a.z) + (j.x + j.y + j.z);
+        if !(witness + sample.heading_rad + sample.heading_rate_rad_s).is_finite() {
+            return Err(sample.fault());
         }
-        tilt.check()?;
+        Self::of_finite(sample)
+    }
+
+    /// The same for a sample that is known to be finite.
+    #[inline(always)]
+    pub(crate) fn of_finite(sample: &FlatSample) -> Result<Self, ReferenceError> {
+        let tilt = Tilt::new(sample.acceleration_m_s2, sample.jerk_m_s3);
+        if !tilt.is_regular() {
+            return Err(tilt.fault());
+        }
+        // Most flights do not turn: heading 0 needs no sine and no products with it.
+        let (heading, mapped) = if sample.heading_rad == 0.0 {
+            (Heading::ZERO, tilt.straight(sample.heading_rate_rad_s))
+        } else {
+            let heading = Heading::from_angle(sample.heading_rad);
+            (heading, tilt.with_heading(heading, sample.heading_rate_rad_s))
+        };
         Ok(Self {
             state: State {
                 position_m: sample.position_m,
@@ -132,17 +145,5 @@ impl Reference {
     /// Heading of the attitude.
     pub fn heading(&self) -> Heading {
         self.heading
-    }
-}
-
-impl FlatSample {
-    /// Why the flat map gave something that is not finite.
-    #[cold]
-    fn singular_or_non_finite(&self, thrust_m_s2: f32) -> ReferenceError {
-        self.non_finite().unwrap_or(if thrust_m_s2 > 0.0 && self.acceleration_m_s2.z < -GRAVITY_M_S2 {
-            ReferenceError::Inverted { axis_z: -1.0 }
-        } else {
-            ReferenceError::NoThrust { thrust_m_s2 }
-        })
     }
 }

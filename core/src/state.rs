@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::error::{Field, StateError};
-use crate::quaternion::Quaternion;
+use crate::quaternion::{Heading, Quaternion};
 
 /// Largest deviation of a measured quaternion's squared norm from 1 that is taken for rounding and normalised away:
 /// the norm itself may be off by 1 %. Estimators keep theirs within 1e-6, compressed quaternions of a radio link within
@@ -28,44 +28,104 @@ impl State {
         Self { position_m, attitude: Quaternion::IDENTITY, velocity_m_s: Vector3::new(0.0, 0.0, 0.0) }
     }
 
-    /// The state with its quaternion scaled to norm 1.
-    ///
-    /// Only the norm is looked at: a position or velocity that is not finite shows in the command, which is checked.
+    /// Checks that all numbers are finite and the quaternion's norm is near 1, and scales the quaternion to norm 1.
     ///
     /// # Errors
-    /// [`StateError::QuaternionNorm`] where the norm is off by more than [`NORM_SQUARED_TOLERANCE`] allows, and
-    /// [`StateError::NonFinite`] where a component of the quaternion is not finite.
-    #[inline]
-    pub fn normalised(&self) -> Result<Self, StateError> {
-        let norm_squared = self.attitude.dot(self.attitude);
-        // Written so that NaN fails it.
-        if (norm_squared - 1.0).abs() <= NORM_SQUARED_TOLERANCE {
-            Ok(Self { attitude: self.attitude.normalised(norm_squared), ..*self })
-        } else {
-            Err(self.fault(norm_squared))
+    /// [`StateError::NonFinite`] names a component, [`StateError::QuaternionNorm`] the norm where it is off by more than
+    /// [`NORM_SQUARED_TOLERANCE`] allows.
+    pub fn validated(&self) -> Result<Self, StateError> {
+        match self.fault() {
+            None => {
+                Ok(Self { attitude: self.attitude.scaled(inverse_norm(self.attitude.dot(self.attitude))), ..*self })
+            }
+            Some(fault) => Err(fault),
         }
     }
 
-    /// Names what is wrong with a state whose quaternion has been refused.
-    #[cold]
-    fn fault(&self, norm_squared: f32) -> StateError {
-        self.non_finite().unwrap_or(StateError::QuaternionNorm { norm_squared })
+    /// The state as the laws take it; nothing where the quaternion's norm is too far off.
+    ///
+    /// Only the norm is looked at: a position or velocity that is not finite shows in the command, which is checked.
+    #[inline]
+    pub fn measured(&self) -> Option<Measured<'_>> {
+        let norm_squared = self.attitude.dot(self.attitude);
+        let near = is_near_one(norm_squared);
+        near.then(|| Measured { state: self, scale: inverse_norm(norm_squared) })
     }
 
-    /// The first component that is not finite.
+    /// The first component that is not finite, else a quaternion's norm that is off.
     #[cold]
-    pub(crate) fn non_finite(&self) -> Option<StateError> {
+    pub(crate) fn fault(&self) -> Option<StateError> {
         let Self { position_m: r, attitude: q, velocity_m_s: v } = self;
         let fields = [
             (Field::Position, [r.x, r.y, r.z, 0.0]),
             (Field::Attitude, [q.w, q.x, q.y, q.z]),
             (Field::Velocity, [v.x, v.y, v.z, 0.0]),
         ];
-        fields.iter().find_map(|(field, values)| {
+        let non_finite = fields.iter().find_map(|(field, values)| {
             let value = values.iter().copied().find(|value| !value.is_finite())?;
             Some(StateError::NonFinite { field: *field, value })
-        })
+        });
+        let norm_squared = q.dot(*q);
+        non_finite.or((!is_near_one(norm_squared)).then_some(StateError::QuaternionNorm { norm_squared }))
     }
+}
+
+/// A state whose quaternion is an attitude: its norm is known, and divided out of what is computed from it.
+#[derive(Clone, Copy, Debug)]
+pub struct Measured<'a> {
+    state: &'a State,
+    /// One over the quaternion's norm.
+    scale: f32,
+}
+
+impl Measured<'_> {
+    /// Position in the world frame, m.
+    pub fn position_m(&self) -> &Vector3<f32> {
+        &self.state.position_m
+    }
+
+    /// Velocity in the world frame, m/s.
+    pub fn velocity_m_s(&self) -> &Vector3<f32> {
+        &self.state.velocity_m_s
+    }
+
+    /// The attitude, of norm 1 and of the sign that was measured.
+    pub fn attitude(&self) -> Quaternion {
+        self.state.attitude.scaled(self.scale)
+    }
+
+    /// The attitude of norm 1 seen from a target, `target^-1 q`, of the sign with a scalar part of at least 0: the
+    /// measured attitude in the target's hemisphere.
+    #[inline]
+    pub fn attitude_from(&self, target: Quaternion) -> Quaternion {
+        self.shorter(target.conjugate() * self.state.attitude)
+    }
+
+    /// The attitude of norm 1 seen from a frame of some heading, of the sign with a scalar part of at least 0.
+    #[inline]
+    pub fn attitude_from_heading(&self, heading: Heading) -> Quaternion {
+        self.shorter(heading.attitude_to_heading_frame(self.state.attitude))
+    }
+
+    /// Norm and sign in one product: a turn of the frame keeps both.
+    #[inline]
+    fn shorter(&self, turned: Quaternion) -> Quaternion {
+        turned.scaled(if turned.w < 0.0 { -self.scale } else { self.scale })
+    }
+}
+
+/// Written so that NaN fails it.
+#[inline]
+fn is_near_one(norm_squared: f32) -> bool {
+    (norm_squared - 1.0).abs() <= NORM_SQUARED_TOLERANCE
+}
+
+/// `1 / sqrt(norm_squared)` near 1, by the series of `1 / sqrt(1 + e)`: its next term, 35/128 e^4, is below 4.4e-8 within
+/// [`NORM_SQUARED_TOLERANCE`], less than the spacing of f32 at 1. No root, no division.
+#[inline]
+fn inverse_norm(norm_squared: f32) -> f32 {
+    let e = norm_squared - 1.0;
+    1.0 - e * (0.5 - e * (0.375 - e * 0.3125))
 }
 
 #[cfg(test)]
@@ -80,7 +140,7 @@ mod tests {
     fn a_quaternion_within_the_bound_is_normalised() {
         for scale in [0.991_f32, 1.0, 1.009] {
             let raw = Quaternion::new(0.5 * scale, 0.5 * scale, -0.1 * scale, 0.7 * scale);
-            let q = with_attitude(raw).normalised().unwrap().attitude;
+            let q = with_attitude(raw).validated().unwrap().attitude;
             assert!((q.dot(q) - 1.0).abs() <= 4.0 * f32::EPSILON, "scale {scale}");
         }
     }
@@ -89,14 +149,14 @@ mod tests {
     fn a_quaternion_beyond_the_bound_is_refused_with_its_norm() {
         for scale in [0.0_f32, 0.98, 1.02, 5.0] {
             let raw = Quaternion::new(scale, 0.0, 0.0, 0.0);
-            let refused = with_attitude(raw).normalised();
+            let refused = with_attitude(raw).validated();
             assert_eq!(refused, Err(StateError::QuaternionNorm { norm_squared: scale * scale }));
         }
     }
 
     #[test]
     fn a_quaternion_that_is_not_finite_is_named() {
-        let refused = with_attitude(Quaternion::new(1.0, f32::INFINITY, 0.0, 0.0)).normalised();
+        let refused = with_attitude(Quaternion::new(1.0, f32::INFINITY, 0.0, 0.0)).validated();
         assert_eq!(refused, Err(StateError::NonFinite { field: Field::Attitude, value: f32::INFINITY }));
     }
 }

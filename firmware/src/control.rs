@@ -1,7 +1,7 @@
 //! The control step against four small traits: a clock, a state, a reference in; one command out. No hardware.
 
 use quatrack::link::NoCommand;
-use quatrack::{Command, FlatSample, Reference, State, Step, Tick, Tracker};
+use quatrack::{Command, Reference, ReferenceError, State, Step, Tick, Tracker};
 
 /// Which tick it is, on the clock that the reference is played by.
 pub trait Clock {
@@ -17,8 +17,14 @@ pub trait StateSource {
 
 /// Where references come from: a stored trajectory, or a link.
 pub trait ReferenceSource {
-    /// The flat output at a tick, if there is anything to follow.
-    fn at(&mut self, now: Tick) -> Option<FlatSample>;
+    /// Whether there is anything to follow.
+    fn is_there(&self) -> bool;
+
+    /// The reference at a tick.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] where it cannot be flown.
+    fn at(&mut self, now: Tick) -> Result<Reference, ReferenceError>;
 }
 
 /// Where commands go: nowhere yet; the rate loop and its motors where there are some.
@@ -38,10 +44,9 @@ pub fn step(
     references: &mut impl ReferenceSource,
     tracker: &Tracker<'_>,
 ) -> Result<Step, NoCommand> {
-    let state = states.newest().ok_or(NoCommand::NoReference)?;
-    // Looked at where they lie: to move a sample or a reference out costs as many instructions as a law's product.
-    let Some(sample) = &references.at(clock.now()) else { return Err(NoCommand::NoReference) };
-    match &Reference::from_flat(sample) {
+    let Some(state) = states.newest().filter(|_| references.is_there()) else { return Err(NoCommand::NoReference) };
+    // Looked at where it lies: to move a reference out costs as many instructions as the product with a gain.
+    match &references.at(clock.now()) {
         Ok(reference) => tracker.step(state, reference).map_err(NoCommand::Step),
         Err(error) => Err(NoCommand::Reference(*error)),
     }

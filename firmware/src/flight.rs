@@ -152,9 +152,8 @@ impl Flight {
 
     /// Chooses a law; whether its table is on board.
     pub fn select(&mut self, law: LawChoice) -> bool {
-        let Some(built_in) = law.built_in() else { return false };
-        self.law = law;
-        self.tracker = Tracker::new(built_in, *self.tracker.limits());
+        let (Some(built_in), Ok(limits)) = (law.built_in(), self.limits.check()) else { return false };
+        (self.law, self.tracker) = (law, Tracker::new(built_in, limits));
         true
     }
 

@@ -1,7 +1,8 @@
 //! What is followed: orders from the link in, the flat output of a tick out.
 
 use quatrack::link::{TRAJECTORY_PIECES, TrajectoryStore};
-use quatrack::{FlatSample, Player, Tick};
+use quatrack::nalgebra::Vector3;
+use quatrack::{FlatSample, Player, Reference, ReferenceError, Tick};
 
 use crate::control::ReferenceSource;
 use crate::flight::TICK_RATE;
@@ -98,29 +99,41 @@ impl Playback {
 
 impl ReferenceSource for Playback {
     #[inline]
-    fn at(&mut self, now: Tick) -> Option<FlatSample> {
+    fn is_there(&self) -> bool {
+        !matches!(self.source, Source::Nothing)
+    }
+
+    #[inline]
+    fn at(&mut self, now: Tick) -> Result<Reference, ReferenceError> {
         let tick = self.trajectory_tick(now);
         match &mut self.source {
-            Source::Flash(player) if self.moving => Some(player.at(tick)),
+            Source::Flash(player) if self.moving => player.reference(tick),
             _ => self.otherwise(tick),
         }
     }
 }
 
 impl Playback {
-    /// The flat output of everything but a moving trajectory in flash.
+    /// The reference of everything but a moving trajectory in flash.
     #[cold]
-    fn otherwise(&mut self, tick: Tick) -> Option<FlatSample> {
+    fn otherwise(&mut self, tick: Tick) -> Result<Reference, ReferenceError> {
         let sample = match &mut self.source {
-            Source::Nothing => return None,
-            Source::Link(sample) => return Some(*sample),
+            Source::Link(sample) => return Reference::from_flat(sample),
             Source::Flash(player) => player.at(tick),
             // The pieces are checked anew at every step, some 10,000 instructions, because the store may change.
-            Source::Uploaded => Player::new(self.store.active().trajectory()?, TICK_RATE).at(tick),
+            Source::Uploaded => match self.store.active().trajectory() {
+                Some(trajectory) => Player::new(trajectory, TICK_RATE).at(tick),
+                None => NOWHERE,
+            },
+            Source::Nothing => NOWHERE,
         };
-        Some(if self.moving { sample } else { FlatSample::at_rest(sample.position_m, sample.heading_rad) })
+        let rest = FlatSample::at_rest(sample.position_m, sample.heading_rad);
+        Reference::from_flat(if self.moving { &sample } else { &rest })
     }
 }
+
+/// Stands for a reference where there is none; it is refused, and nobody asks for it.
+const NOWHERE: FlatSample = FlatSample::at_rest(Vector3::new(f32::NAN, f32::NAN, f32::NAN), 0.0);
 
 #[cfg(test)]
 mod tests {
@@ -136,20 +149,20 @@ mod tests {
     fn a_trajectory_begins_with_the_first_step_and_rests_while_paused() {
         let mut direct = player();
         let mut playback = Playback::new(Box::leak(Box::default()));
-        assert_eq!(playback.at(5), None, "nothing to follow");
+        assert!(!playback.is_there(), "nothing to follow");
         playback.start(player());
-        assert_eq!(playback.at(1000), Some(direct.at(0)), "the clock's tick does not matter");
-        assert_eq!(playback.at(6000), Some(direct.at(5000)));
+        assert_eq!(playback.at(1000), direct.reference(0), "the clock's tick does not matter");
+        assert_eq!(playback.at(6000), direct.reference(5000));
         assert!(playback.pause());
         let there = direct.at(5000);
-        let rest = FlatSample::at_rest(there.position_m, there.heading_rad);
-        assert_eq!(playback.at(6010), Some(rest), "rests where it was");
-        assert_eq!(playback.at(9000), Some(rest), "however long");
+        let rest = Reference::hover(there.position_m, there.heading_rad);
+        assert_eq!(playback.at(6010), rest, "rests where it was");
+        assert_eq!(playback.at(9000), rest, "however long");
         assert!(playback.resume());
-        assert_eq!(playback.at(9002), Some(there), "goes on from there");
-        assert_eq!(playback.at(9004), Some(direct.at(5002)));
+        assert_eq!(playback.at(9002), direct.reference(5000), "goes on from there");
+        assert_eq!(playback.at(9004), direct.reference(5002));
         playback.stop();
-        assert_eq!(playback.at(9006), None);
+        assert!(!playback.is_there());
         assert!(!playback.pause(), "there is nothing left to pause");
     }
 
@@ -158,7 +171,7 @@ mod tests {
         let mut direct = player();
         let mut playback = Playback::new(Box::leak(Box::default()));
         playback.start(player());
-        assert_eq!(playback.at(u32::MAX - 1), Some(direct.at(0)));
-        assert_eq!(playback.at(4), Some(direct.at(6)));
+        assert_eq!(playback.at(u32::MAX - 1), direct.reference(0));
+        assert_eq!(playback.at(4), direct.reference(6));
     }
 }

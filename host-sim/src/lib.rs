@@ -9,8 +9,8 @@
 //!   flight                        plant, integrators, laws in f64, the f32 core in the loop, metrics
 //!     plan                        waypoints and bounds -> B-spline, by second-order cone programming
 //!       trajectory                B-splines, polynomial pieces, their files
-//!     analysis                    Section III: poles, Jordan blocks, controllability
 //!     design                      Section IV: Lyapunov and Riccati equations, the four gains
+//!     analysis                    Section III: poles, Jordan blocks, controllability
 //!       model                     Section II: the model (1), its linearisations
 //! ```
 //!

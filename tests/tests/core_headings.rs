@@ -131,7 +131,7 @@ fn the_sign_of_the_measured_quaternion_does_not_matter() {
         let trajectory = move_and_turn(PI - 1.5, PI + 1.5);
         let flip = |tick: u32, x: &StateVector| {
             let mut x = *x;
-            if tick % 3 == 0 {
+            if tick.is_multiple_of(3) {
                 x.fixed_rows_mut::<4>(3).neg_mut();
             }
             x

@@ -91,8 +91,7 @@ fn the_paper_s_integrator_agrees_with_runge_kutta_to_four_digits() {
                 Sampled::new(&trajectory, SAMPLE_PERIOD_S, quatrack_sim::reproduction::published::reference);
             let gain = gains.equilibrium(controller).unwrap();
             let iae = |method| {
-                let law =
-                    |x: &_, target: &_| quatrack_sim::reproduction::published::equilibrium_input(&gain, x, target);
+                let law = |x: &_, target: &_| quatrack_sim::reproduction::published::equilibrium_input(gain, x, target);
                 let flight = fly_continuous(&reference, law, Solver::Fixed { method, substeps: 1 });
                 Metrics::of(&flight).iae_m_s.unwrap()
             };

@@ -7,17 +7,19 @@ use crate::command::Command;
 use crate::flatness::GRAVITY_M_S2;
 use crate::gain::{Gain, GainError};
 use crate::reference::Reference;
-use crate::state::State;
+use crate::state::Measured;
 
 /// Outputs `[T p q r]` from errors `[x y z q1 q2 q3 vx vy vz]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquilibriumGain {
     gain: Gain<4, 9>,
+    /// `-K`: the law adds.
+    feedback: [[f32; 9]; 4],
     chains: Option<Chains>,
 }
 
 /// The gain of a design in which the hover model falls apart, as the paper's do: thrust answers to height, roll rate to
-/// y, pitch rate to x, yaw rate to heading. A quarter of the products of the whole matrix.
+/// y, pitch rate to x, yaw rate to heading. A quarter of the products of the whole matrix. Entries are those of `-K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Chains {
     /// From z and vz.
@@ -37,7 +39,10 @@ impl EquilibriumGain {
     /// [`GainError`] names the entry or column.
     pub const fn new(rows: [[f32; 9]; 4]) -> Result<Self, GainError> {
         match Gain::new(rows) {
-            Ok(gain) => Ok(Self { chains: Chains::of(&gain), gain }),
+            Ok(gain) => {
+                let feedback = gain.negated();
+                Ok(Self { chains: Chains::of(&gain, &feedback), feedback, gain })
+            }
             Err(error) => Err(error),
         }
     }
@@ -58,26 +63,35 @@ impl EquilibriumGain {
         &self.gain
     }
 
-    /// The same sums in the same order either way: leaving out a product with zero changes no bit of them.
+    /// `-K e`. The same sums in the same order either way: leaving out a product with zero changes no bit of them, and
+    /// neither does the sign.
     #[inline]
-    fn times(&self, error: &[f32; 9]) -> [f32; 4] {
-        let Some(Chains { thrust, roll, pitch, yaw }) = &self.chains else { return self.gain.times(error) };
-        let [x, y, z, q1, q2, q3, vx, vy, vz] = error;
-        [
-            thrust[0] * z + thrust[1] * vz,
-            roll[0] * y + roll[1] * q1 + roll[2] * vy,
-            pitch[0] * x + pitch[1] * q2 + pitch[2] * vx,
-            yaw * q3,
-        ]
+    fn feedback(&self, error: &[f32; 9]) -> [f32; 4] {
+        let [x, y, z, q1, q2, q3, vx, vy, vz] = *error;
+        match &self.chains {
+            Some(Chains { thrust, roll, pitch, yaw }) => [
+                thrust[0] * z + thrust[1] * vz,
+                roll[0] * y + roll[1] * q1 + roll[2] * vy,
+                pitch[0] * x + pitch[1] * q2 + pitch[2] * vx,
+                yaw * q3,
+            ],
+            None => {
+                // Written out, or the compiler loops over memory.
+                let row = |[k0, k1, k2, k3, k4, k5, k6, k7, k8]: &[f32; 9]| {
+                    k0 * x + k1 * y + k2 * z + k3 * q1 + k4 * q2 + k5 * q3 + k6 * vx + k7 * vy + k8 * vz
+                };
+                let [thrust, p, q, r] = &self.feedback;
+                [row(thrust), row(p), row(q), row(r)]
+            }
+        }
     }
 }
 
 impl Chains {
-    const fn of(gain: &Gain<4, 9>) -> Option<Self> {
+    const fn of(gain: &Gain<4, 9>, [t, p, q, r]: &[[f32; 9]; 4]) -> Option<Self> {
         if !gain.is_zero_outside(&[(0, 2), (0, 8), (1, 1), (1, 3), (1, 7), (2, 0), (2, 4), (2, 6), (3, 5)]) {
             return None;
         }
-        let [t, p, q, r] = gain.rows();
         Some(Self { thrust: [t[2], t[8]], roll: [p[1], p[3], p[7]], pitch: [q[0], q[4], q[6]], yaw: r[5] })
     }
 }
@@ -113,21 +127,19 @@ impl<'a> Equilibrium<'a> {
         Self { gain, error_form: ErrorForm::HeadingFrame, feed_forward: FeedForward::Without }
     }
 
-    fn error(&self, state: &State, reference: &Reference) -> [f32; 9] {
+    fn error(&self, state: &Measured<'_>, reference: &Reference) -> [f32; 9] {
         let target = &reference.state;
-        let r = difference(&state.position_m, &target.position_m);
-        let v = difference(&state.velocity_m_s, &target.velocity_m_s);
+        let r = difference(state.position_m(), &target.position_m);
+        let v = difference(state.velocity_m_s(), &target.velocity_m_s);
         match self.error_form {
             ErrorForm::HeadingFrame => {
                 let r = reference.heading.to_heading_frame(r);
                 let v = reference.heading.to_heading_frame(v);
-                let q = target.attitude.conjugate() * state.attitude;
-                // The measured attitude in the reference's hemisphere: its error has a scalar part above zero.
-                let q = if q.w < 0.0 { -q } else { q };
+                let q = state.attitude_from(target.attitude);
                 [r.x, r.y, r.z, q.x, q.y, q.z, v.x, v.y, v.z]
             }
             ErrorForm::Paper => {
-                let q = state.attitude.in_hemisphere_of(target.attitude);
+                let q = state.attitude().in_hemisphere_of(target.attitude);
                 let (dx, dy, dz) = (q.x - target.attitude.x, q.y - target.attitude.y, q.z - target.attitude.z);
                 [r.x, r.y, r.z, dx, dy, dz, v.x, v.y, v.z]
             }
@@ -137,18 +149,18 @@ impl<'a> Equilibrium<'a> {
 
 impl ControlLaw for Equilibrium<'_> {
     #[inline]
-    fn command(&self, state: &State, reference: &Reference) -> Command {
-        let [thrust, p, q, r] = self.gain.times(&self.error(state, reference));
+    fn command(&self, state: &Measured<'_>, reference: &Reference) -> Command {
+        let [thrust, p, q, r] = self.gain.feedback(&self.error(state, reference));
         match self.feed_forward {
             FeedForward::Without => {
-                Command { thrust_m_s2: GRAVITY_M_S2 - thrust, body_rates_rad_s: Vector3::new(-p, -q, -r) }
+                Command { thrust_m_s2: GRAVITY_M_S2 + thrust, body_rates_rad_s: Vector3::new(p, q, r) }
             }
             FeedForward::With => {
                 let input = &reference.input;
                 let rates = &input.body_rates_rad_s;
                 Command {
-                    thrust_m_s2: input.thrust_m_s2 - thrust,
-                    body_rates_rad_s: Vector3::new(rates.x - p, rates.y - q, rates.z - r),
+                    thrust_m_s2: input.thrust_m_s2 + thrust,
+                    body_rates_rad_s: Vector3::new(rates.x + p, rates.y + q, rates.z + r),
                 }
             }
         }

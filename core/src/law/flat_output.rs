@@ -12,7 +12,7 @@ use crate::flatness::{GRAVITY_M_S2, Tilt};
 use crate::gain::{Gain, GainError};
 use crate::math::sqrt;
 use crate::reference::Reference;
-use crate::state::State;
+use crate::state::Measured;
 
 /// Outputs `[a(3) j(3) q3']` from errors `[r(3) v(3) a(3) q3]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,7 @@ pub struct FlatOutputGain {
 
 /// The gain of a design in which the flat chain falls apart, as the paper's do: acceleration answers to position and
 /// velocity of its axis, jerk to acceleration, the rate of `q3` to `q3`. A seventh of the products of the whole matrix.
+/// Entries are those of `-K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Chains {
     position: [f32; 3],
@@ -59,22 +60,24 @@ impl FlatOutputGain {
         &self.gain
     }
 
-    /// The same sums in the same order either way: leaving out a product with zero changes no bit of them.
+    /// `-K e`. The same sums in the same order either way: leaving out a product with zero changes no bit of them, and
+    /// neither does the sign.
     #[inline]
-    fn times(&self, error: &[f32; 10]) -> [f32; 7] {
-        let Some(Chains { position: kr, velocity: kv, acceleration: ka, q3: kq }) = &self.chains else {
-            return self.gain.times(error);
-        };
-        let [x, y, z, vx, vy, vz, ax, ay, az, q3] = error;
-        [
-            kr[0] * x + kv[0] * vx,
-            kr[1] * y + kv[1] * vy,
-            kr[2] * z + kv[2] * vz,
-            ka[0] * ax,
-            ka[1] * ay,
-            ka[2] * az,
-            kq * q3,
-        ]
+    fn feedback(&self, error: &[f32; 10]) -> [f32; 7] {
+        let [x, y, z, vx, vy, vz, ax, ay, az, q3] = *error;
+        match &self.chains {
+            Some(Chains { position: kr, velocity: kv, acceleration: ka, q3: kq }) => [
+                kr[0] * x + kv[0] * vx,
+                kr[1] * y + kv[1] * vy,
+                kr[2] * z + kv[2] * vz,
+                ka[0] * ax,
+                ka[1] * ay,
+                ka[2] * az,
+                kq * q3,
+            ],
+            // An array of its own: the chains' errors then never need to stand in memory.
+            None => self.gain.times(&[x, y, z, vx, vy, vz, ax, ay, az, q3]).map(|sum| -sum),
+        }
     }
 }
 
@@ -86,10 +89,10 @@ impl Chains {
         }
         let [a0, a1, a2, j0, j1, j2, q] = gain.rows();
         Some(Self {
-            position: [a0[0], a1[1], a2[2]],
-            velocity: [a0[3], a1[4], a2[5]],
-            acceleration: [j0[6], j1[7], j2[8]],
-            q3: q[9],
+            position: [-a0[0], -a1[1], -a2[2]],
+            velocity: [-a0[3], -a1[4], -a2[5]],
+            acceleration: [-j0[6], -j1[7], -j2[8]],
+            q3: -q[9],
         })
     }
 }
@@ -112,14 +115,13 @@ impl<'a> FlatOutput<'a> {
 
 impl ControlLaw for FlatOutput<'_> {
     #[inline]
-    fn command(&self, state: &State, reference: &Reference) -> Command {
+    fn command(&self, state: &Measured<'_>, reference: &Reference) -> Command {
         let heading = reference.heading;
         let target = &reference.state;
-        let r = heading.to_heading_frame(difference(&state.position_m, &target.position_m));
-        let v = heading.to_heading_frame(difference(&state.velocity_m_s, &target.velocity_m_s));
-        let attitude = heading.attitude_to_heading_frame(state.attitude);
+        let r = heading.to_heading_frame(difference(state.position_m(), &target.position_m));
+        let v = heading.to_heading_frame(difference(state.velocity_m_s(), &target.velocity_m_s));
         // The chart's own hemisphere is q0 >= 0.
-        let attitude = if attitude.w < 0.0 { -attitude } else { attitude };
+        let attitude = state.attitude_from_heading(heading);
 
         let target_acceleration = heading.to_heading_frame(reference.acceleration_m_s2);
         let axis = attitude.thrust_axis();
@@ -127,15 +129,15 @@ impl ControlLaw for FlatOutput<'_> {
         let (ax, ay) = (thrust * axis.x - target_acceleration.x, thrust * axis.y - target_acceleration.y);
         let az = thrust * axis.z - GRAVITY_M_S2 - target_acceleration.z;
 
-        let [v0, v1, v2, v3, v4, v5, v6] = self.gain.times(&[r.x, r.y, r.z, v.x, v.y, v.z, ax, ay, az, attitude.z]);
+        let [v0, v1, v2, v3, v4, v5, v6] = self.gain.feedback(&[r.x, r.y, r.z, v.x, v.y, v.z, ax, ay, az, attitude.z]);
         let (acceleration, jerk, q3_rate) = match self.feed_forward {
-            FeedForward::Without => (Vector3::new(-v0, -v1, -v2), Vector3::new(-v3, -v4, -v5), -v6),
+            FeedForward::Without => (Vector3::new(v0, v1, v2), Vector3::new(v3, v4, v5), v6),
             FeedForward::With => {
                 let (a, j) = (target_acceleration, heading.to_heading_frame(reference.jerk_m_s3));
                 // q3 = cos(tilt/2) sin(psi/2) in the frame that the heading passes through: psi = 0 there, psi' is not.
                 let q = &target.attitude;
                 let q3_rate = 0.5 * sqrt(q.w * q.w + q.z * q.z) * reference.heading_rate_rad_s;
-                (Vector3::new(a.x - v0, a.y - v1, a.z - v2), Vector3::new(j.x - v3, j.y - v4, j.z - v5), q3_rate - v6)
+                (Vector3::new(a.x + v0, a.y + v1, a.z + v2), Vector3::new(j.x + v3, j.y + v4, j.z + v5), q3_rate + v6)
             }
         };
         Tilt::new(acceleration, jerk).with_q3(attitude.z, q3_rate).input

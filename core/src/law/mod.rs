@@ -1,4 +1,4 @@
-//! The control laws: a normalised state and a reference in, a command before saturation out.
+//! The control laws: a measured state and a reference in, a command before saturation out.
 //!
 //! A law does not check its inputs and does not fail: what is not finite, and what its map has no answer to, comes out
 //! as a command that is not finite, which [`crate::tracker`] refuses.
@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 
 use crate::command::Command;
 use crate::reference::Reference;
-use crate::state::State;
+use crate::state::Measured;
 
 /// Whether the reference's own input is added to the feedback.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,8 +29,8 @@ pub enum FeedForward {
 
 /// A state feedback law.
 pub trait ControlLaw {
-    /// The command for a state of unit quaternion norm; not finite where an input is not or where the law is singular.
-    fn command(&self, state: &State, reference: &Reference) -> Command;
+    /// The command before saturation; not finite where an input is not or where the law is singular.
+    fn command(&self, state: &Measured<'_>, reference: &Reference) -> Command;
 }
 
 /// Any of the laws, to be chosen at run time.
@@ -44,7 +44,7 @@ pub enum AnyLaw<'a> {
 
 impl ControlLaw for AnyLaw<'_> {
     #[inline]
-    fn command(&self, state: &State, reference: &Reference) -> Command {
+    fn command(&self, state: &Measured<'_>, reference: &Reference) -> Command {
         match self {
             Self::Equilibrium(law) => law.command(state, reference),
             Self::FlatOutput(law) => law.command(state, reference),

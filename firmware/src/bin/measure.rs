@@ -150,7 +150,7 @@ mod image {
     /// On-board reference: polynomial to jerk, and the flat map.
     #[inline(never)]
     fn reference(player: &mut Player<'_>, tick: Tick) -> Result<Reference, ReferenceError> {
-        Reference::from_flat(&player.at(tick))
+        player.reference(tick)
     }
 
     /// One step of the law with validation, sign handling and saturation.

@@ -2,11 +2,9 @@
 
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use clap::ValueEnum;
-use quatrack::nalgebra::Vector3;
-use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Rate};
+use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Rate};
 use quatrack_sim::design::codegen::rounded;
 use quatrack_sim::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
 use quatrack_sim::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
@@ -21,6 +19,7 @@ use quatrack_sim::trajectory::bspline::BSpline;
 use quatrack_sim::trajectory::file::{self, TrajectoryFile};
 use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
 
+use super::limits::LimitsChoice;
 use super::{Failure, output};
 
 /// Flies one trajectory with one controller and prints what came of it.
@@ -93,49 +92,6 @@ enum Form {
     Paper,
 }
 
-/// Limits by vehicle or by numbers.
-#[derive(Clone, Debug)]
-struct LimitsChoice {
-    name: String,
-    limits: Limits,
-}
-
-/// Thrust of one motor (lowest, highest, N) and mass (kg) of Bitcraze's vehicles, from their platform definitions.
-const VEHICLES: [(&str, f32, f32, f32); 3] = [
-    ("crazyflie-2.1", 0.012_818, 0.12, 0.029),
-    ("crazyflie-2.1-upgrade", 0.019_226, 0.18, 0.0325),
-    ("crazyflie-2.1-brushless", 0.021_363, 0.2, 0.0393),
-];
-
-/// What a rate loop of these vehicles follows, rad/s.
-const VEHICLE_BODY_RATES_RAD_S: Vector3<f32> = Vector3::new(20.0, 20.0, 10.0);
-
-impl FromStr for LimitsChoice {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let name = text.to_owned();
-        if text == "none" {
-            return Ok(Self { name, limits: Limits::NONE });
-        }
-        if let Some((_, min_n, max_n, mass_kg)) = VEHICLES.iter().find(|vehicle| vehicle.0 == text) {
-            let limits = Limits::new(4.0 * min_n / mass_kg, 4.0 * max_n / mass_kg, VEHICLE_BODY_RATES_RAD_S)
-                .map_err(|error| error.to_string())?;
-            return Ok(Self { name, limits });
-        }
-        let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-        let Ok([min, max, rate]) = numbers.as_deref() else {
-            let vehicles: Vec<&str> = VEHICLES.iter().map(|vehicle| vehicle.0).collect();
-            return Err(format!(
-                "neither a vehicle ({}), none, nor THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s",
-                vehicles.join(", ")
-            ));
-        };
-        let limits = Limits::new(*min, *max, Vector3::new(*rate, *rate, *rate)).map_err(|error| error.to_string())?;
-        Ok(Self { name, limits })
-    }
-}
-
 impl fmt::Display for Controller {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -149,8 +105,8 @@ impl fmt::Display for Controller {
 
 /// A gain of either law, in f64.
 enum Gain {
-    Equilibrium(EquilibriumGain),
-    FlatOutput(FlatOutputGain),
+    Equilibrium(Box<EquilibriumGain>),
+    FlatOutput(Box<FlatOutputGain>),
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -194,11 +150,13 @@ fn design(args: &Args) -> Result<Gain, Failure> {
         return Err(Failure::input("--mu belongs to the Lyapunov designs; leave it out or choose lyap-e or lyap-f"));
     }
     let gain = match args.controller {
-        Controller::LyapF => synthesis::lyapunov_flat(mu).map(|design| Gain::FlatOutput(design.gain)),
-        Controller::LyapE => synthesis::lyapunov_equilibrium(mu).map(|design| Gain::Equilibrium(design.gain)),
-        Controller::LqrF => synthesis::lqr_flat(&FlatWeights::paper()).map(|design| Gain::FlatOutput(design.gain)),
+        Controller::LyapF => synthesis::lyapunov_flat(mu).map(|design| Gain::FlatOutput(design.gain.into())),
+        Controller::LyapE => synthesis::lyapunov_equilibrium(mu).map(|design| Gain::Equilibrium(design.gain.into())),
+        Controller::LqrF => {
+            synthesis::lqr_flat(&FlatWeights::paper()).map(|design| Gain::FlatOutput(design.gain.into()))
+        }
         Controller::LqrE => {
-            synthesis::lqr_equilibrium(&EquilibriumWeights::paper()).map(|design| Gain::Equilibrium(design.gain))
+            synthesis::lqr_equilibrium(&EquilibriumWeights::paper()).map(|design| Gain::Equilibrium(design.gain.into()))
         }
     };
     gain.map_err(|error| Failure::input(format!("--mu {mu}: {error}")))
@@ -224,11 +182,11 @@ fn load(name: &str) -> Result<PiecewisePolynomial, Failure> {
     }
 }
 
-fn feedback(args: &Args, gain: &Gain) -> Feedback {
+fn feedback<'a>(args: &Args, gain: &'a Gain) -> Feedback<'a> {
     let law = match (gain, args.error_form) {
-        (Gain::Equilibrium(gain), Form::Paper) => Law::EquilibriumPaper(*gain),
-        (Gain::Equilibrium(gain), Form::Heading) => Law::EquilibriumHeading(*gain),
-        (Gain::FlatOutput(gain), _) => Law::FlatOutput(*gain),
+        (Gain::Equilibrium(gain), Form::Paper) => Law::EquilibriumPaper(gain),
+        (Gain::Equilibrium(gain), Form::Heading) => Law::EquilibriumHeading(gain),
+        (Gain::FlatOutput(gain), _) => Law::FlatOutput(gain),
     };
     Feedback { law, feed_forward: args.feed_forward }
 }

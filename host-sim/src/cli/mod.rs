@@ -2,6 +2,7 @@
 
 mod analyze;
 mod fly;
+mod limits;
 mod measure;
 mod output;
 mod pil;

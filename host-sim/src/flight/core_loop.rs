@@ -5,7 +5,7 @@
 
 use nalgebra::{Vector3, Vector4};
 use quatrack::trajectory::TrajectoryError;
-use quatrack::{AnyLaw, Command, Limits, Piece, Player, Quaternion, Rate, Reference, State, Tracker};
+use quatrack::{AnyLaw, Command, Limits, Piece, Player, Quaternion, Rate, State, Tracker};
 
 use super::closed_loop::HeldCommand;
 use crate::model::{InputVector, StateVector, attitude, position, velocity};
@@ -84,7 +84,7 @@ impl<'a> CoreLoop<'a> {
     /// # Errors
     /// The core's own words, where it gives no command.
     pub fn step(&mut self, tick: u32, x: &StateVector) -> Result<HeldCommand, String> {
-        let reference = Reference::from_flat(&self.player.at(tick)).map_err(|error| error.to_string())?;
+        let reference = self.player.reference(tick).map_err(|error| error.to_string())?;
         let step = self.tracker.step(&state(x), &reference).map_err(|error| error.to_string())?;
         Ok(HeldCommand { input: input(&step.command), limited: step.limited.any() })
     }

@@ -15,28 +15,28 @@ pub type FlatOutputGain = SMatrix<f64, 7, 10>;
 
 /// A law with its gain.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law {
+pub enum Law<'a> {
     /// (LYAP-E), (LQR-E) in the paper's own form: errors in the world frame, `q - q_r`.
-    EquilibriumPaper(EquilibriumGain),
+    EquilibriumPaper(&'a EquilibriumGain),
     /// The same with errors in the reference's heading frame and `q_r^-1 q`: valid at every heading.
-    EquilibriumHeading(EquilibriumGain),
+    EquilibriumHeading(&'a EquilibriumGain),
     /// (LYAP-F), (LQR-F), in the reference's heading frame, which is the world frame in the paper.
-    FlatOutput(FlatOutputGain),
+    FlatOutput(&'a FlatOutputGain),
 }
 
 /// A law and whether the reference's input is fed forward.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Feedback {
+pub struct Feedback<'a> {
     /// The law.
-    pub law: Law,
+    pub law: Law<'a>,
     /// Whether `u_r` (E) or `v_r` (F) is added.
     pub feed_forward: bool,
 }
 
-impl Feedback {
+impl Feedback<'_> {
     /// The input for a state of unit quaternion norm; not finite where the flat map is singular.
     pub fn input(&self, state: &StateVector, target: &ReferencePoint) -> InputVector {
-        match &self.law {
+        match self.law {
             Law::EquilibriumPaper(gain) => self.equilibrium_input(gain, &paper_error(state, &target.state), target),
             Law::EquilibriumHeading(gain) => self.equilibrium_input(gain, &heading_error(state, target), target),
             Law::FlatOutput(gain) => {

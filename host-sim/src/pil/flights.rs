@@ -1,6 +1,6 @@
 //! The paper's flights as the board flies them: both courses, four controllers, 500 Hz; states and commands out.
 
-use quatrack::{Command, Limits, Player, Rate, Reference, State, Tracker};
+use quatrack::{Command, Limits, Player, Rate, State, Tracker};
 
 use super::{PilError, stored};
 use crate::flight::closed_loop::{Flight, HeldCommand, fly_sampled};
@@ -68,7 +68,7 @@ impl HostCore {
     /// # Errors
     /// The core's own words.
     pub fn step(&mut self, tick: u32, state: &State) -> Result<Command, String> {
-        let reference = Reference::from_flat(&self.player.at(tick)).map_err(|error| error.to_string())?;
+        let reference = self.player.reference(tick).map_err(|error| error.to_string())?;
         let step = self.tracker.step(state, &reference).map_err(|error| error.to_string())?;
         Ok(step.command)
     }

@@ -95,9 +95,9 @@ pub struct Gains {
 
 /// A gain of either kind.
 #[derive(Clone, Copy, Debug)]
-enum AnyGain {
-    Equilibrium(EquilibriumGain),
-    FlatOutput(FlatOutputGain),
+enum AnyGain<'a> {
+    Equilibrium(&'a EquilibriumGain),
+    FlatOutput(&'a FlatOutputGain),
 }
 
 impl Gains {
@@ -115,19 +115,19 @@ impl Gains {
     }
 
     /// The gain of an equilibrium controller; nothing for the others.
-    pub fn equilibrium(&self, controller: Controller) -> Option<EquilibriumGain> {
+    pub fn equilibrium(&self, controller: Controller) -> Option<&EquilibriumGain> {
         match self.of(controller) {
             AnyGain::Equilibrium(gain) => Some(gain),
             AnyGain::FlatOutput(_) => None,
         }
     }
 
-    fn of(&self, controller: Controller) -> AnyGain {
+    fn of(&self, controller: Controller) -> AnyGain<'_> {
         match controller {
-            Controller::LyapF => AnyGain::FlatOutput(self.lyap_f),
-            Controller::LyapE => AnyGain::Equilibrium(self.lyap_e),
-            Controller::LqrF => AnyGain::FlatOutput(self.lqr_f),
-            Controller::LqrE => AnyGain::Equilibrium(self.lqr_e),
+            Controller::LyapF => AnyGain::FlatOutput(&self.lyap_f),
+            Controller::LyapE => AnyGain::Equilibrium(&self.lyap_e),
+            Controller::LqrF => AnyGain::FlatOutput(&self.lqr_f),
+            Controller::LqrE => AnyGain::Equilibrium(&self.lqr_e),
         }
     }
 }
@@ -174,8 +174,8 @@ pub struct Outcome {
 pub fn fly_cell(course: Course, trajectory: &PiecewisePolynomial, controller: Controller, gains: &Gains) -> Outcome {
     let index = Controller::ALL.iter().position(|c| *c == controller).unwrap_or_default();
     let gain = gains.of(controller);
-    let published_flight = fly_published(trajectory, &gain);
-    let feedback = |feed_forward| Feedback { law: law(&gain), feed_forward };
+    let published_flight = fly_published(trajectory, gain);
+    let feedback = |feed_forward| Feedback { law: law(gain), feed_forward };
     let sampled = Sampled::new(trajectory, SAMPLE_PERIOD_S, |t, t_s| reference_point(&t.at(t_s)));
     let exact = fly_continuous(&sampled, |x, target| feedback(false).input(x, target), Solver::PAPER);
     let fed = fly_continuous(&Exact(trajectory), |x, target| feedback(true).input(x, target), TRUTH);
@@ -202,17 +202,17 @@ pub fn fly_cell(course: Course, trajectory: &PiecewisePolynomial, controller: Co
 
 /// The published flight of a Lyapunov controller at the decay rate that crashes in the paper's text.
 pub fn fly_crash(trajectory: &PiecewisePolynomial, controller: Controller) -> Result<Flight, DesignError> {
-    Ok(fly_published(trajectory, &Gains::design(CRASH_MU)?.of(controller)))
+    Ok(fly_published(trajectory, Gains::design(CRASH_MU)?.of(controller)))
 }
 
-fn law(gain: &AnyGain) -> Law {
+fn law(gain: AnyGain<'_>) -> Law<'_> {
     match gain {
-        AnyGain::Equilibrium(gain) => Law::EquilibriumPaper(*gain),
-        AnyGain::FlatOutput(gain) => Law::FlatOutput(*gain),
+        AnyGain::Equilibrium(gain) => Law::EquilibriumPaper(gain),
+        AnyGain::FlatOutput(gain) => Law::FlatOutput(gain),
     }
 }
 
-fn fly_published(trajectory: &PiecewisePolynomial, gain: &AnyGain) -> Flight {
+fn fly_published(trajectory: &PiecewisePolynomial, gain: AnyGain<'_>) -> Flight {
     let reference = Sampled::new(trajectory, SAMPLE_PERIOD_S, published::reference);
     match gain {
         AnyGain::Equilibrium(gain) => {
