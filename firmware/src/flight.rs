@@ -74,6 +74,7 @@ impl Clock for StepClock {
 pub struct Flight {
     law: LawChoice,
     limits: LimitsSetting,
+    checked_limits: Limits,
     tracker: Tracker<'static>,
     arrived: Option<Arrived>,
     heard_at: Option<Tick>,
@@ -86,18 +87,23 @@ pub struct Flight {
     last_report: StepReport,
     fault: Option<Fault>,
     motors: Motors,
-    answer: Option<CommandOut>,
+    /// The last step and its result, kept in place: it is as large as a command may be.
+    answer: CommandOut,
+    is_answer_new: bool,
     steps: u32,
     steps_failed: u32,
 }
 
 impl Flight {
     /// Disarmed, nothing to follow; faulted where the board restarted because of a fault.
+    #[cold]
     pub fn new(store: &'static mut Store, fault: Option<Fault>) -> Self {
+        let checked_limits = LIMITS.check().unwrap_or(Limits::NONE);
         let mut flight = Self {
             law: LawChoice::new(Table::LqrE),
             limits: LIMITS,
-            tracker: Tracker::new(Equilibrium::new(&paper::LQR_E), LIMITS.check().unwrap_or(Limits::NONE)),
+            checked_limits,
+            tracker: Tracker::new(Equilibrium::new(&paper::LQR_E), checked_limits),
             arrived: None,
             heard_at: None,
             playback: Playback::new(store),
@@ -107,7 +113,8 @@ impl Flight {
             last_report: StepReport::NoReference,
             fault,
             motors: Motors { command: Command::ZERO },
-            answer: None,
+            answer: CommandOut { tick: 0, state_tick: 0, result: Err(NoCommand::NoReference) },
+            is_answer_new: false,
             steps: 0,
             steps_failed: 0,
         };
@@ -151,9 +158,10 @@ impl Flight {
     }
 
     /// Chooses a law; whether its table is on board.
+    #[cold]
     pub fn select(&mut self, law: LawChoice) -> bool {
-        let (Some(built_in), Ok(limits)) = (law.built_in(), self.limits.check()) else { return false };
-        (self.law, self.tracker) = (law, Tracker::new(built_in, limits));
+        let Some(built_in) = law.built_in() else { return false };
+        (self.law, self.tracker) = (law, Tracker::new(built_in, self.checked_limits));
         true
     }
 
@@ -166,11 +174,10 @@ impl Flight {
     ///
     /// # Errors
     /// As [`Limits::new`]; the ones in force stay.
+    #[cold]
     pub fn set_limits(&mut self, limits: LimitsSetting) -> Result<(), LimitsError> {
-        let checked = limits.check()?;
-        if let Some(law) = self.law.built_in() {
-            (self.limits, self.tracker) = (limits, Tracker::new(law, checked));
-        }
+        (self.checked_limits, self.limits) = (limits.check()?, limits);
+        self.select(self.law);
         Ok(())
     }
 
@@ -178,6 +185,7 @@ impl Flight {
     ///
     /// # Errors
     /// As [`Supervisor::arm`].
+    #[cold]
     pub fn arm(&mut self, now: Tick) -> Result<(), ArmError> {
         self.last_report = StepReport::NoReference;
         self.supervisor.arm(&self.config, age(self.heard_at, now))
@@ -201,7 +209,8 @@ impl Flight {
 
     /// The answer to the last state, once.
     pub fn take_answer(&mut self) -> Option<CommandOut> {
-        self.answer.take()
+        let is_new = core::mem::take(&mut self.is_answer_new);
+        is_new.then_some(self.answer)
     }
 
     /// Steps taken, and those without a command.
@@ -210,6 +219,7 @@ impl Flight {
     }
 
     /// Takes a fault: zero from here on, until a restart.
+    #[cold]
     pub fn fail(&mut self, fault: Fault, now: Tick) {
         self.fault = Some(fault);
         self.supervise(now, StepReport::Failed, false);
@@ -220,37 +230,35 @@ impl Flight {
     #[inline]
     pub fn step(&mut self, now: Tick, overrun: bool) {
         self.steps = self.steps.wrapping_add(1);
-        let result = if self.supervisor.mode().motors_allowed() {
-            let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
+        let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
+        self.answer.result = if self.supervisor.mode().motors_allowed() {
             let clock = StepClock(if self.is_lock_step() { state_tick } else { now });
             control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &self.tracker)
         } else {
             Err(NoCommand::Mode(self.supervisor.mode()))
         };
-        let report = match &result {
+        let report = match &self.answer.result {
             Ok(_) => StepReport::Command,
             Err(NoCommand::NoReference | NoCommand::Mode(_)) => StepReport::NoReference,
             Err(NoCommand::Reference(_) | NoCommand::Step(_)) => StepReport::Failed,
         };
         let verdict = self.supervise(now, report, overrun);
-        match &result {
+        match &self.answer.result {
             Ok(step) if verdict.mode.command_passes() => self.motors.put(&step.command),
-            _ => self.stand_still(),
+            _ => self.stand_still(verdict.mode),
         }
-        if let Some(arrived) = &mut self.arrived
-            && !arrived.answered
-        {
+        (self.answer.tick, self.answer.state_tick) = (now, state_tick);
+        if let Some(arrived) = &mut self.arrived {
+            self.is_answer_new |= !arrived.answered;
             arrived.answered = true;
-            let result = match result {
-                Ok(_) if !verdict.mode.command_passes() => Err(NoCommand::Mode(verdict.mode)),
-                result => result,
-            };
-            self.answer = Some(CommandOut { tick: now, state_tick: arrived.state.tick, result });
         }
     }
 
     #[cold]
-    fn stand_still(&mut self) {
+    fn stand_still(&mut self, mode: Mode) {
+        if self.answer.result.is_ok() {
+            self.answer.result = Err(NoCommand::Mode(mode));
+        }
         self.steps_failed = self.steps_failed.wrapping_add(1);
         self.motors.put(&Command::ZERO);
     }

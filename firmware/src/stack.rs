@@ -12,7 +12,7 @@ use cortex_m_rt::STACK_PAINT_VALUE;
 pub const MAX_BYTES: usize = 8 * 1024;
 
 /// Words looked at at that depth.
-const GUARD_WORDS: usize = 4;
+const GUARD_WORDS: usize = 2;
 
 const WORD: usize = size_of::<u32>();
 
