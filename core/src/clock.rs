@@ -5,6 +5,7 @@ pub type Tick = u32;
 
 /// Ticks a second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Rate {
     hz: u32,
 }

@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 /// The paper's input `u = [T p q r]` (2b).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Command {
     /// Thrust divided by mass along the body z axis, m/s^2.
     pub thrust_m_s2: f32,
@@ -28,6 +29,8 @@ pub struct Limits {
 
 /// Why limits are refused.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum LimitsError {
     /// `thrust_min_m_s2 <= thrust_max_m_s2` does not hold, or one of them is not a number.
     Thrust {
@@ -58,6 +61,8 @@ impl core::error::Error for LimitsError {}
 
 /// Which parts of a command were cut to the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limited {
     /// Bit i for the i-th of `T p q r`.
     bits: u8,

@@ -4,6 +4,8 @@ use core::fmt;
 
 /// A group of numbers in a state or a flat sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Field {
     /// Position, m.
     Position,
@@ -37,6 +39,8 @@ impl fmt::Display for Field {
 
 /// Why an estimated state cannot be flown on.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum StateError {
     /// A component is infinite or not a number: distrust the estimator.
     NonFinite {
@@ -54,6 +58,8 @@ pub enum StateError {
 
 /// Why a flat output is no flyable reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReferenceError {
     /// A component is infinite or not a number: distrust the planner or the link.
     NonFinite {
@@ -81,6 +87,8 @@ pub enum ReferenceError {
 
 /// Why a step gave no command. The caller must not hold the last one: stop the motors or level.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum StepError {
     /// The state is the reason.
     State(StateError),

@@ -20,15 +20,18 @@
 //! The layers import only downwards:
 //!
 //! ```text
-//! tracker                     one step: normalise, law, saturate
-//!   law                       equilibrium (E) and flat output (F)
-//!     trajectory, gains       pieces played by ticks; tables
-//!       reference             flat output -> state and input, checked
-//!         flatness            the flat map and its inverse
-//!           state, command, gain, clock
-//!             quaternion, error
-//!               math          square root, sine and cosine
+//! link                        frames, uploads (feature `link`)
+//!   tracker, supervisor       one step: normalise, law, saturate; whether its command may pass
+//!     law                     equilibrium (E) and flat output (F)
+//!       trajectory, gains     pieces played by ticks; tables
+//!         reference           flat output -> state and input, checked
+//!           flatness          the flat map and its inverse
+//!             state, command, gain, clock
+//!               quaternion, error
+//!                 math        square root, sine and cosine
 //! ```
+//!
+//! Features: `link` (default) for the serial link's frames; `serde` and `defmt` for plain data to be stored or logged.
 //!
 //! Conventions: world frame z up; quaternion scalar first, Hamilton product, body to world; thrust divided by mass, in
 //! m/s^2; body rates in rad/s.
@@ -40,15 +43,20 @@ extern crate std;
 
 pub mod clock;
 pub mod command;
+#[cfg(feature = "defmt")]
+mod defmt_formats;
 pub mod error;
 pub mod flatness;
 pub mod gain;
 pub mod gains;
 pub mod law;
+#[cfg(feature = "link")]
+pub mod link;
 pub mod math;
 pub mod quaternion;
 pub mod reference;
 pub mod state;
+pub mod supervisor;
 pub mod tracker;
 pub mod trajectory;
 

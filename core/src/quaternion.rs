@@ -12,6 +12,8 @@ use crate::math::sin_cos;
 
 /// A quaternion, scalar part first.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Quaternion {
     /// Scalar part, `q0` in the paper.
     pub w: f32,

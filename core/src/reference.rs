@@ -10,6 +10,7 @@ use crate::state::State;
 
 /// The flat output and its derivatives at one time, world frame; what a planner or a stored trajectory knows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FlatSample {
     /// Position, m.
     pub position_m: Vector3<f32>,

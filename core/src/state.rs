@@ -12,6 +12,7 @@ pub const NORM_SQUARED_TOLERANCE: f32 = 0.02;
 
 /// Position, attitude and velocity: `x = [r q v]` of the paper's (2a), regrouped in the canonical order.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// Position in the world frame (z up), m.
     pub position_m: Vector3<f32>,

@@ -27,6 +27,7 @@ struct Limiting<L> {
 
 /// What one step gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Step {
     /// The command, finite and within the limits.
     pub command: Command,

@@ -16,6 +16,8 @@ pub type Coefficients = [f32; 8];
 
 /// One piece of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Piece {
     /// How long it lasts, ns.
     pub duration_ns: u64,
@@ -60,6 +62,8 @@ struct Shape {
 
 /// Why pieces are no trajectory; pieces are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum TrajectoryError {
     /// There are none.
     Empty,

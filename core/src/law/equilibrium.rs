@@ -98,6 +98,8 @@ impl Chains {
 
 /// What `x - x_r` means when the craft is turned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ErrorForm {
     /// Position and velocity errors in the reference's heading frame, vector part of `q_r^-1 q`: the same closed loop
     /// at every heading.

@@ -17,6 +17,8 @@ use crate::state::Measured;
 
 /// Whether the reference's own input is added to the feedback.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum FeedForward {
     /// Feedback around hover alone, as in the paper.
     #[default]

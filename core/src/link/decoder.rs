@@ -1,0 +1,198 @@
+//! Bytes in, in any chunks; messages out, and a count of everything that was none.
+//!
+//! A byte costs a bounded amount of work: one step of COBS and of the checksum, and at a 0x00 the decoding of at most
+//! one message.
+
+use core::marker::PhantomData;
+
+use super::checksum::Crc32c;
+use super::counters::{Counters, Rejected};
+use super::size::RAW_FRAME_BYTES;
+use super::window::Window;
+use super::{DELIMITER, Message, PROTOCOL_VERSION};
+
+/// A message and the numbers of its frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Received<M> {
+    /// The sender's session, to be echoed by the board.
+    pub session: u32,
+    /// The frame's sequence number, to be named in an answer.
+    pub sequence: u32,
+    /// What was sent.
+    pub message: M,
+}
+
+/// Reads frames of one direction.
+#[derive(Clone, Debug)]
+pub struct Decoder<M> {
+    frame: Unstuffer,
+    window: Window,
+    counters: Counters,
+    message: PhantomData<fn() -> M>,
+}
+
+impl<M: Message> Decoder<M> {
+    /// For the board: waits for a hello to open a session.
+    pub const fn new() -> Self {
+        Self::with(Window::closed())
+    }
+
+    /// For the host: takes answers to the session that it is opening.
+    pub const fn for_session(session: u32) -> Self {
+        Self::with(Window::open(session))
+    }
+
+    const fn with(window: Window) -> Self {
+        Self { frame: Unstuffer::new(), window, counters: Counters::NONE, message: PhantomData }
+    }
+
+    /// The open session.
+    pub const fn session(&self) -> Option<u32> {
+        self.window.session()
+    }
+
+    /// What has been seen so far.
+    pub const fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// Takes one byte. At the end of a frame gives its message, or why it is rejected, which has been counted.
+    pub fn push(&mut self, byte: u8) -> Option<Result<Received<M>, Rejected>> {
+        if byte != DELIMITER {
+            self.frame.push(byte);
+            return None;
+        }
+        let result = match self.frame.end()? {
+            Ok(bytes) => Self::read(bytes, &mut self.window),
+            Err(rejected) => Err(rejected),
+        };
+        self.frame.reset();
+        Some(match result {
+            Ok((received, skipped)) => {
+                self.counters.count_accepted(skipped);
+                Ok(received)
+            }
+            Err(rejected) => {
+                self.counters.count_rejected(rejected);
+                Err(rejected)
+            }
+        })
+    }
+
+    /// Takes bytes up to the next message and returns it with the bytes after it; rejected frames are counted and
+    /// passed over. To be called until no message comes.
+    pub fn next<'a>(&mut self, bytes: &'a [u8]) -> Option<(Received<M>, &'a [u8])> {
+        let mut rest = bytes.iter();
+        while let Some(byte) = rest.next() {
+            if let Some(Ok(received)) = self.push(*byte) {
+                return Some((received, rest.as_slice()));
+            }
+        }
+        None
+    }
+
+    /// Reads a frame whose checksum is right and which has been cut off.
+    fn read(bytes: &[u8], window: &mut Window) -> Result<(Received<M>, u32), Rejected> {
+        let (version, rest) = bytes.split_first().ok_or(Rejected::Malformed)?;
+        if *version != PROTOCOL_VERSION {
+            return Err(Rejected::Version { version: *version });
+        }
+        let ((session, sequence), body) =
+            postcard::take_from_bytes::<(u32, u32)>(rest).map_err(|_| Rejected::Malformed)?;
+        let kind = *body.first().ok_or(Rejected::Malformed)?;
+        if kind >= M::KINDS {
+            return Err(Rejected::UnknownMessage { kind });
+        }
+        let (message, left) = postcard::take_from_bytes::<M>(body).map_err(|_| Rejected::Malformed)?;
+        if !left.is_empty() {
+            return Err(Rejected::Malformed);
+        }
+        let skipped = window.take(session, sequence, message.opens_session())?;
+        Ok((Received { session, sequence, message }, skipped))
+    }
+}
+
+impl<M: Message> Default for Decoder<M> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Undoes COBS while the bytes come.
+#[derive(Clone, Debug)]
+struct Unstuffer {
+    bytes: [u8; RAW_FRAME_BYTES],
+    length: usize,
+    /// Bytes of the block still to come; 0 where a code byte is next.
+    block_left: u8,
+    /// Whether a block has begun; a zero stands between it and the next one. A block of 254 bytes, which COBS would
+    /// not follow by a zero, is longer than any frame.
+    begun: bool,
+    overlong: bool,
+    checksum: Crc32c,
+}
+
+impl Unstuffer {
+    const fn new() -> Self {
+        Self {
+            bytes: [0; RAW_FRAME_BYTES],
+            length: 0,
+            block_left: 0,
+            begun: false,
+            overlong: false,
+            checksum: Crc32c::new(),
+        }
+    }
+
+    /// Forgets the frame; the buffer is overwritten by the next one.
+    fn reset(&mut self) {
+        self.length = 0;
+        self.block_left = 0;
+        self.begun = false;
+        self.overlong = false;
+        self.checksum = Crc32c::new();
+    }
+
+    /// Takes a byte that is not zero.
+    fn push(&mut self, byte: u8) {
+        if self.block_left > 0 {
+            self.block_left -= 1;
+            self.store(byte);
+            return;
+        }
+        if self.begun {
+            self.store(0);
+        }
+        self.begun = true;
+        self.block_left = byte.wrapping_sub(1);
+    }
+
+    fn store(&mut self, byte: u8) {
+        match self.bytes.get_mut(self.length) {
+            Some(place) => {
+                *place = byte;
+                self.length += 1;
+                self.checksum.update(byte);
+            }
+            None => self.overlong = true,
+        }
+    }
+
+    /// The frame without its checksum, which is right, or why it is none; nothing if no byte has come since the last.
+    fn end(&self) -> Option<Result<&[u8], Rejected>> {
+        if !self.begun {
+            return None;
+        }
+        Some(if self.overlong {
+            Err(Rejected::Overlong)
+        } else if self.block_left > 0 {
+            Err(Rejected::Truncated)
+        } else {
+            let frame = self.bytes.get(..self.length).and_then(|bytes| bytes.split_last_chunk::<4>());
+            match frame {
+                Some((frame, _)) if self.checksum.ends_with_itself() => Ok(frame),
+                _ => Err(Rejected::Checksum),
+            }
+        })
+    }
+}

@@ -1,0 +1,208 @@
+//! What the board tells a host.
+
+use core::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::Message;
+use super::counters::Counters;
+use super::to_board::Parameter;
+use super::trajectory_store::BlobError;
+use super::upload::{Progress, UploadError};
+use crate::clock::Tick;
+use crate::command::LimitsError;
+use crate::error::{ReferenceError, StepError};
+use crate::supervisor::{ArmError, Fault, Mode};
+use crate::tracker::Step;
+
+/// A message from the board.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum FromBoard {
+    /// Answers a hello.
+    Hello(Identity),
+    /// Answers a state.
+    Command(CommandOut),
+    /// Sent on its own, every so many ticks.
+    Telemetry(Telemetry),
+    /// The request has been carried out.
+    Ack {
+        /// Of the request.
+        sequence: u32,
+    },
+    /// The request has been refused; nothing has changed.
+    Nack {
+        /// Of the request.
+        sequence: u32,
+        /// Why.
+        reason: Refusal,
+    },
+    /// Answers an upload's begin, chunk and query.
+    Upload(Progress),
+    /// Answers a get or a set with the value that is in force.
+    Parameter(Parameter),
+    /// Sent on its own when a fault is found, and again with every hello until a restart.
+    Fault(FaultReport),
+}
+
+impl Message for FromBoard {
+    const KINDS: u8 = 8;
+
+    fn opens_session(&self) -> bool {
+        false
+    }
+}
+
+/// Version of a firmware.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Version {
+    /// Incompatible changes.
+    pub major: u16,
+    /// Additions.
+    pub minor: u16,
+    /// Corrections.
+    pub patch: u16,
+}
+
+/// Who answers. The protocol's version stands in every frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Identity {
+    /// Version of the firmware.
+    pub firmware: Version,
+    /// Identifies the control path in the image: images that share it command the same bits.
+    pub control_image: u32,
+    /// Ticks of the loop a second, Hz.
+    pub tick_rate_hz: u32,
+    /// Ticks for one control step.
+    pub decimation: u32,
+    /// Pieces that an uploaded trajectory may have.
+    pub trajectory_pieces: u32,
+}
+
+/// The command that answers a state, with the exact bits of the step's numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct CommandOut {
+    /// The board's tick of the step.
+    pub tick: Tick,
+    /// The tick of the state that was stepped on, as it came.
+    pub state_tick: Tick,
+    /// The command and what of it was limited, or why there is none.
+    pub result: Result<Step, NoCommand>,
+}
+
+/// Why a state has no command. The motors are at zero, or will be by the end of this tick.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum NoCommand {
+    /// The supervisor lets none pass in this mode.
+    Mode(Mode),
+    /// There was nothing to follow.
+    NoReference,
+    /// The reference cannot be flown.
+    Reference(ReferenceError),
+    /// The state cannot be flown on, or the law has no answer.
+    Step(StepError),
+}
+
+/// Telemetry: what the loop has been doing since start-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Telemetry {
+    /// The board's tick.
+    pub tick: Tick,
+    /// The supervisor's mode.
+    pub mode: Mode,
+    /// The loop.
+    pub statistics: LoopStatistics,
+    /// The frames that came to the board.
+    pub link: Counters,
+}
+
+/// Counts and extremes of the control loop.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct LoopStatistics {
+    /// Control steps.
+    pub steps: u32,
+    /// Steps without a command.
+    pub steps_failed: u32,
+    /// Ticks that ran past their period.
+    pub overruns: u32,
+    /// Longest time from a tick's interrupt to its command, ns.
+    pub worst_step_ns: u32,
+    /// Largest deviation of a tick's start from its period, ns.
+    pub jitter_ns: u32,
+    /// Most stack in use, bytes.
+    pub stack_bytes: u32,
+    /// Bytes from the line that found the receive buffer full.
+    pub bytes_dropped: u32,
+}
+
+/// A fault and where it was.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct FaultReport {
+    /// What.
+    pub fault: Fault,
+    /// The board's tick.
+    pub tick: Tick,
+    /// Program counter, or 0 where there is none.
+    pub address: u32,
+}
+
+/// Why a request is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Refusal {
+    /// This firmware does not have what was asked for.
+    Unsupported,
+    /// Not while the motors may turn.
+    NotWhileArmed,
+    /// The parameter cannot be set.
+    ReadOnly,
+    /// The value is out of the parameter's range.
+    OutOfRange,
+    /// There is no such trajectory on board, or none is playing.
+    NoTrajectory,
+    /// See the error.
+    Arm(ArmError),
+    /// See the error.
+    Limits(LimitsError),
+    /// See the error.
+    Upload(UploadError),
+    /// See the error.
+    Blob(BlobError),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unsupported => f.write_str("board: this firmware does not have it; update it"),
+            Self::NotWhileArmed => f.write_str("board: not while armed; disarm first"),
+            Self::ReadOnly => f.write_str("board: the parameter is fixed in the image"),
+            Self::OutOfRange => f.write_str("board: the value is out of the parameter's range"),
+            Self::NoTrajectory => f.write_str("board: no such trajectory; upload and commit, or start one first"),
+            Self::Arm(error) => error.fmt(f),
+            Self::Limits(error) => error.fmt(f),
+            Self::Upload(error) => error.fmt(f),
+            Self::Blob(error) => error.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for NoCommand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mode(mode) => write!(f, "board: no command while {mode}"),
+            Self::NoReference => f.write_str("board: no reference; send one with the state or start a trajectory"),
+            Self::Reference(error) => error.fmt(f),
+            Self::Step(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for Refusal {}
+impl core::error::Error for NoCommand {}

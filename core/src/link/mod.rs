@@ -1,0 +1,75 @@
+//! The serial link between a host and the board: bytes in, messages out, and back. One schema for both ends.
+//!
+//! A frame on the wire is `COBS(header, message, CRC-32C)` and a closing 0x00:
+//!
+//! ```text
+//! version   u8       PROTOCOL_VERSION; stays the first byte in every version
+//! session   varint   the host's number for this connection; the board echoes it
+//! sequence  varint   counts the sender's frames in this session, from 0
+//! message   postcard ToBoard or FromBoard: one byte that says which, then its fields
+//! checksum  u32 LE   CRC-32C of all of the above
+//! ```
+//!
+//! [`Encoder`] writes frames into a caller's buffer, [`Decoder`] reads them from any chunks of bytes, rejects and counts
+//! what is not sound ([`Counters`]), and finds back at the next 0x00. Who opens the line sends one 0x00 first, so that
+//! noise before it does not spoil the first frame. A reply may be lost: requests carry no state between frames and can be
+//! sent again.
+//!
+//! Session and sequence rule: within a session only a sequence number above the last accepted one is taken, so that
+//! duplicates, late and replayed frames are rejected; gaps are counted as lost. The board opens a session on
+//! [`ToBoard::Hello`] with a session number ahead of the current one (in serial-number arithmetic), the host on its own
+//! choice: a restarted host takes a later number, the seconds since 1970 say, and is not locked out. A session ends with
+//! its last sequence number, after 49 days at 1 kHz. None of this authenticates: who can write to the line can fly.
+//!
+//! On the target, [`BlobReceiver`] and [`TrajectoryStore`] are best statics of their own: they start as zeros and take
+//! no flash.
+
+mod blob_receiver;
+mod checksum;
+mod counters;
+mod decoder;
+mod encoder;
+mod from_board;
+mod law_choice;
+mod size;
+mod to_board;
+mod trajectory_store;
+mod upload;
+mod window;
+
+pub use blob_receiver::BlobReceiver;
+pub use checksum::{Crc32c, crc32c};
+pub use counters::{Counters, Rejected};
+pub use decoder::{Decoder, Received};
+pub use encoder::{EncodeError, Encoder};
+pub use from_board::{
+    CommandOut, FaultReport, FromBoard, Identity, LoopStatistics, NoCommand, Refusal, Telemetry, Version,
+};
+pub use law_choice::{LawChoice, Table};
+pub use size::{CHUNK_BYTES, FRAME_BYTES, MESSAGE_BYTES};
+pub use to_board::{LimitsSetting, Parameter, ParameterId, StateIn, ToBoard, TrajectoryCommand, TrajectoryId};
+pub use trajectory_store::{
+    BlobError, TRAJECTORY_BLOB_BYTES, TRAJECTORY_PIECES, TrajectorySlot, TrajectoryStore, encode_trajectory,
+};
+pub use upload::{BlobKind, Chunk, Progress, UploadBegin, UploadError};
+
+/// Version of the frame layout and of every message in it. A changed message is a changed version.
+pub const PROTOCOL_VERSION: u8 = 1;
+
+/// Ends every frame and stands nowhere else.
+pub const DELIMITER: u8 = 0;
+
+/// A message that can be framed: [`ToBoard`] or [`FromBoard`]. Sealed: the schema is this module's.
+pub trait Message: serde::Serialize + serde::de::DeserializeOwned + private::Sealed {
+    /// How many kinds there are.
+    const KINDS: u8;
+
+    /// Whether this message opens a session at its receiver.
+    fn opens_session(&self) -> bool;
+}
+
+mod private {
+    pub trait Sealed {}
+    impl Sealed for super::ToBoard {}
+    impl Sealed for super::FromBoard {}
+}

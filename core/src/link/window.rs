@@ -1,0 +1,94 @@
+//! The session and sequence rule: a frame's numbers in; taken, with how many were skipped, or rejected out.
+
+use super::counters::Rejected;
+
+/// The open session of a receiver, if any.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Window {
+    session: Option<u32>,
+    /// The lowest sequence number that is still taken; none when the last number has been used.
+    next: Option<u32>,
+}
+
+impl Window {
+    pub(crate) const fn closed() -> Self {
+        Self { session: None, next: Some(0) }
+    }
+
+    pub(crate) const fn open(session: u32) -> Self {
+        Self { session: Some(session), next: Some(0) }
+    }
+
+    pub(crate) const fn session(&self) -> Option<u32> {
+        self.session
+    }
+
+    /// Takes a frame, which `opens` a session or not, and says how many sequence numbers before it were skipped.
+    pub(crate) fn take(&mut self, session: u32, sequence: u32, opens: bool) -> Result<u32, Rejected> {
+        if self.session != Some(session) {
+            if !(opens && self.is_ahead(session)) {
+                return Err(Rejected::ForeignSession { session });
+            }
+            // What the sender sent before its hello was for nobody.
+            *self = Self { session: Some(session), next: sequence.checked_add(1) };
+            return Ok(0);
+        }
+        let late = || match self.next.map_or(u32::MAX, |next| next.wrapping_sub(1)) == sequence {
+            true => Rejected::Duplicate { sequence },
+            false => Rejected::Stale { sequence },
+        };
+        let skipped = self.next.and_then(|next| sequence.checked_sub(next)).ok_or_else(late)?;
+        self.next = sequence.checked_add(1);
+        Ok(skipped)
+    }
+
+    /// Whether a session number is later than the open one: ahead of it by less than half the range.
+    fn is_ahead(&self, session: u32) -> bool {
+        self.session.is_none_or(|open| (1..1 << 31).contains(&session.wrapping_sub(open)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_later_numbers_are_taken() {
+        let mut window = Window::open(7);
+        assert_eq!(window.take(7, 0, false), Ok(0));
+        assert_eq!(window.take(7, 0, false), Err(Rejected::Duplicate { sequence: 0 }));
+        assert_eq!(window.take(7, 5, false), Ok(4), "1 to 4 were skipped");
+        assert_eq!(window.take(7, 4, false), Err(Rejected::Stale { sequence: 4 }), "late");
+        assert_eq!(window.take(7, 5, true), Err(Rejected::Duplicate { sequence: 5 }), "a hello counts like any other");
+        assert_eq!(window.take(7, 6, true), Ok(0), "a hello may be repeated within its session");
+    }
+
+    #[test]
+    fn a_session_ends_with_its_last_number() {
+        let mut window = Window::open(0);
+        assert_eq!(window.take(0, u32::MAX, false), Ok(u32::MAX));
+        assert_eq!(window.take(0, u32::MAX, false), Err(Rejected::Duplicate { sequence: u32::MAX }));
+        assert_eq!(window.take(0, 0, false), Err(Rejected::Stale { sequence: 0 }), "numbers never start over");
+        assert_eq!(window.take(1, 0, true), Ok(0), "a new session does");
+    }
+
+    #[test]
+    fn only_a_hello_with_a_later_number_opens_a_session() {
+        let mut window = Window::closed();
+        assert_eq!(window.take(100, 0, false), Err(Rejected::ForeignSession { session: 100 }));
+        assert_eq!(window.take(100, 3, true), Ok(0));
+        for earlier in [99, 0, 100_u32.wrapping_sub(1 << 30), 100 + (1 << 31)] {
+            let replayed = window.take(earlier, 0, true);
+            assert_eq!(replayed, Err(Rejected::ForeignSession { session: earlier }), "{earlier} is not ahead of 100");
+        }
+        assert_eq!(window.take(100, 4, false), Ok(0), "the session is still open");
+        assert_eq!(window.take(100 + (1 << 30), 0, true), Ok(0));
+        assert_eq!(window.take(100, 5, false), Err(Rejected::ForeignSession { session: 100 }), "and now it is closed");
+    }
+
+    #[test]
+    fn session_numbers_wrap() {
+        let mut window = Window::open(u32::MAX);
+        assert_eq!(window.take(0, 0, true), Ok(0));
+    }
+}
