@@ -61,7 +61,7 @@ impl core::error::Error for LimitsError {}
 
 /// Which parts of a command were cut to the limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "u8", into = "u8"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limited {
     /// Bit i for the i-th of `T p q r`.
@@ -95,6 +95,18 @@ impl Limited {
     /// From [`Self::bits`]; higher bits are dropped.
     pub const fn from_bits(bits: u8) -> Self {
         Self { bits: bits & 0b1111 }
+    }
+}
+
+impl From<u8> for Limited {
+    fn from(bits: u8) -> Self {
+        Self::from_bits(bits)
+    }
+}
+
+impl From<Limited> for u8 {
+    fn from(limited: Limited) -> Self {
+        limited.bits
     }
 }
 

@@ -159,9 +159,9 @@ fn no_command() -> impl Strategy<Value = NoCommand> {
 }
 
 fn step() -> impl Strategy<Value = Step> {
-    (float(), vector(), any::<bool>(), any::<[bool; 3]>()).prop_map(|(thrust_m_s2, rates, thrust, body_rates)| Step {
+    (float(), vector(), any::<u8>()).prop_map(|(thrust_m_s2, rates, limited)| Step {
         command: Command { thrust_m_s2, body_rates_rad_s: rates },
-        limited: Limited { thrust, body_rates },
+        limited: Limited::from_bits(limited),
     })
 }
 

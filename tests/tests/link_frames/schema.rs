@@ -55,7 +55,7 @@ fn to_board() -> Vec<ToBoard> {
 fn from_board() -> Vec<FromBoard> {
     let step = Step {
         command: Command { thrust_m_s2: 9.81, body_rates_rad_s: Vector3::new(1.0, 2.0, 3.0) },
-        limited: Limited { thrust: true, body_rates: [false, true, false] },
+        limited: Limited::from_bits(0b0101),
     };
     let refused = NoCommand::Step(StepError::State(StateError::QuaternionNorm { norm_squared: 2.0 }));
     let statistics = LoopStatistics {
