@@ -1,19 +1,21 @@
-//! `quatrack measure`: an image in; instructions a step, flash and RAM out, for a person and as JSON.
+//! `quatrack measure`: images in; instructions a step, flash, RAM and stack out, for a person and as JSON.
 
 use std::path::PathBuf;
 
+use quatrack_sim::pil::PilError;
 use quatrack_sim::pil::image::{self, Image};
-use quatrack_sim::pil::{PilError, measure};
+use quatrack_sim::pil::measure::{self, Images, Report};
 
 use super::{Failure, output};
 
 /// Counts instructions on the emulated target, over both of the paper's flights with all four controllers: each law's
-/// step, the reference, the whole tick; and what the control path takes in flash and RAM.
+/// step, the reference, the whole tick; and what the firmware takes in flash and RAM.
 ///
-/// Builds its images inside a checkout. An instruction is not a cycle: the counts compare programs, not clocks.
+/// Builds its three images inside a checkout. An instruction is not a cycle: the counts compare programs, not clocks.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// An image that counts, instead of building one; flash and RAM are then that image's own.
+    /// Folder with the three images (quatrack-measure, quatrack-control-path, quatrack-firmware-pipes), or one of them
+    /// in it, instead of building them.
     #[arg(long, value_name = "FILE")]
     image: Option<PathBuf>,
     /// Write the figures as JSON.
@@ -22,7 +24,8 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let report = counted(args).map_err(failed)?;
+    // Whatever keeps an image from being run is for the user to mend.
+    let report = counted(args).map_err(Failure::input)?;
     output::print(&report.to_string())?;
     if let Some(path) = &args.json {
         output::write_json(path, &report)?;
@@ -31,17 +34,23 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn counted(args: &Args) -> Result<measure::Report, PilError> {
-    if let Some(path) = &args.image {
-        return measure::count(path, image::size(path)?);
-    }
-    let checkout = image::checkout()?;
-    let control_path = image::build(&checkout, Image::ControlPath)?;
-    let counting = image::build(&checkout, Image::Measure)?;
-    measure::count(&counting, image::size(&control_path)?)
-}
-
-/// Whatever keeps an image from being run is for the user to mend: exit code 2.
-fn failed(error: PilError) -> Failure {
-    Failure::input(error)
+fn counted(args: &Args) -> Result<Report, PilError> {
+    let images = match &args.image {
+        Some(path) => {
+            let folder = if path.is_dir() { path.as_path() } else { path.parent().unwrap_or(path) };
+            let [counting, control_path, flying] =
+                [Image::Measure, Image::ControlPath, Image::Pipes].map(|image| folder.join(image.binary()));
+            Images { counting, control_path, flying }
+        }
+        None => {
+            let checkout = image::checkout()?;
+            let build = |image| image::build(&checkout, image);
+            Images {
+                control_path: build(Image::ControlPath)?,
+                counting: build(Image::Measure)?,
+                flying: build(Image::Pipes)?,
+            }
+        }
+    };
+    measure::count(&images)
 }

@@ -6,11 +6,10 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
 use quatrack_sim::pil::client::Client;
-use quatrack_sim::pil::emulator::{Emulator, Folder};
-use quatrack_sim::pil::image::{self, Image};
+use quatrack_sim::pil::emulated::{self, Transport};
 use quatrack_sim::pil::interrupt::Interrupt;
 use quatrack_sim::pil::line::Line;
-use quatrack_sim::pil::{PilError, lock_step};
+use quatrack_sim::pil::{PilError, image, lock_step};
 
 use super::{Failure, output};
 
@@ -33,8 +32,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DEVICE")]
     port: Option<PathBuf>,
     /// How the emulated board is talked to: pipes are fast, usart is the real line.
-    #[arg(long, value_enum, default_value_t = Transport::Pipes, requires = "emulator")]
-    transport: Transport,
+    #[arg(long, value_enum, default_value_t = TransportName::Pipes, requires = "emulator")]
+    transport: TransportName,
     /// Emulate this image, made for the same transport, instead of building one.
     #[arg(long, value_name = "FILE", requires = "emulator")]
     image: Option<PathBuf>,
@@ -47,7 +46,7 @@ pub(crate) struct Args {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Transport {
+enum TransportName {
     Pipes,
     Usart,
 }
@@ -77,32 +76,15 @@ fn flown(args: &Args) -> Result<lock_step::Report, PilError> {
     report
 }
 
-/// A board in an emulator. The folder of the pipes is gone once both sides have opened them.
+/// A board in an emulator, on the image that is given or on one that is built.
 fn emulated(args: &Args, interrupt: Interrupt) -> Result<Client, PilError> {
+    let transport = match args.transport {
+        TransportName::Pipes => Transport::Pipes,
+        TransportName::Usart => Transport::Usart,
+    };
     let image = match &args.image {
         Some(path) => path.clone(),
-        None => image::build(
-            &image::checkout()?,
-            match args.transport {
-                Transport::Pipes => Image::Pipes,
-                Transport::Usart => Image::Usart,
-            },
-        )?,
+        None => image::build(&image::checkout()?, transport.image())?,
     };
-    image::size(&image)?;
-    let folder = Folder::create()?;
-    let (line, arguments): (Line, &[&str]) = match args.transport {
-        Transport::Pipes => {
-            let [to_board, from_board] = ["to-board", "from-board"].map(|name| folder.path().join(name));
-            (Line::create_pipes(&to_board, &from_board)?, &["-serial", "none"])
-        }
-        Transport::Usart => {
-            // QEMU reads what ends in `.in` and writes what ends in `.out`; USART2 is its second serial line.
-            let [to_board, from_board] = ["usart.in", "usart.out"].map(|name| folder.path().join(name));
-            let line = Line::create_pipes(&to_board, &from_board)?;
-            (line, &["-serial", "null", "-chardev", "pipe,id=usart2,path=usart", "-serial", "chardev:usart2"])
-        }
-    };
-    let emulator = Emulator::start(&image, folder.path(), arguments)?;
-    Client::connect(line, Some(emulator), interrupt)
+    emulated::connect(&image, transport, interrupt)
 }

@@ -30,7 +30,8 @@ pub enum Image {
 }
 
 impl Image {
-    fn binary(self) -> &'static str {
+    /// The name of its file.
+    pub fn binary(self) -> &'static str {
         match self {
             Self::Usart => "quatrack-firmware",
             Self::Pipes => "quatrack-firmware-pipes",

@@ -3,16 +3,17 @@
 use std::collections::BTreeMap;
 use std::fmt;
 use std::fs;
-use std::path::Path;
+use std::path::PathBuf;
 use std::time::Duration;
 
 use quatrack::{Command, State};
 use serde::Serialize;
 
 use super::PilError;
+use super::emulated::{self, Transport};
 use super::emulator::{Emulator, Folder};
 use super::flights::{COURSES, HostCore, Plans, fly};
-use super::image::Size;
+use super::image;
 use super::interrupt::Interrupt;
 use super::lock_step;
 use crate::reproduction::table::{Controller, Course};
@@ -56,10 +57,25 @@ pub struct Report {
     pub tick: Count,
     /// Steps counted.
     pub steps: usize,
-    /// Code and tables, without stored trajectories.
+    /// Code and tables of the control path, without stored trajectories: all that its own image puts in flash, start-up
+    /// code and vector table included.
     pub flash_bytes: u32,
-    /// Variables.
+    /// Variables of the image that flies, uploads included.
     pub ram_bytes: u32,
+    /// Most stack that it used in flight.
+    pub stack_bytes: u32,
+    /// All of its flash.
+    pub image_flash_bytes: u32,
+}
+
+/// The images that are measured.
+pub struct Images {
+    /// Counts on recorded states.
+    pub counting: PathBuf,
+    /// The control path alone.
+    pub control_path: PathBuf,
+    /// Flies, over pipes.
+    pub flying: PathBuf,
 }
 
 /// One flight as recorded on the host.
@@ -106,23 +122,34 @@ fn states_file(flights: &[Recorded]) -> Vec<u8> {
     bytes
 }
 
+/// Steps that are flown on the target for its stack.
+const STACK_STEPS: u32 = 500;
+
 /// Flies the paper's flights on the host and counts every step of them on the emulated target.
 ///
 /// # Errors
 /// [`PilError`].
-pub fn count(image: &Path, size: Size) -> Result<Report, PilError> {
+pub fn count(images: &Images) -> Result<Report, PilError> {
+    let (control_path, flying) = (image::size(&images.control_path)?, image::size(&images.flying)?);
+    image::size(&images.counting)?;
+    let interrupt = Interrupt::listen()?;
     let flights = record()?;
     let folder = Folder::create()?;
     let states = folder.path().join("states.bin");
     fs::write(&states, states_file(&flights)).map_err(PilError::io("writing the recorded states"))?;
-    Emulator::start(image, folder.path(), &["-serial", "none"])?.wait(LIMIT, &Interrupt::listen()?)?;
+    Emulator::start(&images.counting, folder.path(), &["-serial", "none"])?.wait(LIMIT, &interrupt)?;
     let counts = fs::read(folder.path().join("counts.bin")).map_err(PilError::io("reading the counts"))?;
     let (words, _) = counts.as_chunks::<4>();
     let words: Vec<u32> = words.iter().copied().map(u32::from_le_bytes).collect();
-    report(&flights, &words, size)
+    let mut report = report(&flights, &words)?;
+    let mut client = emulated::connect(&images.flying, Transport::Pipes, interrupt)?;
+    report.stack_bytes = lock_step::fly_all(&mut client, Some(STACK_STEPS), &|| {})?.stack_bytes;
+    report.flash_bytes = control_path.flash_bytes;
+    (report.ram_bytes, report.image_flash_bytes) = (flying.ram_bytes, flying.flash_bytes);
+    Ok(report)
 }
 
-fn report(flights: &[Recorded], words: &[u32], size: Size) -> Result<Report, PilError> {
+fn report(flights: &[Recorded], words: &[u32]) -> Result<Report, PilError> {
     let too_short = || PilError::Answer("it counted fewer steps than were flown".to_owned());
     let ([_, short, long], words) = words.split_first_chunk::<3>().ok_or_else(too_short)?;
     if long.wrapping_sub(*short) != LOOP_INSTRUCTIONS {
@@ -149,14 +176,20 @@ fn report(flights: &[Recorded], words: &[u32], size: Size) -> Result<Report, Pil
         reference: Count::of(&reference),
         tick: Count::of(&tick),
         steps: rows.len(),
-        flash_bytes: size.flash_bytes,
-        ram_bytes: size.ram_bytes,
+        flash_bytes: 0,
+        ram_bytes: 0,
+        stack_bytes: 0,
+        image_flash_bytes: 0,
     })
 }
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "Instructions on the emulated Cortex-M4F, {} steps of both of the paper's flights", self.steps)?;
+        writeln!(
+            f,
+            "Instructions on the emulated Cortex-M4F (target-cpu=cortex-m4, opt-level 3), {} steps of the paper's flights",
+            self.steps
+        )?;
         writeln!(f, "\n{:<24}{:>8}{:>10}{:>8}", "", "min", "mean", "max")?;
         let mut row =
             |name: &str, count: &Count| writeln!(f, "{name:<24}{:>8}{:>10.1}{:>8}", count.min, count.mean, count.max);
@@ -165,6 +198,11 @@ impl fmt::Display for Report {
         }
         row("reference", &self.reference)?;
         row("whole tick", &self.tick)?;
-        writeln!(f, "\nflash {} bytes, RAM {} bytes", self.flash_bytes, self.ram_bytes)
+        writeln!(f, "\ncontrol path   flash {:>6} bytes, without stored trajectories", self.flash_bytes)?;
+        let Self { image_flash_bytes, ram_bytes, stack_bytes, .. } = self;
+        writeln!(
+            f,
+            "whole image    flash {image_flash_bytes:>6} bytes, RAM {ram_bytes} bytes, stack {stack_bytes} bytes"
+        )
     }
 }

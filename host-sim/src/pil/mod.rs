@@ -4,6 +4,7 @@
 //! lock_step        the paper's flights under the target's commands, compared with the host's
 //! measure          instructions a step, flash, RAM
 //!   flights        the paper's flights, flown by the core on the host
+//!     emulated     a board in an emulator
 //!     client       a board behind its line
 //!       emulator   the process that runs an image
 //!       line       pipes or a serial port, with deadlines
@@ -12,6 +13,7 @@
 //! ```
 
 pub mod client;
+pub mod emulated;
 pub mod emulator;
 pub mod flights;
 pub mod image;
