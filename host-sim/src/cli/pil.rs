@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
+use clap::{ArgGroup, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use quatrack_sim::pil::client::Client;
 use quatrack_sim::pil::emulated::{self, Transport};
@@ -23,10 +23,10 @@ use super::{Failure, output};
 ///   quatrack pil --emulator --transport usart --steps 500
 ///   quatrack pil --port /dev/ttyUSB0
 #[derive(clap::Args)]
-#[command(verbatim_doc_comment)]
+#[command(verbatim_doc_comment, group(ArgGroup::new("board").required(true).args(["emulator", "port"])))]
 pub(crate) struct Args {
     /// Fly on an emulated STM32F405 (QEMU), with an image that is built first.
-    #[arg(long, required_unless_present = "port", conflicts_with = "port")]
+    #[arg(long)]
     emulator: bool,
     /// Fly on the board at this serial port, 1 Mbaud. Motors stay off.
     #[arg(long, value_name = "DEVICE")]

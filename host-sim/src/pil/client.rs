@@ -106,6 +106,26 @@ impl Client {
         })
     }
 
+    /// Sends a request and waits for its answer, whatever it is but an acknowledgement of something else.
+    ///
+    /// # Errors
+    /// [`PilError`].
+    pub fn ask(&mut self, message: &ToBoard) -> Result<FromBoard, PilError> {
+        self.exchange(message, "the board does not answer", |answer, _| match answer {
+            FromBoard::Fault(_) | FromBoard::Telemetry(_) => None,
+            answer => Some(*answer),
+        })
+    }
+
+    /// Sends bytes that are no frame, as a bad line would.
+    ///
+    /// # Errors
+    /// [`PilError`].
+    pub fn noise(&mut self, bytes: &[u8]) -> Result<(), PilError> {
+        self.line.send(bytes)?;
+        self.line.send(&[quatrack::link::DELIMITER])
+    }
+
     /// Sends a state and waits for the command that answers it.
     ///
     /// # Errors

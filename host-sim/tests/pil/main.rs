@@ -1,0 +1,5 @@
+//! `quatrack pil`: the image on the emulated board, and everything that can be wrong with either.
+
+mod emulated;
+mod failures;
+mod support;
