@@ -50,6 +50,9 @@ mod app {
     fn init(mut context: init::Context) -> (Shared, Local) {
         let fault = record::read();
         let (producer, consumer) = context.local.queue.split();
+        if let Some(report) = fault {
+            defmt::error!("restarted after {} at {=u32:#010x}", report.fault, report.address);
+        }
         let board = board::start(context.device, &mut context.core.SYST);
         let line = crate::line(UsartLine::new(board.usart, consumer));
         let shared = Shared {
@@ -57,6 +60,7 @@ mod app {
             timing: Timing::new(board.clocks.counts_per_tick),
             counter: board.counter,
         };
+        defmt::info!("core {=u32} Hz, TIM2 {=u32} counts a tick", board.clocks.core_hz, board.clocks.counts_per_tick);
         let receiver = Receiver::new(producer, &DROPPED_BYTES);
         (shared, Local { receiver, session: Session::new(context.local.uploads, fault), line })
     }
@@ -86,6 +90,7 @@ mod app {
         let mut flight = LockedFlight(&mut context.shared.flight);
         let mut received = [0; 64];
         let mut frame = [0; FRAME_BYTES];
+        let mut mode = flight.with(|flight| flight.mode());
         loop {
             let count = line.receive(&mut received);
             for byte in received.iter().take(count) {
@@ -108,6 +113,10 @@ mod app {
                 if let Some(frame) = session.frame(&message, &mut frame) {
                     line.send(frame);
                 }
+            }
+            let before = core::mem::replace(&mut mode, flight.with(|flight| flight.mode()));
+            if mode != before {
+                defmt::info!("tick {=u32}: {} -> {}", vitals.now(), before, mode);
             }
             if count == 0 {
                 line.wait();

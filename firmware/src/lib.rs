@@ -5,6 +5,7 @@
 //!   board                     clocks, pins, timers of one board
 //!     transport               bytes over a USART, or over files of the emulating machine (feature `semihosting`)
 //!     counter, stack, record  the free-running timer; the painted stack; what outlives a restart
+//!     log                     defmt's frames, in a ring that a debug probe reads
 //!     panic                   the handler that cannot link
 //!   tick                      what the timer's interrupts run
 //!   session                   frames in, orders to the flight, frames out
@@ -28,6 +29,8 @@ pub mod timing;
 pub mod board;
 #[cfg(target_os = "none")]
 pub mod counter;
+#[cfg(all(target_os = "none", feature = "log"))]
+pub mod log;
 #[cfg(target_os = "none")]
 mod panic;
 #[cfg(target_os = "none")]

@@ -1,6 +1,6 @@
 //! Lines: bytes in and out, the same frames on all of them.
 
-#[cfg(feature = "semihosting")]
+#[cfg(all(feature = "log", feature = "semihosting"))]
 pub mod pipes;
 pub mod usart;
 

@@ -40,6 +40,9 @@ pub(crate) struct Args {
     /// Fly only so many steps in all, spread evenly over the eight flights; there is no IAE then.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     steps: Option<u32>,
+    /// Write what the image logs over the pipes, for `defmt-print -e IMAGE < FILE`; a board's log is read by its probe.
+    #[arg(long, value_name = "FILE", requires = "emulator")]
+    log: Option<PathBuf>,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -86,5 +89,5 @@ fn emulated(args: &Args, interrupt: Interrupt) -> Result<Client, PilError> {
         Some(path) => path.clone(),
         None => image::build(&image::checkout()?, transport.image())?,
     };
-    emulated::connect(&image, transport, interrupt)
+    emulated::connect(&image, transport, args.log.as_deref(), interrupt)
 }

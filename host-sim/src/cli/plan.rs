@@ -167,7 +167,7 @@ mod tests {
         fn run(&self, plan: &str) -> Result<(), Failure> {
             let at = |name: &str| self.0.join(name);
             fs::write(at("plan.toml"), plan).unwrap();
-            run(&Args { plan: at("plan.toml"), json: Some(at("curve.json")), toml: Some(at("curve.toml")) })
+            run(&Args { plan: at("plan.toml"), json: Some(at("curve.json")), toml: Some(at("curve.toml")), rust: None })
         }
     }
 
@@ -238,13 +238,17 @@ mod tests {
             assert_eq!(failure.exit_code, 2);
             assert!(failure.line.contains("plan.toml: ") && !failure.line.contains('\n'), "{}", failure.line);
         }
-        let absent = Args { plan: folder.0.join("absent.toml"), json: None, toml: None };
+        let absent = Args { plan: folder.0.join("absent.toml"), json: None, toml: None, rust: None };
         let failure = run(&absent).unwrap_err();
         assert_eq!(failure.exit_code, 2);
         assert!(failure.line.contains("absent.toml: cannot read this plan file"), "{}", failure.line);
         fs::write(folder.0.join("plan.toml"), paper::AGGRESSIVE_TOML).unwrap();
-        let nowhere =
-            Args { plan: folder.0.join("plan.toml"), json: Some(folder.0.join("no/such/folder.json")), toml: None };
+        let nowhere = Args {
+            plan: folder.0.join("plan.toml"),
+            json: Some(folder.0.join("no/such/folder.json")),
+            toml: None,
+            rust: None,
+        };
         assert_eq!(run(&nowhere).unwrap_err().exit_code, 2);
     }
 }

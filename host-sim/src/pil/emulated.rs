@@ -1,6 +1,7 @@
 //! A board in an emulator: an image and how to talk to it in; a connected board out.
 
-use std::path::Path;
+use std::os::unix::fs::symlink;
+use std::path::{Path, absolute};
 
 use super::PilError;
 use super::client::Client;
@@ -28,13 +29,24 @@ impl Transport {
     }
 }
 
-/// Starts an image and opens a session with it. The folder of the pipes is gone once both sides have opened them.
+/// Starts an image and opens a session with it. The folder of the pipes is gone once both sides have opened them. What an
+/// image on pipes logs goes to `log`, as defmt writes it.
 ///
 /// # Errors
 /// [`PilError`] where there is no emulator, no such image, or no answer.
-pub fn connect(image: &Path, transport: Transport, interrupt: Interrupt) -> Result<Client, PilError> {
+pub fn connect(
+    image: &Path,
+    transport: Transport,
+    log: Option<&Path>,
+    interrupt: Interrupt,
+) -> Result<Client, PilError> {
     image::size(image)?;
     let folder = Folder::create()?;
+    if let Some(log) = log {
+        // The image opens its log in the folder; what it finds there leads out of it.
+        let log = absolute(log).map_err(PilError::io(format!("finding {}", log.display())))?;
+        symlink(log, folder.path().join("log.defmt")).map_err(PilError::io("placing the log"))?;
+    }
     let (line, arguments): (Line, &[&str]) = match transport {
         Transport::Pipes => {
             let [to_board, from_board] = ["to-board", "from-board"].map(|name| folder.path().join(name));

@@ -42,8 +42,10 @@ impl Image {
 
     fn features(self) -> &'static [&'static str] {
         match self {
-            Self::Pipes | Self::Measure => &["--features", "semihosting"],
-            Self::Usart | Self::ControlPath => &[],
+            Self::Usart => &[],
+            Self::Pipes => &["--features", "semihosting"],
+            Self::Measure => &["--no-default-features", "--features", "semihosting"],
+            Self::ControlPath => &["--no-default-features"],
         }
     }
 }

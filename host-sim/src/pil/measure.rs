@@ -142,7 +142,7 @@ pub fn count(images: &Images) -> Result<Report, PilError> {
     let (words, _) = counts.as_chunks::<4>();
     let words: Vec<u32> = words.iter().copied().map(u32::from_le_bytes).collect();
     let mut report = report(&flights, &words)?;
-    let mut client = emulated::connect(&images.flying, Transport::Pipes, interrupt)?;
+    let mut client = emulated::connect(&images.flying, Transport::Pipes, None, interrupt)?;
     report.stack_bytes = lock_step::fly_all(&mut client, Some(STACK_STEPS), &|| {})?.stack_bytes;
     report.flash_bytes = control_path.flash_bytes;
     (report.ram_bytes, report.image_flash_bytes) = (flying.ram_bytes, flying.flash_bytes);

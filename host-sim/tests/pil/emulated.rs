@@ -26,7 +26,7 @@ fn pipes_image() -> PathBuf {
 }
 
 fn connected() -> Client {
-    emulated::connect(&pipes_image(), Transport::Pipes, Interrupt::default()).unwrap()
+    emulated::connect(&pipes_image(), Transport::Pipes, None, Interrupt::default()).unwrap()
 }
 
 /// A board in flight: armed, one state answered with a command.
