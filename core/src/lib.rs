@@ -70,4 +70,4 @@ pub use quaternion::{Heading, Quaternion};
 pub use reference::{FlatSample, Reference};
 pub use state::State;
 pub use tracker::{Step, Tracker};
-pub use trajectory::{Piece, Player, Trajectory};
+pub use trajectory::{Bookmark, Piece, Player, Trajectory};

@@ -46,6 +46,12 @@ pub const MAX_HEADING_JUMP_RAD: f32 = 1e-3;
 pub struct Trajectory<'a> {
     first: &'a Piece,
     following: &'a [Piece],
+    summary: Summary,
+}
+
+/// What the check of pieces found. Kept beside pieces that do not change, it spares another check.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Summary {
     duration_ns: u64,
     end: FlatSample,
     shape: Shape,
@@ -140,12 +146,25 @@ impl<'a> Trajectory<'a> {
                 .all(|[.., c6, c7]| *c6 == 0.0 && *c7 == 0.0),
         };
         let end = FlatSample::at_rest(end.position_m, end.heading_rad);
-        Ok(Self { first, following, duration_ns, end, shape })
+        Ok(Self { first, following, summary: Summary { duration_ns, end, shape } })
     }
 
     /// Length in time, ns.
     pub fn duration_ns(&self) -> u64 {
-        self.duration_ns
+        self.summary.duration_ns
+    }
+
+    /// What the check found.
+    #[cfg_attr(not(feature = "link"), expect(dead_code, reason = "for trajectories that come over the link"))]
+    pub(crate) fn summary(&self) -> Summary {
+        self.summary
+    }
+
+    /// The same pieces again, with what their check found.
+    #[cfg_attr(not(feature = "link"), expect(dead_code, reason = "for trajectories that come over the link"))]
+    pub(crate) fn of_checked(pieces: &'a [Piece], summary: Summary) -> Option<Self> {
+        let (first, following) = pieces.split_first()?;
+        Some(Self { first, following, summary })
     }
 }
 
@@ -279,13 +298,46 @@ pub struct Player<'a> {
     start_ns: u64,
 }
 
+/// Where a player is, without its trajectory: for who cannot keep a trajectory borrowed between two steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Bookmark {
+    clock: TickClock,
+    end_tick: Tick,
+    duration_ns: u64,
+    /// Pieces before the current one, and when that begins.
+    passed: usize,
+    start_ns: u64,
+}
+
 impl<'a> Player<'a> {
     /// A player at the start of `trajectory`, ticking at `rate`.
     pub fn new(trajectory: Trajectory<'a>, rate: Rate) -> Self {
         let clock = TickClock::new(rate);
-        let end_tick = clock.first_tick_at(trajectory.duration_ns);
+        let end_tick = clock.first_tick_at(trajectory.summary.duration_ns);
         let (piece, following) = (trajectory.first, trajectory.following);
         Self { trajectory, clock, end_tick, piece, following, start_ns: 0 }
+    }
+
+    /// Where it is.
+    pub fn bookmark(&self) -> Bookmark {
+        let Self { trajectory, clock, end_tick, start_ns, .. } = *self;
+        // The piece of the last tick is none of those that follow.
+        let passed = trajectory.following.len() - self.following.len();
+        Bookmark { clock, end_tick, duration_ns: trajectory.summary.duration_ns, passed, start_ns }
+    }
+
+    /// A player that goes on where another one of the same trajectory was; nothing for another trajectory.
+    pub fn resume(trajectory: Trajectory<'a>, bookmark: Bookmark) -> Option<Self> {
+        let Bookmark { clock, end_tick, duration_ns, passed, start_ns } = bookmark;
+        if trajectory.summary.duration_ns != duration_ns {
+            return None;
+        }
+        let following = trajectory.following.get(passed..)?;
+        let piece = match passed.checked_sub(1) {
+            None => trajectory.first,
+            Some(last) => trajectory.following.get(last)?,
+        };
+        Some(Self { trajectory, clock, end_tick, piece, following, start_ns })
     }
 
     /// The first tick at or after the trajectory's end.
@@ -311,7 +363,7 @@ impl<'a> Player<'a> {
     #[inline(always)]
     fn sample(&mut self, tick: Tick) -> FlatSample {
         if tick >= self.end_tick {
-            return self.trajectory.end;
+            return self.trajectory.summary.end;
         }
         let time_ns = self.clock.time_ns(tick);
         if time_ns < self.start_ns {
@@ -322,7 +374,7 @@ impl<'a> Player<'a> {
             self.start_ns += self.piece.duration_ns;
             (self.piece, self.following) = (next, following);
         }
-        self.piece.at(time_ns - self.start_ns, self.trajectory.shape)
+        self.piece.at(time_ns - self.start_ns, self.trajectory.summary.shape)
     }
 
     #[cold]

@@ -2,6 +2,7 @@
 
 use quatrack::link::{TRAJECTORY_PIECES, TrajectoryStore};
 use quatrack::nalgebra::Vector3;
+use quatrack::trajectory::Bookmark;
 use quatrack::{FlatSample, Player, Reference, ReferenceError, Tick};
 
 use crate::control::ReferenceSource;
@@ -27,8 +28,9 @@ enum Source {
     Nothing,
     Link(FlatSample),
     Flash(Player<'static>),
-    /// The uploaded trajectory in use.
-    Uploaded,
+    /// The uploaded trajectory in use, and where it is: the store keeps the pieces, so that nothing can borrow them for
+    /// longer than a step.
+    Uploaded(Bookmark),
 }
 
 impl Playback {
@@ -49,11 +51,10 @@ impl Playback {
 
     /// Plays the uploaded trajectory from its start, which is the next step; whether there is one.
     pub fn start_uploaded(&mut self) -> bool {
-        let uploaded = self.store.active().trajectory().is_some();
-        if uploaded {
-            self.begin(Source::Uploaded);
-        }
-        uploaded
+        let Some(trajectory) = self.store.active().trajectory() else { return false };
+        let bookmark = Player::new(trajectory, TICK_RATE).bookmark();
+        self.begin(Source::Uploaded(bookmark));
+        true
     }
 
     fn begin(&mut self, source: Source) {
@@ -83,7 +84,7 @@ impl Playback {
     }
 
     fn is_trajectory(&self) -> bool {
-        matches!(self.source, Source::Flash(_) | Source::Uploaded)
+        matches!(self.source, Source::Flash(_) | Source::Uploaded(_))
     }
 
     /// Ticks of the trajectory at a tick of the clock.
@@ -114,21 +115,28 @@ impl ReferenceSource for Playback {
 }
 
 impl Playback {
-    /// The reference of everything but a moving trajectory in flash.
+    /// The reference of everything but a moving trajectory in flash. What comes here is paused, uploaded, or the link's.
     #[cold]
     fn otherwise(&mut self, tick: Tick) -> Result<Reference, ReferenceError> {
         let sample = match &mut self.source {
             Source::Link(sample) => return Reference::from_flat(sample),
             Source::Flash(player) => player.at(tick),
-            // The pieces are checked anew at every step, some 10,000 instructions, because the store may change.
-            Source::Uploaded => match self.store.active().trajectory() {
-                Some(trajectory) => Player::new(trajectory, TICK_RATE).at(tick),
-                None => NOWHERE,
-            },
+            Source::Uploaded(bookmark) => {
+                let trajectory = self.store.active().trajectory();
+                // Another trajectory has been put to use since this one was started: there is nothing to follow.
+                let Some(mut player) = trajectory.and_then(|trajectory| Player::resume(trajectory, *bookmark)) else {
+                    return Reference::from_flat(&NOWHERE);
+                };
+                if self.moving {
+                    let reference = player.reference(tick);
+                    *bookmark = player.bookmark();
+                    return reference;
+                }
+                player.at(tick)
+            }
             Source::Nothing => NOWHERE,
         };
-        let rest = FlatSample::at_rest(sample.position_m, sample.heading_rad);
-        Reference::from_flat(if self.moving { &sample } else { &rest })
+        Reference::from_flat(&FlatSample::at_rest(sample.position_m, sample.heading_rad))
     }
 }
 
@@ -140,6 +148,7 @@ mod tests {
     use super::*;
     use crate::stored;
     use quatrack::Trajectory;
+    use quatrack::link::{TRAJECTORY_BLOB_BYTES, encode_trajectory};
 
     fn player() -> Player<'static> {
         Player::new(Trajectory::new(&stored::MILD).unwrap(), TICK_RATE)
@@ -173,5 +182,22 @@ mod tests {
         playback.start(player());
         assert_eq!(playback.at(u32::MAX - 1), direct.reference(0));
         assert_eq!(playback.at(4), direct.reference(6));
+    }
+
+    #[test]
+    fn an_uploaded_trajectory_plays_as_one_in_flash() {
+        let mut blob = vec![0; TRAJECTORY_BLOB_BYTES];
+        let blob = encode_trajectory(&stored::MILD, &mut blob).unwrap();
+        let mut direct = player();
+        let mut playback = Playback::new(Box::leak(Box::default()));
+        assert!(!playback.start_uploaded(), "there is none");
+        playback.store().commit(blob).unwrap();
+        assert!(playback.start_uploaded());
+        for tick in [0, 2, 4, 2000, 29_998, 40_000] {
+            assert_eq!(playback.at(tick), direct.reference(tick), "tick {tick}");
+        }
+        let other = encode_trajectory(&stored::AGGRESSIVE, &mut vec![0; TRAJECTORY_BLOB_BYTES]).unwrap().to_vec();
+        playback.store().commit(&other).unwrap();
+        assert!(playback.at(40_002).is_err(), "the one that was started is gone");
     }
 }

@@ -194,8 +194,8 @@ fn a_flight_that_diverges_leaves_the_figure_readable() {
         drawn.iter().map(|p| p[1]).fold(0.0, f64::max) - drawn.iter().map(|p| p[1]).fold(560.0, f64::min)
     };
     for panel in 1..=3 {
-        // Axes grow by at most half of the longest extent (2 m, y) at either end, and 6 % twice: z, 1 m long, keeps a
-        // third of its panel, less that padding.
+        // Axes grow by at most half of the longest extent (2 m, y) at either end, then by 6 % and 5 % at either end: z,
+        // 1 m long, keeps a third of its panel, less what these take beyond the 6 % that the calm one has as well.
         assert!(height(&wild, panel) > 0.3 * height(&calm, panel), "panel {panel}");
     }
     let notes: Vec<&str> = texts(&wild).into_iter().filter(|text| text.ends_with('.')).collect();

@@ -57,6 +57,21 @@ fn ticks_may_jump_and_run_backwards() {
 }
 
 #[test]
+fn a_bookmark_goes_on_where_the_player_was() {
+    let [mild, w] = paper_trajectories();
+    let (pieces, others) = (core_loop::pieces(&w), core_loop::pieces(&mild));
+    let trajectory = Trajectory::new(&pieces).unwrap();
+    let mut whole = Player::new(trajectory, Rate::from_hz(500).unwrap());
+    let mut bookmark = whole.bookmark();
+    for tick in (0..6500).chain([100, 4000]) {
+        let mut resumed = Player::resume(trajectory, bookmark).unwrap();
+        assert_eq!(resumed.at(tick), whole.at(tick), "tick {tick}");
+        bookmark = resumed.bookmark();
+    }
+    assert!(Player::resume(Trajectory::new(&others).unwrap(), bookmark).is_none());
+}
+
+#[test]
 fn derivatives_are_those_of_the_monomials() {
     // x = t^7, y = 1 - t, z = 2 t^3, heading = t^2 / 4 at t = 1/2, all exact in binary.
     let piece = Piece {

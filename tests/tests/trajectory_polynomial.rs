@@ -50,7 +50,21 @@ fn pieces_are_the_spline_of_any_degree() {
             }
             assert_eq!(a.heading_rad, 0.0);
         }
-        assert!((pieces.duration_s() - 12.0).abs() < 38.0 * f64::EPSILON * 12.0, "38 roundings of a sum up to 12 s");
+        assert_eq!(pieces.duration_s(), 12.0);
+    }
+}
+
+#[test]
+fn pieces_take_as_long_as_the_spline_to_the_bit() {
+    // 38 times 30/38 s adds up to 29.999999999999986 s; 3 * 0.1 / 3 is not 0.1 either.
+    for (duration_s, spans) in [(30.0, 38), (0.1, 3), (12.0, 38), (1.0 / 3.0, 49), (7.7, 1)] {
+        let points = (0..spans + 5).map(|i| Vector3::new(f64::from(i).sin(), 0.0, 1.0)).collect();
+        let spline = BSpline::new(5, duration_s, points).expect("valid control points");
+        let pieces = PiecewisePolynomial::from_bspline(&spline).expect("a spline of a metre");
+        assert_eq!(pieces.duration_s(), duration_s, "{spans} spans");
+        // The end is flown, and what comes after it is at rest.
+        assert!(pieces.at(duration_s).velocity_m_s.x != 0.0);
+        assert_eq!(pieces.at(duration_s.next_up()).velocity_m_s.x, 0.0);
     }
 }
 

@@ -9,7 +9,7 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::upload::BlobKind;
-use crate::trajectory::{Piece, Trajectory, TrajectoryError};
+use crate::trajectory::{Piece, Summary, Trajectory, TrajectoryError};
 
 /// Pieces that an uploaded trajectory may have; the paper's longest has 38.
 pub const TRAJECTORY_PIECES: usize = 64;
@@ -70,14 +70,15 @@ pub fn encode_trajectory<'b>(pieces: &[Piece], buffer: &'b mut [u8]) -> Option<&
 /// Room for one uploaded trajectory of at most `P` pieces.
 #[derive(Clone, Debug)]
 pub struct TrajectorySlot<const P: usize> {
-    /// Empty, or checked as a whole.
     pieces: Vec<Piece, P>,
+    /// What their check as a whole found; nothing while they are not checked.
+    summary: Option<Summary>,
 }
 
 impl<const P: usize> TrajectorySlot<P> {
     /// Empty.
     pub const fn new() -> Self {
-        Self { pieces: Vec::new() }
+        Self { pieces: Vec::new(), summary: None }
     }
 
     /// Decodes and checks a blob.
@@ -85,17 +86,15 @@ impl<const P: usize> TrajectorySlot<P> {
     /// # Errors
     /// [`BlobError`]; the slot is empty then.
     pub fn load(&mut self, blob: &[u8]) -> Result<(), BlobError> {
-        let loaded =
-            self.decode(blob).and_then(|()| Trajectory::new(&self.pieces).map(|_| ()).map_err(BlobError::Trajectory));
-        if loaded.is_err() {
-            self.pieces.clear();
-        }
-        loaded
+        self.summary = None;
+        self.decode(blob)?;
+        self.summary = Some(Trajectory::new(&self.pieces).map_err(BlobError::Trajectory)?.summary());
+        Ok(())
     }
 
-    /// The trajectory, if one has been loaded. It is checked again, which takes as long as loading it.
+    /// The trajectory, if one has been loaded.
     pub fn trajectory(&self) -> Option<Trajectory<'_>> {
-        Trajectory::new(&self.pieces).ok()
+        Trajectory::of_checked(&self.pieces, self.summary?)
     }
 
     /// One piece after the other, so that no more than one is ever on the stack.

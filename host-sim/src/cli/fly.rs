@@ -19,6 +19,8 @@ use quatrack_sim::trajectory::bspline::BSpline;
 use quatrack_sim::trajectory::file::{self, TrajectoryFile};
 use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
 
+use serde::Serialize;
+
 use super::limits::LimitsChoice;
 use super::{Failure, output};
 
@@ -101,6 +103,14 @@ impl fmt::Display for Controller {
             Self::LqrE => "LQR-E",
         })
     }
+}
+
+/// The flight as it is written to a file: figures, and when and why it was lost.
+#[derive(Serialize)]
+struct Report {
+    #[serde(flatten)]
+    metrics: Metrics,
+    lost: Option<String>,
 }
 
 /// A gain of either law, in f64.
@@ -274,7 +284,8 @@ fn report(args: &Args, flight: &Flight, clock: &str, duration_s: f64) -> Result<
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     if let Some(path) = &args.json {
-        output::write_json(path, &metrics)?;
+        let lost = flight.lost.as_ref().map(|lost| format!("{:.2} s: {}", lost.time_s, lost.reason));
+        output::write_json(path, &Report { metrics, lost })?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

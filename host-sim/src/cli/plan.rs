@@ -111,8 +111,8 @@ fn summary(plan: &Plan, curve: &BSpline) -> String {
         ("thrust, least, m/s^2", sampled.thrust_min_m_s2, Some(Limit::ThrustMin), bounds.thrust_min_m_s2, one),
         ("thrust, largest, m/s^2", sampled.thrust_max_m_s2, Some(Limit::ThrustMax), bounds.thrust_max_m_s2, one),
         (
-            "body rate, largest, deg/s",
-            sampled.body_rate_max_rad_s,
+            "turn of the thrust, deg/s",
+            sampled.turn_rate_max_rad_s,
             Some(Limit::BodyRate),
             bounds.body_rate_max_rad_s,
             deg,

@@ -1,16 +1,16 @@
-//! The layout of a figure: checked data in, a scene with title, legend, 3D view, panels and notes out.
+//! The layout of a figure: checked data in, a document with title, legend, 3D view, panels and notes out.
 
 use nalgebra::Vector3;
 
 use super::axis::Range;
-use super::scene::{Anchor, Colour, Scene, Stroke};
+use super::render::width_em;
 use super::space::Frame;
-use super::style::{LEGEND, Line, NOTE, TITLE};
-use super::text::{self, CAP_HEIGHT, FontUnusable};
-use super::{Curve, TrackingFigure, panels, space};
+use super::style::{CAP_HEIGHT, Colour, LEGEND, Line, NOTE, Stroke, TITLE};
+use super::svg::{Anchor, Sheet};
+use super::{Curve, FigureError, TrackingFigure, panels, space};
 
 const WIDTH: f64 = 1200.0;
-const SIZE: [u32; 2] = [1200, 560];
+const HEIGHT: f64 = 560.0;
 /// Free at the left and right of title, legend and notes.
 const MARGIN: f64 = 24.0;
 
@@ -26,29 +26,30 @@ const FLATTEST: f64 = 0.25;
 /// Free at either end of an axis, as a share of its extent.
 const PADDING: f64 = 0.06;
 
-/// The figure; its data have been checked.
-pub(super) fn scene(figure: &TrackingFigure<'_>) -> Result<Scene, FontUnusable> {
-    let mut scene = Scene { size: SIZE, title: figure.title.to_owned(), items: Vec::new() };
+/// The figure as SVG; its data have been checked.
+pub(super) fn document(figure: &TrackingFigure<'_>) -> Result<String, FigureError> {
+    let mut sheet = Sheet::new([WIDTH, HEIGHT], figure.title);
     let lines = lines(figure);
     let axes = axes(figure);
     let longest = axes.iter().map(|axis| axis.extent()).fold(0.0, f64::max);
-    space::draw(&mut scene, SPACE, &axes.map(|axis| axis.at_least(FLATTEST * longest)), &lines);
+    space::draw(&mut sheet, SPACE, &axes.map(|axis| axis.at_least(FLATTEST * longest)), &lines);
 
     let time_s = &figure.reference.time_s;
     // Checked: there are at least two times, and they increase.
     let time_s = Range { low: time_s[0], high: time_s[time_s.len() - 1] };
-    panels::draw(&mut scene, PANELS, time_s, &axes, &lines);
+    panels::draw(&mut sheet, PANELS, time_s, &axes, &lines);
 
     let title_size = fitting(figure.title, TITLE)?;
-    scene.text(figure.title, [0.5 * WIDTH, 32.0], title_size, Anchor::Middle);
-    legend(&mut scene, &lines)?;
+    sheet.text(figure.title, [0.5 * WIDTH, 32.0], title_size, Anchor::Middle);
+    legend(&mut sheet, &lines)?;
     let notes: Vec<String> = figure.flights.iter().filter_map(|flight| note(flight, &axes)).collect();
     if !notes.is_empty() {
-        let text = notes.join("   ");
+        // An em space: SVG runs ordinary ones together.
+        let text = notes.join("\u{2003}");
         let size = fitting(&text, NOTE)?;
-        scene.text(text, [0.5 * WIDTH, 550.0], size, Anchor::Middle);
+        sheet.text(&text, [0.5 * WIDTH, 550.0], size, Anchor::Middle);
     }
-    Ok(scene)
+    Ok(sheet.into_document())
 }
 
 /// Curves in the order of drawing: flights from wide to narrow, then the reference on top, so that all can be seen
@@ -102,12 +103,12 @@ fn note(flight: &Curve<'_>, axes: &[Range; 3]) -> Option<String> {
 }
 
 /// `size`, or what is smaller and keeps the text on the sheet.
-fn fitting(content: &str, size: f64) -> Result<f64, FontUnusable> {
-    Ok(size.min((WIDTH - 2.0 * MARGIN) / text::width_em(content)?))
+fn fitting(content: &str, size: f64) -> Result<f64, FigureError> {
+    Ok(size.min((WIDTH - 2.0 * MARGIN) / width_em(content)?))
 }
 
 /// A row of samples with their labels, centred below the title; the reference first.
-fn legend(scene: &mut Scene, lines: &[Line<'_>]) -> Result<(), FontUnusable> {
+fn legend(sheet: &mut Sheet, lines: &[Line<'_>]) -> Result<(), FigureError> {
     const SAMPLE: f64 = 36.0;
     const TO_LABEL: f64 = 8.0;
     const BETWEEN: f64 = 32.0;
@@ -115,7 +116,7 @@ fn legend(scene: &mut Scene, lines: &[Line<'_>]) -> Result<(), FontUnusable> {
     let order = || lines.last().into_iter().chain(&lines[..lines.len() - 1]);
     let mut widths_em = Vec::with_capacity(lines.len());
     for line in order() {
-        widths_em.push(text::width_em(line.label)?);
+        widths_em.push(width_em(line.label)?);
     }
     let fixed = lines.len() as f64 * (SAMPLE + TO_LABEL) + (lines.len() - 1) as f64 * BETWEEN;
     let total_em: f64 = widths_em.iter().sum();
@@ -123,8 +124,8 @@ fn legend(scene: &mut Scene, lines: &[Line<'_>]) -> Result<(), FontUnusable> {
     let mut x = 0.5 * (WIDTH - fixed - size * total_em);
     for (line, width_em) in order().zip(widths_em) {
         let y = ROW - 0.5 * CAP_HEIGHT * size;
-        scene.line([x, y], [x + SAMPLE, y], line.stroke);
-        scene.text(line.label, [x + SAMPLE + TO_LABEL, ROW], size, Anchor::Start);
+        sheet.line([x, y], [x + SAMPLE, y], line.stroke);
+        sheet.text(line.label, [x + SAMPLE + TO_LABEL, ROW], size, Anchor::Start);
         x += SAMPLE + TO_LABEL + size * width_em + BETWEEN;
     }
     Ok(())

@@ -7,18 +7,12 @@ mod axis;
 mod compose;
 mod panels;
 mod path;
-mod png;
-mod raster;
-mod scene;
+mod render;
 mod space;
 mod style;
 mod svg;
-mod text;
 
 use nalgebra::Vector3;
-
-/// Pixels of the PNG per SVG user unit.
-const PNG_SCALE: u32 = 2;
 
 /// Coordinates and times up to this size can be told apart on an axis and labelled.
 const LARGEST: f64 = 1e6;
@@ -82,15 +76,9 @@ pub enum FigureError {
         /// The first such coordinate, m.
         value: f64,
     },
-    /// The font that comes with the program cannot be read.
-    #[error("the embedded font cannot be used; the program was built without it, build it again")]
-    Font,
-}
-
-impl From<text::FontUnusable> for FigureError {
-    fn from(_: text::FontUnusable) -> Self {
-        Self::Font
-    }
+    /// The renderer refused the figure's own SVG: a fault of the program.
+    #[error("the figure could not be rendered: {0}; please report this with the trajectory that was drawn")]
+    Rendering(String),
 }
 
 impl TrackingFigure<'_> {
@@ -100,20 +88,19 @@ impl TrackingFigure<'_> {
     /// [`FigureError`] if the data do not make a figure.
     pub fn to_svg(&self) -> Result<String, FigureError> {
         self.validate()?;
-        Ok(svg::document(&compose::scene(self)?))
+        compose::document(self)
     }
 
-    /// The figure as a PNG file, 2400 x 1120 pixels of 8-bit RGB.
+    /// The figure as a PNG file, the same as the SVG: 2400 x 1120 opaque pixels of 8-bit RGBA.
     ///
     /// # Errors
     /// [`FigureError`] if the data do not make a figure.
     pub fn to_png(&self) -> Result<Vec<u8>, FigureError> {
-        self.validate()?;
-        Ok(png::encode(&raster::draw(&compose::scene(self)?, PNG_SCALE)?))
+        render::png(&self.to_svg()?)
     }
 
     fn validate(&self) -> Result<(), FigureError> {
-        if !(1..=scene::Colour::FLIGHTS.len()).contains(&self.flights.len()) {
+        if !(1..=style::Colour::FLIGHTS.len()).contains(&self.flights.len()) {
             return Err(FigureError::Flights(self.flights.len()));
         }
         for curve in self.flights.iter().chain([&self.reference]) {

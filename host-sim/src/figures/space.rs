@@ -2,13 +2,12 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::axis::{self, Range};
+use super::axis::{self, Range, Scale};
 use super::path;
-use super::scene::{Anchor, Colour, Item, Scene, Stroke};
-use super::style::{CURVE_TOLERANCE, LABEL, Line, TICK};
-use super::text::CAP_HEIGHT;
+use super::style::{CAP_HEIGHT, CURVE_TOLERANCE, Colour, LABEL, Line, Stroke, TICK};
+use super::svg::{Anchor, Sheet};
 
-/// Where the picture goes, logical pixels.
+/// Where the picture goes, user units.
 #[derive(Clone, Copy)]
 pub(super) struct Frame {
     pub(super) left: f64,
@@ -31,7 +30,7 @@ struct View {
     up: Vector3<f64>,
     middle_m: Vector3<f64>,
     at: Vector2<f64>,
-    pixels_per_m: f64,
+    units_per_m: f64,
 }
 
 impl View {
@@ -44,7 +43,7 @@ impl View {
         let width = frame.right - frame.left - ROOM[0] - ROOM[2];
         let height = frame.bottom - frame.top - ROOM[1] - ROOM[3];
         Self {
-            pixels_per_m: (width / right.abs().dot(&extent)).min(height / up.abs().dot(&extent)),
+            units_per_m: (width / right.abs().dot(&extent)).min(height / up.abs().dot(&extent)),
             right,
             up,
             middle_m: Vector3::from(axes.map(|axis| 0.5 * (axis.low + axis.high))),
@@ -55,9 +54,9 @@ impl View {
         }
     }
 
-    /// A direction on the page, pixels per metre along it.
+    /// A direction on the page, user units per metre along it.
     fn direction(&self, v: &Vector3<f64>) -> Vector2<f64> {
-        Vector2::new(self.right.dot(v), -self.up.dot(v)) * self.pixels_per_m
+        Vector2::new(self.right.dot(v), -self.up.dot(v)) * self.units_per_m
     }
 
     fn point(&self, p: &Vector3<f64>) -> [f64; 2] {
@@ -66,14 +65,15 @@ impl View {
 }
 
 /// Draws the box and the curves, the first curve lowest.
-pub(super) fn draw(scene: &mut Scene, frame: Frame, axes: &[Range; 3], curves: &[Line<'_>]) {
-    let view = View::fitting(axes, frame);
+pub(super) fn draw(sheet: &mut Sheet, frame: Frame, axes: &[Range; 3], curves: &[Line<'_>]) {
     let longest = axes.iter().map(|axis| axis.extent()).fold(0.0, f64::max);
     // One step for all three axes: with equal scales, the grid's cells are squares.
     let step = axis::step(longest, 8.0);
-    let ticks = axes.map(|range| axis::ticks(range, step));
-    draw_panes(scene, &view, axes, &ticks);
-    draw_scales(scene, &view, axes, &ticks);
+    let scales = axes.map(|range| Scale::clear_of_ticks(range, step));
+    let (axes, ticks) = (&scales.map(|scale| scale.range), &scales.map(Scale::ticks));
+    let view = View::fitting(axes, frame);
+    draw_panes(sheet, &view, axes, ticks);
+    draw_scales(sheet, &view, axes, ticks);
 
     let (low, high) = (axes.map(|axis| axis.low), axes.map(|axis| axis.high));
     let mut add = |line: &Line<'_>, stroke: Stroke, flat: bool| {
@@ -82,7 +82,7 @@ pub(super) fn draw(scene: &mut Scene, frame: Frame, axes: &[Range; 3], curves: &
                 .iter()
                 .map(|p| view.point(&Vector3::new(p[0], p[1], if flat { low[2] } else { p[2] })))
                 .collect();
-            scene.items.push(Item::Curve { points: path::thinned(&points, CURVE_TOLERANCE), stroke });
+            sheet.curve(&path::thinned(&points, CURVE_TOLERANCE), stroke);
         }
     };
     if let Some(reference) = curves.last() {
@@ -105,19 +105,19 @@ fn with(corner: [f64; 3], i: usize, along: f64) -> [f64; 3] {
     point
 }
 
-fn draw_panes(scene: &mut Scene, view: &View, axes: &[Range; 3], ticks: &[Vec<(f64, String)>; 3]) {
+fn draw_panes(sheet: &mut Sheet, view: &View, axes: &[Range; 3], ticks: &[Vec<(f64, String)>; 3]) {
     let back = back(axes);
     let page = |p: [f64; 3]| view.point(&p.into());
     // Each pane is spanned by two axes and lies at the back end of the third.
     for (pane, (i, j)) in [(0, 1), (1, 2), (0, 2)].into_iter().enumerate() {
         let corner = |a: f64, b: f64| page(with(with(back, i, a), j, b));
-        let corners = vec![
+        let corners = [
             corner(axes[i].low, axes[j].low),
             corner(axes[i].high, axes[j].low),
             corner(axes[i].high, axes[j].high),
             corner(axes[i].low, axes[j].high),
         ];
-        scene.items.push(Item::Area { corners, colour: Colour::PANES[pane] });
+        sheet.area(&corners, Colour::PANES[pane]);
     }
     let grid = Stroke::solid(Colour::GRID, 0.8);
     for (i, j) in [(0, 1), (1, 2), (0, 2)] {
@@ -125,18 +125,18 @@ fn draw_panes(scene: &mut Scene, view: &View, axes: &[Range; 3], ticks: &[Vec<(f
             for (value, _) in &ticks[along] {
                 let from = with(with(back, along, *value), across, axes[across].low);
                 let to = with(with(back, along, *value), across, axes[across].high);
-                scene.line(page(from), page(to), grid);
+                sheet.line(page(from), page(to), grid);
             }
         }
     }
-    let edge = Stroke::solid(Colour([190, 192, 196]), 0.8);
+    let edge = Stroke::solid(Colour::PANE_EDGE, 0.8);
     for (i, range) in axes.iter().enumerate() {
-        scene.line(page(with(back, i, range.low)), page(with(back, i, range.high)), edge);
+        sheet.line(page(with(back, i, range.low)), page(with(back, i, range.high)), edge);
     }
 }
 
 /// Axis lines, ticks, labels and names: x and y along the near edges of the floor, z up the left edge.
-fn draw_scales(scene: &mut Scene, view: &View, axes: &[Range; 3], ticks: &[Vec<(f64, String)>; 3]) {
+fn draw_scales(sheet: &mut Sheet, view: &View, axes: &[Range; 3], ticks: &[Vec<(f64, String)>; 3]) {
     let back = back(axes);
     let (near_x, near_y) = (axes[0].high, axes[1].low);
     let frame = Stroke::solid(Colour::FRAME, 1.0);
@@ -149,29 +149,25 @@ fn draw_scales(scene: &mut Scene, view: &View, axes: &[Range; 3], ticks: &[Vec<(
     for (i, corner, outwards) in edges {
         let page = |value: f64| Vector2::from(view.point(&with(corner, i, value).into()));
         let (start, end) = (page(axes[i].low), page(axes[i].high));
-        scene.line(start.into(), end.into(), frame);
+        sheet.line(start.into(), end.into(), frame);
         let outwards = if i == 2 { -Vector2::x() } else { view.direction(&outwards).normalize() };
         // Tick labels stand beside a rising or upright edge and below a flat one.
-        let anchor = match i {
-            0 => Anchor::End,
-            1 => Anchor::Start,
-            _ => Anchor::End,
-        };
+        let anchor = if i == 1 { Anchor::Start } else { Anchor::End };
         for (value, label) in &ticks[i] {
             let tick = page(*value);
-            scene.line(tick.into(), (tick + 5.0 * outwards).into(), frame);
+            sheet.line(tick.into(), (tick + 5.0 * outwards).into(), frame);
             let at = tick + 9.0 * outwards + Vector2::y() * CAP_HEIGHT * TICK * if i == 2 { 0.5 } else { 0.75 };
-            scene.text(label.clone(), at.into(), TICK, anchor);
+            sheet.text(label, at.into(), TICK, anchor);
         }
         let name = ["x (m)", "y (m)", "z (m)"][i];
         let middle = 0.5 * (start + end);
         if i == 2 {
-            scene.text_upwards(name, (middle + Vector2::new(-46.0, 0.0)).into(), LABEL);
+            sheet.text_upwards(name, (middle + Vector2::new(-46.0, 0.0)).into(), LABEL);
         } else {
             // Clear of the longest tick labels: those of y run away from the box, in the direction of the name.
             let distance = if i == 0 { 40.0 } else { 50.0 };
             let at = middle + distance * outwards + Vector2::y() * CAP_HEIGHT * LABEL;
-            scene.text(name, at.into(), LABEL, anchor);
+            sheet.text(name, at.into(), LABEL, anchor);
         }
     }
 }

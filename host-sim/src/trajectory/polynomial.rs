@@ -145,7 +145,16 @@ impl PiecewisePolynomial {
     /// # Errors
     /// [`PolynomialError`] for the first thing that cannot be flown. Jumps in velocity and above are not judged here.
     pub fn new(mut pieces: Vec<Piece>) -> Result<Self, PolynomialError> {
-        let boundaries_s = boundaries(&pieces)?;
+        validate(&pieces)?;
+        let mut boundaries_s = vec![0.0];
+        let mut end_s = 0.0;
+        for piece in &pieces {
+            end_s += piece.duration_s;
+            boundaries_s.push(end_s);
+        }
+        if !end_s.is_finite() {
+            return Err(PolynomialError::TotalDuration);
+        }
         for i in 1..pieces.len() {
             let before = pieces[i - 1];
             for coordinate in Coordinate::ALL {
@@ -165,13 +174,16 @@ impl PiecewisePolynomial {
         Ok(Self { pieces, boundaries_s })
     }
 
-    /// The same curve as `spline`, to rounding: one piece per span, heading 0.
+    /// The same curve as `spline`, to rounding: one piece per span, heading 0. It takes exactly as long.
     ///
     /// # Errors
     /// [`PolynomialError::Coefficient`] if the spline is so large or so short that a coefficient overflows.
     pub fn from_bspline(spline: &BSpline) -> Result<Self, PolynomialError> {
         let spans = spline.spans();
         let duration_s = spline.duration_s() / spans as f64;
+        // Added up, the durations would miss the spline's end by a rounding error or more; so may `d * n / n`.
+        let starts_s = (0..spans).map(|span| spline.duration_s() * span as f64 / spans as f64);
+        let boundaries_s: Vec<f64> = starts_s.chain([spline.duration_s()]).collect();
         let mut pieces = vec![Piece { duration_s, coefficients: [[0.0; COEFFICIENTS]; 4] }; spans];
         let mut factorial = 1.0;
         for power in 0..=spline.degree() {
@@ -179,8 +191,7 @@ impl PiecewisePolynomial {
             factorial *= power.max(1) as f64;
             let points = spline.derivative_control_points(power);
             for (span, piece) in pieces.iter_mut().enumerate() {
-                let start_s = spline.duration_s() * span as f64 / spans as f64;
-                let basis = spline.basis(power, span, start_s);
+                let basis = spline.basis(power, span, boundaries_s[span]);
                 let derivative: Vector3<f64> = basis.iter().zip(&points[span..]).map(|(b, p)| p * *b).sum();
                 for (coefficients, value) in piece.coefficients.iter_mut().zip(derivative.iter()) {
                     coefficients[power] = value / factorial;
@@ -188,7 +199,8 @@ impl PiecewisePolynomial {
             }
         }
         // A spline is continuous however large it is: its joints need no judgement against a length in metres.
-        Ok(Self { boundaries_s: boundaries(&pieces)?, pieces })
+        validate(&pieces)?;
+        Ok(Self { pieces, boundaries_s })
     }
 
     /// The pieces, in the order of flight.
@@ -204,14 +216,11 @@ impl PiecewisePolynomial {
     }
 }
 
-/// The start of each piece and the end of the last, s; durations and coefficients are checked.
-fn boundaries(pieces: &[Piece]) -> Result<Vec<f64>, PolynomialError> {
+/// Whether there are pieces, and each has a duration and coefficients that are numbers.
+fn validate(pieces: &[Piece]) -> Result<(), PolynomialError> {
     if pieces.is_empty() {
         return Err(PolynomialError::Empty);
     }
-    let mut boundaries_s = Vec::with_capacity(pieces.len() + 1);
-    let mut end_s = 0.0;
-    boundaries_s.push(end_s);
     for (index, piece) in pieces.iter().enumerate() {
         let value = piece.duration_s;
         if !(value > 0.0 && value.is_finite()) {
@@ -224,10 +233,8 @@ fn boundaries(pieces: &[Piece]) -> Result<Vec<f64>, PolynomialError> {
                 return Err(PolynomialError::Coefficient { piece: index + 1, coordinate, power, value });
             }
         }
-        end_s += value;
-        boundaries_s.push(end_s);
     }
-    if end_s.is_finite() { Ok(boundaries_s) } else { Err(PolynomialError::TotalDuration) }
+    Ok(())
 }
 
 impl Trajectory for PiecewisePolynomial {
