@@ -36,26 +36,38 @@ pub(crate) struct TickClock {
 
 impl TickClock {
     const FRACTION_BITS: u32 = 20;
+    /// Half a nanosecond: times are rounded to the nearest.
+    const HALF: u64 = 1 << (Self::FRACTION_BITS - 1);
 
     pub(crate) const fn new(rate: Rate) -> Self {
-        let second: u64 = 1_000_000_000 << Self::FRACTION_BITS;
-        let hz = rate.hz as u64;
-        Self { period: (second + hz / 2) / hz }
+        const SECOND_NS: u32 = 1_000_000_000;
+        let hz = rate.hz;
+        // Long division, ten bits at a time, so that no step leaves 32 bits: those the processor divides by itself.
+        let (whole, rest) = (SECOND_NS / hz, SECOND_NS % hz);
+        let (upper, rest) = ((rest << 10) / hz, (rest << 10) % hz);
+        let lower = ((rest << 10) + hz / 2) / hz;
+        Self { period: ((whole as u64) << Self::FRACTION_BITS) + ((upper as u64) << 10) + lower as u64 }
     }
 
     /// Time of a tick, to the nearest nanosecond. The product does not overflow below 4.8 hours.
     pub(crate) const fn time_ns(self, tick: Tick) -> u64 {
-        const HALF: u64 = 1 << (TickClock::FRACTION_BITS - 1);
-        (tick as u64).wrapping_mul(self.period).wrapping_add(HALF) >> Self::FRACTION_BITS
+        (tick as u64).wrapping_mul(self.period).wrapping_add(Self::HALF) >> Self::FRACTION_BITS
     }
 
     /// The first tick at or after a time of at most an hour.
     pub(crate) fn first_tick_at(self, time_ns: u64) -> Tick {
-        let mut tick = ((time_ns << Self::FRACTION_BITS) / self.period) as Tick;
-        while self.time_ns(tick) < time_ns {
-            tick = tick.wrapping_add(1);
+        // By halving, among the 2^26 ticks of more than an hour at the highest rate; at lower ones the product saturates.
+        let is_before = |tick: Tick| {
+            u64::from(tick).saturating_mul(self.period).saturating_add(Self::HALF) >> Self::FRACTION_BITS < time_ns
+        };
+        let mut first = 0;
+        for bit in (0..26).rev() {
+            let tick = first | 1 << bit;
+            if is_before(tick - 1) {
+                first = tick;
+            }
         }
-        tick
+        first
     }
 }
 
@@ -74,6 +86,9 @@ mod tests {
                 assert!(error.abs() <= 1 + i128::from(tick >> 21), "tick {tick} at {hz} Hz: {error} ns");
             }
             assert_eq!(clock.first_tick_at(1_000_000_000), hz);
+            assert_eq!(clock.first_tick_at(0), 0);
+            assert_eq!(clock.first_tick_at(1), 1);
+            assert_eq!(clock.first_tick_at(3_600_000_000_000), 3600 * hz);
         }
     }
 

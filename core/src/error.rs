@@ -37,6 +37,16 @@ impl fmt::Display for Field {
     }
 }
 
+/// The first number that is not finite and where it stands, from groups of three numbers in the order of `fields`.
+///
+/// On slices and out of line: it is small, and nobody who calls it is in a hurry.
+#[cold]
+#[inline(never)]
+pub(crate) fn first_non_finite(fields: &[Field], values: &[f32]) -> Option<(Field, f32)> {
+    let (index, value) = values.iter().enumerate().find(|(_, value)| !value.is_finite())?;
+    fields.get(index / 3).map(|field| (*field, *value))
+}
+
 /// Why an estimated state cannot be flown on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -87,15 +87,11 @@ impl<const M: usize, const N: usize> Gain<M, N> {
         SMatrix::<f32, N, M>::from(self.rows).transpose()
     }
 
-    /// `K e`. The sums run in the order of the columns: a matrix library may choose another one on another target, and
-    /// with it other last bits.
-    #[inline]
+    /// `K e`, row by row in a loop: small, for gains that have no structure of their own. The sums run in the order of the
+    /// columns: a matrix library may choose another one on another target, and with it other last bits.
+    #[cold]
     pub(crate) fn times(&self, error: &[f32; N]) -> [f32; M] {
-        let mut product = [0.0; M];
-        for (sum, row) in product.iter_mut().zip(&self.rows) {
-            *sum = row.iter().zip(error).fold(0.0, |sum, (k, e)| sum + k * e);
-        }
-        product
+        self.rows.each_ref().map(|row| inner_product(row, error))
     }
 
     /// The rows of `-K`.
@@ -134,6 +130,12 @@ impl<const M: usize, const N: usize> Gain<M, N> {
         }
         true
     }
+}
+
+/// On slices, of whose length the compiler knows nothing and therefore unrolls nothing.
+#[inline(never)]
+fn inner_product(row: &[f32], error: &[f32]) -> f32 {
+    row.iter().zip(error).fold(0.0, |sum, (k, e)| sum + k * e)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::command::Command;
-use crate::error::{Field, ReferenceError};
+use crate::error::{Field, ReferenceError, first_non_finite};
 use crate::flatness::Tilt;
 use crate::quaternion::Heading;
 use crate::state::State;
@@ -40,23 +40,15 @@ impl FlatSample {
         }
     }
 
-    /// Names the first number that is not finite; where only their sum is not, the largest is beyond any flight.
+    /// The first number that is not finite.
     #[cold]
-    fn fault(&self) -> ReferenceError {
-        let vectors = [
-            (Field::Position, &self.position_m),
-            (Field::Velocity, &self.velocity_m_s),
-            (Field::Acceleration, &self.acceleration_m_s2),
-            (Field::Jerk, &self.jerk_m_s3),
-        ];
-        let scalars = [(Field::Heading, self.heading_rad), (Field::HeadingRate, self.heading_rate_rad_s)];
-        let in_vectors = vectors.iter().flat_map(|(field, v)| [(*field, v.x), (*field, v.y), (*field, v.z)]);
-        let worst = |worst: (Field, f32), next: (Field, f32)| {
-            // Keeps what is not finite, else the larger; NaN is no smaller than anything.
-            if !worst.1.is_finite() || next.1.abs() <= worst.1.abs() { worst } else { next }
-        };
-        let (field, value) = in_vectors.chain(scalars).fold((Field::Position, 0.0), worst);
-        ReferenceError::NonFinite { field, value }
+    fn fault(&self) -> Option<ReferenceError> {
+        let Self { position_m: r, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j, .. } = self;
+        let (psi, rate) = (self.heading_rad, self.heading_rate_rad_s);
+        let fields =
+            [Field::Position, Field::Velocity, Field::Acceleration, Field::Jerk, Field::Heading, Field::HeadingRate];
+        let values = [r.x, r.y, r.z, v.x, v.y, v.z, a.x, a.y, a.z, j.x, j.y, j.z, psi, 0.0, 0.0, rate];
+        first_non_finite(&fields, &values).map(|(field, value)| ReferenceError::NonFinite { field, value })
     }
 }
 
@@ -86,10 +78,12 @@ impl Reference {
     /// [`ReferenceError`] where a number is not finite and at the map's singularities.
     pub fn from_flat(sample: &FlatSample) -> Result<Self, ReferenceError> {
         let (r, v, a, j) = (&sample.position_m, &sample.velocity_m_s, &sample.acceleration_m_s2, &sample.jerk_m_s3);
-        // A sum is finite only if all of its terms are.
-        let witness = (r.x + r.y + r.z) + (v.x + v.y + v.z) + (a.x + a.y + a.z) + (j.x + j.y + j.z);
-        if !(witness + sample.heading_rad + sample.heading_rate_rad_s).is_finite() {
-            return Err(sample.fault());
+        let sum = (r.x + r.y + r.z) + (v.x + v.y + v.z) + (a.x + a.y + a.z) + (j.x + j.y + j.z);
+        // A sum is finite only if all of its terms are; the converse fails only for numbers near the end of f32.
+        if !(sum + sample.heading_rad + sample.heading_rate_rad_s).is_finite()
+            && let Some(fault) = sample.fault()
+        {
+            return Err(fault);
         }
         Self::of_finite(sample)
     }

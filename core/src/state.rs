@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::error::{Field, StateError};
+use crate::error::{Field, StateError, first_non_finite};
 use crate::quaternion::{Heading, Quaternion};
 
 /// Largest deviation of a measured quaternion's squared norm from 1 that is taken for rounding and normalised away:
@@ -56,15 +56,10 @@ impl State {
     #[cold]
     pub(crate) fn fault(&self) -> Option<StateError> {
         let Self { position_m: r, attitude: q, velocity_m_s: v } = self;
-        let fields = [
-            (Field::Position, [r.x, r.y, r.z, 0.0]),
-            (Field::Attitude, [q.w, q.x, q.y, q.z]),
-            (Field::Velocity, [v.x, v.y, v.z, 0.0]),
-        ];
-        let non_finite = fields.iter().find_map(|(field, values)| {
-            let value = values.iter().copied().find(|value| !value.is_finite())?;
-            Some(StateError::NonFinite { field: *field, value })
-        });
+        let fields = [Field::Position, Field::Velocity, Field::Attitude, Field::Attitude];
+        let values = [r.x, r.y, r.z, v.x, v.y, v.z, q.w, q.x, q.y, q.z];
+        let non_finite =
+            first_non_finite(&fields, &values).map(|(field, value)| StateError::NonFinite { field, value });
         let norm_squared = q.dot(*q);
         non_finite.or((!is_near_one(norm_squared)).then_some(StateError::QuaternionNorm { norm_squared }))
     }

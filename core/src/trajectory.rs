@@ -113,6 +113,16 @@ impl fmt::Display for TrajectoryError {
 
 impl core::error::Error for TrajectoryError {}
 
+impl Summary {
+    /// Of no pieces; all zero bytes.
+    #[cfg_attr(not(feature = "link"), expect(dead_code, reason = "for trajectories that come over the link"))]
+    pub(crate) const EMPTY: Self = Self {
+        duration_ns: 0,
+        end: FlatSample::at_rest(Vector3::new(0.0, 0.0, 0.0), 0.0),
+        shape: Shape { straight: false, quintic: false },
+    };
+}
+
 impl<'a> Trajectory<'a> {
     /// Checks pieces.
     ///
@@ -136,7 +146,7 @@ impl<'a> Trajectory<'a> {
             if let Some(size) = piece.jump_from(&end) {
                 return Err(TrajectoryError::Jump { piece: index, size });
             }
-            end = piece.end();
+            end = piece.at_leisure(piece.duration_ns);
         }
         let shape = Shape {
             straight: pieces.iter().all(|piece| piece.heading.iter().all(|c| *c == 0.0)),
@@ -197,10 +207,26 @@ impl Piece {
         FlatSample::at_rest(Vector3::new(x, y, z), heading)
     }
 
-    /// The flat output at its end.
+    /// [`Self::at`] one axis after the other, to the same bits: small, for who is in no hurry.
     #[inline(never)]
-    fn end(&self) -> FlatSample {
-        self.at(self.duration_ns, Shape { straight: false, quintic: false })
+    fn at_leisure(&self, time_ns: u64) -> FlatSample {
+        #[inline(never)]
+        fn axis(coefficients: &Coefficients, t: f32) -> [f32; 4] {
+            derivatives(coefficients, t)
+        }
+        let t = seconds(time_ns);
+        let [x, vx, ax, jx] = axis(&self.x, t);
+        let [y, vy, ay, jy] = axis(&self.y, t);
+        let [z, vz, az, jz] = axis(&self.z, t);
+        let [heading_rad, heading_rate_rad_s, _, _] = axis(&self.heading, t);
+        FlatSample {
+            position_m: Vector3::new(x, y, z),
+            velocity_m_s: Vector3::new(vx, vy, vz),
+            acceleration_m_s2: Vector3::new(ax, ay, az),
+            jerk_m_s3: Vector3::new(jx, jy, jz),
+            heading_rad,
+            heading_rate_rad_s,
+        }
     }
 
     /// Coefficients and the values at both ends are finite; in between, no polynomial of degree 7 with finite
@@ -350,21 +376,29 @@ impl<'a> Player<'a> {
     /// # Errors
     /// [`ReferenceError`] where the trajectory asks for what cannot be flown.
     pub fn reference(&mut self, tick: Tick) -> Result<Reference, ReferenceError> {
+        let Summary { end, shape, .. } = self.trajectory.summary;
+        let sample = if tick >= self.end_tick {
+            end
+        } else {
+            let time_ns = self.seek(tick);
+            self.piece.at(time_ns, shape)
+        };
         // The pieces have been checked: what they give is finite.
-        Reference::of_finite(&self.sample(tick))
+        Reference::of_finite(&sample)
     }
 
     /// The flat output `tick` ticks after the start.
     pub fn at(&mut self, tick: Tick) -> FlatSample {
-        self.sample(tick)
-    }
-
-    /// Inlined twice, so that in [`Self::reference`] the numbers go on to the flat map without a stay in memory.
-    #[inline(always)]
-    fn sample(&mut self, tick: Tick) -> FlatSample {
         if tick >= self.end_tick {
             return self.trajectory.summary.end;
         }
+        let time_ns = self.seek(tick);
+        self.piece.at_leisure(time_ns)
+    }
+
+    /// Finds the piece of a tick before the end, and the time since that began.
+    #[inline]
+    fn seek(&mut self, tick: Tick) -> u64 {
         let time_ns = self.clock.time_ns(tick);
         if time_ns < self.start_ns {
             self.rewind();
@@ -374,7 +408,7 @@ impl<'a> Player<'a> {
             self.start_ns += self.piece.duration_ns;
             (self.piece, self.following) = (next, following);
         }
-        self.piece.at(time_ns - self.start_ns, self.trajectory.summary.shape)
+        time_ns - self.start_ns
     }
 
     #[cold]

@@ -71,14 +71,16 @@ pub fn encode_trajectory<'b>(pieces: &[Piece], buffer: &'b mut [u8]) -> Option<&
 #[derive(Clone, Debug)]
 pub struct TrajectorySlot<const P: usize> {
     pieces: Vec<Piece, P>,
-    /// What their check as a whole found; nothing while they are not checked.
-    summary: Option<Summary>,
+    /// Whether they have been checked as a whole, and what that found. Not an option of one: an empty slot is all zero
+    /// bytes, and a static one then takes no flash.
+    checked: bool,
+    summary: Summary,
 }
 
 impl<const P: usize> TrajectorySlot<P> {
     /// Empty.
     pub const fn new() -> Self {
-        Self { pieces: Vec::new(), summary: None }
+        Self { pieces: Vec::new(), checked: false, summary: Summary::EMPTY }
     }
 
     /// Decodes and checks a blob.
@@ -86,15 +88,16 @@ impl<const P: usize> TrajectorySlot<P> {
     /// # Errors
     /// [`BlobError`]; the slot is empty then.
     pub fn load(&mut self, blob: &[u8]) -> Result<(), BlobError> {
-        self.summary = None;
+        self.checked = false;
         self.decode(blob)?;
-        self.summary = Some(Trajectory::new(&self.pieces).map_err(BlobError::Trajectory)?.summary());
+        self.summary = Trajectory::new(&self.pieces).map_err(BlobError::Trajectory)?.summary();
+        self.checked = true;
         Ok(())
     }
 
     /// The trajectory, if one has been loaded.
     pub fn trajectory(&self) -> Option<Trajectory<'_>> {
-        Trajectory::of_checked(&self.pieces, self.summary?)
+        if self.checked { Trajectory::of_checked(&self.pieces, self.summary) } else { None }
     }
 
     /// One piece after the other, so that no more than one is ever on the stack.
