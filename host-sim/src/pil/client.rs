@@ -41,6 +41,10 @@ impl Client {
     pub fn connect(line: Line, emulator: Option<Emulator>, interrupt: Interrupt) -> Result<Self, PilError> {
         // Later than any session before it, as the board wants it.
         let session = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs() as u32;
+        Self::open(session, line, emulator, interrupt)
+    }
+
+    fn open(session: u32, line: Line, emulator: Option<Emulator>, interrupt: Interrupt) -> Result<Self, PilError> {
         let mut client = Self {
             line,
             emulator,
@@ -59,6 +63,15 @@ impl Client {
                 _ => None,
             })?;
         Ok(client)
+    }
+
+    /// Opens a new session with the same board, which may have restarted.
+    ///
+    /// # Errors
+    /// As [`Client::connect`].
+    pub fn reconnect(self) -> Result<Self, PilError> {
+        let session = self.encoder.session().wrapping_add(1);
+        Self::open(session, self.line, self.emulator, self.interrupt)
     }
 
     /// Who answered.

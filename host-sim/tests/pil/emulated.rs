@@ -20,7 +20,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use crate::support::{Scratch, emulators, failure, has_emulator};
 
 /// The image, built once.
-fn pipes_image() -> PathBuf {
+pub(crate) fn pipes_image() -> PathBuf {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
     IMAGE.get_or_init(|| image::build(&image::checkout().unwrap(), Image::Pipes).unwrap()).clone()
 }

@@ -2,4 +2,5 @@
 
 mod emulated;
 mod failures;
+mod hard_fault;
 mod support;
