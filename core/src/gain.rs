@@ -91,22 +91,26 @@ impl<const M: usize, const N: usize> Gain<M, N> {
     /// columns: a matrix library may choose another one on another target, and with it other last bits.
     #[cold]
     pub(crate) fn times(&self, error: &[f32; N]) -> [f32; M] {
-        self.rows.each_ref().map(|row| inner_product(row, error))
+        let mut product = [0.0; M];
+        for (sum, row) in product.iter_mut().zip(&self.rows) {
+            *sum = inner_product(row, error);
+        }
+        product
     }
 
-    /// The rows of `-K`.
-    pub(crate) const fn negated(&self) -> [[f32; N]; M] {
+    /// `-K`; a zero stays a zero without a sign.
+    pub(crate) const fn negated(&self) -> Self {
         let mut rows = self.rows;
         let mut row = 0;
         while row < M {
             let mut column = 0;
             while column < N {
-                rows[row][column] = -rows[row][column];
+                rows[row][column] = 0.0 - rows[row][column];
                 column += 1;
             }
             row += 1;
         }
-        rows
+        Self { rows }
     }
 
     /// Whether every entry outside the listed ones, as (row, column), is zero.

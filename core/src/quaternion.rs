@@ -111,6 +111,7 @@ impl Heading {
     pub const ZERO: Self = Self { cos_half: 1.0, sin_half: 0.0, cos: 1.0, sin: 0.0 };
 
     /// From the angle psi in radians, within +-2000; turns are kept apart (psi and psi + 2 pi give `q` and `-q`).
+    #[inline(never)]
     pub fn from_angle(psi_rad: f32) -> Self {
         let (s, c) = sin_cos(0.5 * psi_rad);
         Self { cos_half: c, sin_half: s, cos: c * c - s * s, sin: 2.0 * c * s }

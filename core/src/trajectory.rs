@@ -232,7 +232,7 @@ impl Piece {
     /// Coefficients and the values at both ends are finite; in between, no polynomial of degree 7 with finite
     /// coefficients over at most an hour that is finite at its end can exceed the sum of its terms, which is checked.
     fn is_finite(&self) -> bool {
-        let t = (self.duration_ns as f32 * 1e-9).max(1.0);
+        let t = 1.0 + seconds(self.duration_ns);
         [&self.x, &self.y, &self.z, &self.heading].iter().all(|coefficients| {
             // Bounds |p|, |p'|, |p''| and |p'''| over the piece: 210 = 7 * 6 * 5.
             (210.0 * coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c.abs())).is_finite()
@@ -293,20 +293,16 @@ fn value_and_rate(coefficients: &Coefficients, t: f32) -> [f32; 2] {
     [p, d1]
 }
 
-/// A time within a piece in seconds. Nearly all are below 2^32 ns, which the FPU converts in one instruction; longer
-/// ones go through a library, to the same rounding.
+/// A time within a piece in seconds, from its two halves, each of which the FPU converts in one instruction. The upper one
+/// counts units of 4.3 s and is nearly always zero.
 #[inline]
 fn seconds(time_ns: u64) -> f32 {
     #[cold]
-    #[inline(never)]
-    fn long(time_ns: u64) -> f32 {
-        time_ns as f32
+    fn long(high: u32, low: u32) -> f32 {
+        high as f32 * 4_294_967_296.0 + low as f32
     }
-    let ns = match u32::try_from(time_ns) {
-        Ok(ns) => ns as f32,
-        Err(_) => long(time_ns),
-    };
-    ns * 1e-9
+    let (high, low) = ((time_ns >> 32) as u32, time_ns as u32);
+    1e-9 * if high == 0 { low as f32 } else { long(high, low) }
 }
 
 /// Walks along a trajectory, one tick at a time.
@@ -403,12 +399,14 @@ impl<'a> Player<'a> {
         if time_ns < self.start_ns {
             self.rewind();
         }
-        while time_ns - self.start_ns >= self.piece.duration_ns {
+        let mut elapsed_ns = time_ns - self.start_ns;
+        while elapsed_ns >= self.piece.duration_ns {
             let Some((next, following)) = self.following.split_first() else { break };
-            self.start_ns += self.piece.duration_ns;
+            elapsed_ns -= self.piece.duration_ns;
             (self.piece, self.following) = (next, following);
+            self.start_ns = time_ns - elapsed_ns;
         }
-        time_ns - self.start_ns
+        elapsed_ns
     }
 
     #[cold]

@@ -81,7 +81,7 @@ fn f64_gain<const M: usize, const N: usize>(gain: &quatrack::gain::Gain<M, N>) -
 #[test]
 fn the_equilibrium_law_agrees_to_f32_rounding() {
     for gain in [&paper::LQR_E, &paper::LYAP_E] {
-        let exact = f64_gain(gain.gain());
+        let exact = f64_gain(&gain.gain());
         for feed_forward in [FeedForward::Without, FeedForward::With] {
             let heading = Equilibrium { gain, error_form: ErrorForm::HeadingFrame, feed_forward };
             let paper_form = Equilibrium { gain, error_form: ErrorForm::Paper, feed_forward };
@@ -101,7 +101,7 @@ fn the_equilibrium_law_agrees_to_f32_rounding() {
 #[test]
 fn the_flat_output_law_agrees_to_f32_rounding() {
     for gain in [&paper::LQR_F, &paper::LYAP_F] {
-        let exact = f64_gain(gain.gain());
+        let exact = f64_gain(&gain.gain());
         for feed_forward in [FeedForward::Without, FeedForward::With] {
             let core = FlatOutput { gain, feed_forward };
             let errors = errors(core.into(), Law::FlatOutput(&exact), 9.0);

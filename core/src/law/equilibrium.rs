@@ -12,9 +12,8 @@ use crate::state::Measured;
 /// Outputs `[T p q r]` from errors `[x y z q1 q2 q3 vx vy vz]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EquilibriumGain {
-    gain: Gain<4, 9>,
     /// `-K`: the law adds.
-    feedback: [[f32; 9]; 4],
+    feedback: Gain<4, 9>,
     chains: Option<Chains>,
 }
 
@@ -41,7 +40,7 @@ impl EquilibriumGain {
         match Gain::new(rows) {
             Ok(gain) => {
                 let feedback = gain.negated();
-                Ok(Self { chains: Chains::of(&gain, &feedback), feedback, gain })
+                Ok(Self { chains: Chains::of(&feedback), feedback })
             }
             Err(error) => Err(error),
         }
@@ -59,8 +58,8 @@ impl EquilibriumGain {
     }
 
     /// The matrix.
-    pub const fn gain(&self) -> &Gain<4, 9> {
-        &self.gain
+    pub const fn gain(&self) -> Gain<4, 9> {
+        self.feedback.negated()
     }
 
     /// `-K e`. The same sums in the same order either way: leaving out a product with zero changes no bit of them, and
@@ -80,7 +79,7 @@ impl EquilibriumGain {
                 let row = |[k0, k1, k2, k3, k4, k5, k6, k7, k8]: &[f32; 9]| {
                     k0 * x + k1 * y + k2 * z + k3 * q1 + k4 * q2 + k5 * q3 + k6 * vx + k7 * vy + k8 * vz
                 };
-                let [thrust, p, q, r] = &self.feedback;
+                let [thrust, p, q, r] = self.feedback.rows();
                 [row(thrust), row(p), row(q), row(r)]
             }
         }
@@ -88,10 +87,11 @@ impl EquilibriumGain {
 }
 
 impl Chains {
-    const fn of(gain: &Gain<4, 9>, [t, p, q, r]: &[[f32; 9]; 4]) -> Option<Self> {
-        if !gain.is_zero_outside(&[(0, 2), (0, 8), (1, 1), (1, 3), (1, 7), (2, 0), (2, 4), (2, 6), (3, 5)]) {
+    const fn of(feedback: &Gain<4, 9>) -> Option<Self> {
+        if !feedback.is_zero_outside(&[(0, 2), (0, 8), (1, 1), (1, 3), (1, 7), (2, 0), (2, 4), (2, 6), (3, 5)]) {
             return None;
         }
+        let [t, p, q, r] = feedback.rows();
         Some(Self { thrust: [t[2], t[8]], roll: [p[1], p[3], p[7]], pitch: [q[0], q[4], q[6]], yaw: r[5] })
     }
 }

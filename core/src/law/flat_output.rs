@@ -56,8 +56,8 @@ impl FlatOutputGain {
     }
 
     /// The matrix.
-    pub const fn gain(&self) -> &Gain<7, 10> {
-        &self.gain
+    pub const fn gain(&self) -> Gain<7, 10> {
+        self.gain
     }
 
     /// `-K e`. The same sums in the same order either way: leaving out a product with zero changes no bit of them, and
