@@ -104,10 +104,11 @@ fn the_stein_equation_is_solved_to_the_last_digit_or_refused() {
     let q = matrix(3, 3, &[2.0, 1.0, 0.0, 1.0, 3.0, -1.0, 0.0, -1.0, 1.0]);
     // Reference: the 9 x 9 linear system in 60 digits (mpmath 1.4.1).
     let (x11, x12, x13) = (5.817_627_579_517_81, 0.196_082_617_298_045_77, -0.861_635_477_418_771_3);
-    let (x22, x23, x33) = (4.462_724_706_865_584, -1.268_534_431_255_372_4, 5.748_147_117_136_053);
+    let (x22, x23, x33) = (4.462_724_706_865_584, -1.268_534_432_155_372_4, 5.748_147_117_136_053);
     let want = matrix(3, 3, &[x11, x12, x13, x12, x22, x23, x13, x23, x33]);
     let solution = stein(&a, &q).expect("stable");
-    assert!(relative_error(&solution.x, &want) <= 2.0 * f64::EPSILON);
+    // Each entry is the nearest f64; the norm may round.
+    assert!(relative_error(&solution.x, &want) <= f64::EPSILON);
     assert!(solution.relative_residual <= 1e-16, "{:e}", solution.relative_residual);
     // Two reciprocal eigenvalues: no unique solution. Unstable but regular: one.
     let reciprocal = matrix(2, 2, &[2.0, 0.0, 1.0, 0.5]);
