@@ -13,6 +13,12 @@ use super::plant::{Controller, LagModel, Plant, Timing};
 use super::sampled_loop::SampledLoop;
 use crate::analysis::eigenvalues;
 
+/// Periods for which the searches end in seconds, s.
+const SHORTEST_PERIOD_S: f64 = 1e-5;
+const LONGEST_PERIOD_S: f64 = 10.0;
+/// Each known sample of delay is a state a channel.
+const MOST_DELAY_SAMPLES: usize = 100;
+
 /// What a gain promises, computed from it as rounded to f32.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Certificate {
@@ -76,7 +82,8 @@ pub struct SampledLoopFigures {
 /// # Errors
 /// [`CertifyError::Matrix`] for a gain that does not fit the plant or is not finite; [`CertifyError::NotSinglePrecision`];
 /// [`CertifyError::Unstable`] for a loop that is not stable at its rate; [`CertifyError::RateGain`];
-/// [`CertifyError::Design`] for a timing without a period or an equation without a solution.
+/// [`CertifyError::Period`] and [`CertifyError::DelaySamples`] for a timing out of range; [`CertifyError::Design`] for an
+/// equation without a solution.
 pub fn certify(
     plant: &Plant,
     controller: &Controller,
@@ -84,6 +91,14 @@ pub fn certify(
     motors_in_rate_loop: Option<f64>,
 ) -> Result<Certificate, CertifyError> {
     plant.require_fitting(controller)?;
+    // Written so that NaN is refused.
+    if !(SHORTEST_PERIOD_S..=LONGEST_PERIOD_S).contains(&timing.period_s) {
+        return Err(CertifyError::Period { period_s: timing.period_s });
+    }
+    let memory = timing.delay_samples.max(controller.past_command_gains.len());
+    if memory > MOST_DELAY_SAMPLES {
+        return Err(CertifyError::DelaySamples { delay_samples: memory });
+    }
     if let Some(gain_1_s) = motors_in_rate_loop.filter(|gain| !(gain.is_finite() && *gain > 0.0)) {
         return Err(CertifyError::RateGain { gain_1_s });
     }

@@ -41,4 +41,16 @@ pub enum CertifyError {
         /// The given gain, 1/s.
         gain_1_s: f64,
     },
+    /// A rate at which no search ends in time.
+    #[error("the control period is {period_s} s; certificates are made for periods from 1e-5 s to 10 s")]
+    Period {
+        /// The given period, s.
+        period_s: f64,
+    },
+    /// A known delay of more samples than make sense.
+    #[error("the known delay is {delay_samples} samples; certificates are made for up to 100")]
+    DelaySamples {
+        /// The given delay.
+        delay_samples: usize,
+    },
 }

@@ -16,9 +16,10 @@ use crate::analysis::eigenvalues;
 /// Ratio of two neighbouring trials.
 const STEP: f64 = 1.08;
 /// Bisections of the last step: to 1e-9 of the limit.
-const BISECTIONS: usize = 27;
-/// Longest delay and lag tried, s.
+const BISECTIONS: i32 = 27;
+/// Longest delay and lag tried, s, and in samples.
 const LONGEST_S: f64 = 3.0;
+const MOST_SAMPLES: f64 = 5_000.0;
 
 /// Up to where a loop is stable.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -79,6 +80,7 @@ fn search(
     channels: String,
 ) -> Result<StabilityLimit, CertifyError> {
     let stable = |duration_s: f64| is_stable(part, timing, disturbance, chosen, duration_s);
+    let longest_s = LONGEST_S.min(MOST_SAMPLES * timing.period_s);
     let mut low_s = 0.0;
     let mut high_s = 0.02 * timing.period_s;
     loop {
@@ -86,16 +88,18 @@ fn search(
             break;
         }
         low_s = high_s;
-        if high_s >= LONGEST_S {
+        if high_s >= longest_s {
             return Ok(StabilityLimit { channels, stable_to_s: low_s, resolution_s: None });
         }
-        high_s = (high_s * STEP).min(LONGEST_S);
+        high_s = (high_s * STEP).min(longest_s);
     }
+    // Halved exactly, so that it is the same number wherever the limit's last digits fall.
+    let resolution_s = (high_s - low_s) * f64::from(-BISECTIONS).exp2();
     for _ in 0..BISECTIONS {
         let middle_s = 0.5 * (low_s + high_s);
         if stable(middle_s)? { low_s = middle_s } else { high_s = middle_s }
     }
-    Ok(StabilityLimit { channels, stable_to_s: low_s, resolution_s: Some(high_s - low_s) })
+    Ok(StabilityLimit { channels, stable_to_s: low_s, resolution_s: Some(resolution_s) })
 }
 
 fn is_stable(

@@ -76,7 +76,9 @@ impl DiskMargin {
     fn new(disk: Disk, peak: f64, critical_rad_s: f64) -> Self {
         let alpha = 1.0 / peak;
         let (gain_min, open, phase_rad) = match disk {
-            Disk::Balanced => ((1.0 - 0.5 * alpha) / (1.0 + 0.5 * alpha), alpha < 2.0 - UNBOUNDED, 2.0 * (0.5 * alpha).atan()),
+            Disk::Balanced => {
+                ((1.0 - 0.5 * alpha) / (1.0 + 0.5 * alpha), alpha < 2.0 - UNBOUNDED, 2.0 * (0.5 * alpha).atan())
+            }
             Disk::Sensitivity => (1.0 / (1.0 + alpha), alpha < 1.0 - UNBOUNDED, 2.0 * (0.5 * alpha).min(1.0).asin()),
         };
         let gain_max = match disk {

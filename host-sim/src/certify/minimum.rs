@@ -50,8 +50,10 @@ pub struct MarginTooSmall {
 /// [`MarginTooSmall`] with the first figure that falls short.
 pub fn require(certificate: &Certificate, minimum: &Minimum) -> Result<(), MarginTooSmall> {
     let at_least = |figure: &str, found: f64, asked: Option<f64>| match asked {
-        // Written so that NaN on either side falls short.
-        Some(asked) if !(found >= asked) => Err(MarginTooSmall { figure: figure.to_owned(), found, asked }),
+        // NaN on either side falls short.
+        Some(asked) if found < asked || found.is_nan() || asked.is_nan() => {
+            Err(MarginTooSmall { figure: figure.to_owned(), found, asked })
+        }
         _ => Ok(()),
     };
     let sampled = &certificate.sampled;

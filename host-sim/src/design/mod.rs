@@ -7,9 +7,11 @@
 //! - [`lqr`], [`care`], [`strong_care`]: the continuous algebraic Riccati equation, (20) and (21).
 //! - [`stein()`]: `A' X A - X + Q = 0`; [`dlqr`], [`dare`]: the discrete algebraic Riccati equation.
 //! - [`discretise`]: a pair under held inputs, with or without a delay; [`sampled`]: gains for a control rate.
+//! - [`along`]: gains over time along a trajectory.
 //! - [`synthesis`]: (LYAP-F), (LYAP-E), (LQR-F), (LQR-E) with the paper's numbers; [`integral`]: E with the integral of
 //!   the position error.
 
+pub mod along;
 pub mod codegen;
 mod dare;
 pub mod discretise;
