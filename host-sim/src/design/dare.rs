@@ -6,22 +6,23 @@
 //!
 //! **Method.**
 //! 1. R is factorised in 32 digits; with `F = B R^-1/2` and `S R^-1/2` the weight of the input becomes the identity.
-//! 2. Staircase forms, with PBH tests beside them, decide whether a mode on or outside the unit circle is out of reach,
+//! 2. The states are balanced by powers of two, as for the continuous equation.
+//! 3. Staircase forms, with PBH tests beside them, decide whether a mode on or outside the unit circle is out of reach,
 //!    or one on the circle out of sight.
-//! 3. Structured doubling (Chu, Fan, Lin and Wang 2004) in 32 digits gives a first P. Where Q does not see an unstable
+//! 4. Structured doubling (Chu, Fan, Lin and Wang 2004) in 32 digits gives a first P. Where Q does not see an unstable
 //!    mode doubling ends in a P that does not stabilise; then the start is the solution for `Q + |Q| I`, from which
 //!    Newton's method descends to the stabilising one (Hewer 1971).
-//! 4. Newton steps with residuals in 32 digits refine P until the corrections are below what an f64 can hold.
-//! 5. The result counts only if the corrections have vanished and every pole lies inside the unit circle.
+//! 5. Newton steps with residuals in 32 digits refine P until the corrections are below what an f64 can hold.
+//! 6. The result counts only if the corrections have vanished and every pole lies inside the unit circle.
 //!
 //! [`dlqr`] demands Q >= 0 (with S: `Q - S R^-1 S' >= 0`), and then P >= 0; [`dare`] takes any symmetric Q.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 use super::discretise::require_fitting;
 use super::double_double::{Double, DoubleMatrix};
-use super::equation::InputWeight;
+use super::equation::{Equation, InputWeight};
 use super::existence::require_positive_semidefinite;
 use super::stein::SteinOperator;
 use super::{DesignError, require_symmetric};
@@ -158,7 +159,52 @@ impl Problem {
         DoubleMatrix::new(self.q.clone()).minus(&self.cross.times(&self.cross.transposed()))
     }
 
+    /// The same equation in the states `D^-1 x`, for D diagonal, powers of two; its P is `D P D`.
+    fn scaled(&self, d: &DVector<f64>) -> Self {
+        let n = d.len();
+        let map = |m: &DoubleMatrix, factor: &dyn Fn(usize, usize) -> f64| DoubleMatrix {
+            hi: DMatrix::from_fn(n, m.hi.ncols(), |i, j| m.hi[(i, j)] * factor(i, j)),
+            lo: DMatrix::from_fn(n, m.lo.ncols(), |i, j| m.lo[(i, j)] * factor(i, j)),
+        };
+        Self {
+            a: map(&self.a, &|i, j| d[j] / d[i]),
+            q: DMatrix::from_fn(n, n, |i, j| self.q[(i, j)] * d[i] * d[j]),
+            weight: self.weight.clone(),
+            factor: map(&self.factor, &|i, _| 1.0 / d[i]),
+            cross: map(&self.cross, &|i, _| d[i]),
+        }
+    }
+
     fn solve(&self) -> Result<DareSolution, DesignError> {
+        let d = Equation::new(self.a.hi.clone(), self.factor.clone(), self.q.clone()).balanced().scale;
+        let scaled = self.scaled(&d);
+        let Refined { p, last_correction, spectral_radius } = scaled.stabilising()?;
+        let inaccurate = |residual| DesignError::Inaccurate { equation: "the discrete Riccati equation", residual };
+        let at_p = scaled.evaluate(&p).ok_or_else(|| inaccurate(f64::INFINITY))?;
+        let poles = eigenvalues(&at_p.closed_loop)?;
+        let unscale = |m: &DMatrix<f64>| DMatrix::from_fn(d.len(), d.len(), |i, j| m[(i, j)] / d[i] / d[j]);
+        let p = unscale(&p.hi);
+        let rounded = self.evaluate(&DoubleMatrix::new(p.clone())).ok_or_else(|| inaccurate(f64::INFINITY))?;
+        let norm = rounded.residual.hi.norm();
+        let relative_residual = if rounded.terms == 0.0 { 0.0 } else { norm / rounded.terms };
+        let accurate = last_correction <= ACCURATE && relative_residual.is_finite();
+        if !(accurate && spectral_radius < 1.0) {
+            let nearest = poles.iter().min_by(|x, y| (x.norm() - 1.0).abs().total_cmp(&(y.norm() - 1.0).abs()));
+            // Newton's steps halve the distance of a pole to the circle: it ends at the root of the rounding.
+            if let Some(eigenvalue) = nearest.filter(|value| (value.norm() - 1.0).abs() < 1e-6) {
+                return Err(DesignError::ClosedLoopOnCircle { eigenvalue: *eigenvalue });
+            }
+            return Err(inaccurate(relative_residual));
+        }
+        let mut gain = self.weight.in_input_units(at_p.feedback);
+        for (mut column, scale) in gain.column_iter_mut().zip(d.iter()) {
+            column.unscale_mut(*scale);
+        }
+        Ok(DareSolution { p, gain, poles, relative_residual, last_correction })
+    }
+
+    /// The best P that was found, stabilising or not.
+    fn stabilising(&self) -> Result<Refined, DesignError> {
         // S is a feedback given beforehand: what it reaches is the same, what Q sees is what is left of it.
         let a = self.a.minus(&self.factor.times(&self.cross.transposed()));
         let q = self.reduced_q();
@@ -178,24 +224,7 @@ impl Problem {
                 break;
             }
         }
-        let inaccurate = |residual| DesignError::Inaccurate { equation: "the discrete Riccati equation", residual };
-        let Refined { p, last_correction, spectral_radius } = best.ok_or_else(|| inaccurate(f64::INFINITY))?;
-        let evaluated = self.evaluate(&DoubleMatrix::new(p.hi.clone())).ok_or_else(|| inaccurate(f64::INFINITY))?;
-        let norm = evaluated.residual.hi.norm();
-        let relative_residual = if evaluated.terms == 0.0 { 0.0 } else { norm / evaluated.terms };
-        let at_p = self.evaluate(&p).ok_or_else(|| inaccurate(relative_residual))?;
-        let poles = eigenvalues(&at_p.closed_loop)?;
-        let accurate = last_correction <= ACCURATE && relative_residual.is_finite();
-        if !(accurate && spectral_radius < 1.0) {
-            let nearest = poles.iter().min_by(|x, y| (x.norm() - 1.0).abs().total_cmp(&(y.norm() - 1.0).abs()));
-            // Newton's steps halve the distance of a pole to the circle: it ends at the root of the rounding.
-            if let Some(eigenvalue) = nearest.filter(|value| (value.norm() - 1.0).abs() < 1e-6) {
-                return Err(DesignError::ClosedLoopOnCircle { eigenvalue: *eigenvalue });
-            }
-            return Err(inaccurate(relative_residual));
-        }
-        let gain = self.weight.in_input_units(at_p.feedback);
-        Ok(DareSolution { p: p.hi, gain, poles, relative_residual, last_correction })
+        best.ok_or(DesignError::Inaccurate { equation: "the discrete Riccati equation", residual: f64::INFINITY })
     }
 
     /// The residual at a symmetric P; nothing if `I + F' P F` is singular.
