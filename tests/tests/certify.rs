@@ -52,8 +52,9 @@ fn one_integrator_has_the_margins_of_its_closed_form() {
     assert!(delay.resolution_s.expect("found") < 1e-9);
     // In continuous time the loop is a first-order lag: any gain, 90 degrees.
     let continuous = &certificate.continuous.as_ref().expect("no delay").margins.as_ref().expect("stable").each[0];
-    assert!(continuous.balanced.gain_max.is_none() && continuous.balanced.gain_min < 1e-9);
+    assert!(continuous.balanced.gain_max.is_none() && continuous.balanced.gain_min == 0.0);
     assert_near(continuous.balanced.phase_rad, std::f64::consts::FRAC_PI_2, 1e-9, "90 degrees");
+    assert_eq!(continuous.balanced.critical_rad_s, None, "no frequency is critical");
     // 12 is an f32.
     assert_eq!(certificate.rounding.largest_absolute, 0.0);
     assert!(certificate.sampled.decrease.holds);

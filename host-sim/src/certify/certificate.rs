@@ -16,6 +16,10 @@ use crate::analysis::eigenvalues;
 /// Periods for which the searches end in seconds, s.
 const SHORTEST_PERIOD_S: f64 = 1e-5;
 const LONGEST_PERIOD_S: f64 = 10.0;
+/// Real parts closer than this share of the largest pole count as equal.
+const SAME: f64 = 1e-9;
+/// A rounding below this share of an entry is the f64 design's own.
+const NO_ROUNDING: f64 = 1e-12;
 /// Each known sample of delay is a state a channel.
 const MOST_DELAY_SAMPLES: usize = 100;
 
@@ -174,6 +178,9 @@ fn rounding(designed: &Controller, flown: &Controller) -> Rounding {
     for (designed, flown) in matrices(designed).iter().zip(&matrices(flown)) {
         for (designed, flown) in designed.iter().zip(flown.iter()).filter(|(designed, _)| **designed != 0.0) {
             let difference = (designed - flown).abs();
+            if difference < NO_ROUNDING * designed.abs() {
+                continue;
+            }
             found.largest_absolute = found.largest_absolute.max(difference);
             found.largest_relative = found.largest_relative.max(difference / designed.abs());
         }
@@ -181,6 +188,15 @@ fn rounding(designed: &Controller, flown: &Controller) -> Rounding {
     found
 }
 
+/// Sorted by real part, and by imaginary part where the real parts differ by rounding only: the order of poles that
+/// several axes share is then the same on every processor.
 fn pairs(values: &[Complex64]) -> Vec<[f64; 2]> {
-    values.iter().map(|value| [value.re, value.im]).collect()
+    let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
+    let mut sorted = values.to_vec();
+    sorted.sort_by(|x, y| x.re.total_cmp(&y.re));
+    let same = |x: &Complex64, y: &Complex64| (x.re - y.re).abs() <= SAME * largest;
+    for group in sorted.chunk_by_mut(same) {
+        group.sort_by(|x, y| x.im.total_cmp(&y.im));
+    }
+    sorted.iter().map(|value| [value.re, value.im]).collect()
 }

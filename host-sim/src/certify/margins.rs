@@ -29,7 +29,7 @@ pub struct DiskMargin {
     pub gain_max: Option<f64>,
     /// Phase either way, rad.
     pub phase_rad: f64,
-    /// Where the loop is nearest to instability, rad/s; absent where that is at infinite frequency.
+    /// Where the loop is nearest to instability, rad/s; absent where no gain is too large, or at infinite frequency only.
     pub critical_rad_s: Option<f64>,
 }
 
@@ -87,10 +87,10 @@ impl DiskMargin {
         };
         Self {
             alpha,
-            gain_min: gain_min.max(0.0),
+            gain_min: if disk == Disk::Balanced && !open { 0.0 } else { gain_min },
             gain_max: open.then_some(gain_max),
             phase_rad,
-            critical_rad_s: critical_rad_s.is_finite().then_some(critical_rad_s),
+            critical_rad_s: (open && critical_rad_s.is_finite()).then_some(critical_rad_s),
         }
     }
 }
