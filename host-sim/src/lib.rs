@@ -9,7 +9,8 @@
 //!   flight                        plant, integrators, laws in f64, the f32 core in the loop, metrics
 //!     plan                        waypoints and bounds -> B-spline, by second-order cone programming
 //!       trajectory                B-splines, polynomial pieces, their files
-//!     design                      Section IV: Lyapunov and Riccati equations, the four gains
+//!   certify                       what a gain as flown promises: poles, margins, delay and lag
+//!     design                      Section IV: Lyapunov and Riccati equations, the four gains, gains for a control rate
 //!     analysis                    Section III: poles, Jordan blocks, controllability
 //!       model                     Section II: the model (1), its linearisations
 //! ```
@@ -18,6 +19,7 @@
 //! (m/s^2), body rates in rad/s; SI everywhere.
 
 pub mod analysis;
+pub mod certify;
 pub mod design;
 pub mod figures;
 pub mod flight;

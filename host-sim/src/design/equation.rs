@@ -226,7 +226,11 @@ impl InputWeight {
 
     /// `K = R^-1 B' X = S L^-T (F' X)`, rounded once.
     pub(super) fn gain(&self, factor: &DoubleMatrix, x: &DoubleMatrix) -> DMatrix<f64> {
-        let mut gain = factor.transposed().times(x);
+        self.in_input_units(factor.transposed().times(x))
+    }
+
+    /// `S L^-T W`: what acts through F as an input that acts through B, rounded once.
+    pub(super) fn in_input_units(&self, mut gain: DoubleMatrix) -> DMatrix<f64> {
         let (m, n) = gain.hi.shape();
         for j in 0..n {
             for i in (0..m).rev() {

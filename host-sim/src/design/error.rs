@@ -109,6 +109,56 @@ pub enum DesignError {
         /// The other, 1/s.
         second: Complex64,
     },
+    /// The weight does not see a mode on the unit circle.
+    #[error(
+        "(Q, A) is not detectable: Q does not see the mode with eigenvalue {} on the unit circle, so no optimal \
+         feedback moves it; give its states a weight", complex(.eigenvalue)
+    )]
+    NotDetectableSampled {
+        /// The eigenvalue that the optimal feedback would leave where it is, per sample.
+        eigenvalue: Complex64,
+    },
+    /// No stabilising solution of the discrete Riccati equation can be told from its neighbours.
+    #[error(
+        "the discrete Riccati equation leaves the closed loop the eigenvalue {} on the unit circle to working \
+         precision; change Q or scale the weights", complex(.eigenvalue)
+    )]
+    ClosedLoopOnCircle {
+        /// The eigenvalue, per sample.
+        eigenvalue: Complex64,
+    },
+    /// The linear Stein equation is singular.
+    #[error(
+        "the discrete Lyapunov equation has no unique solution: the product of the eigenvalues {} and {} of A is 1",
+        complex(.first), complex(.second)
+    )]
+    ReciprocalEigenvalues {
+        /// One of the two, per sample.
+        first: Complex64,
+        /// The other, per sample.
+        second: Complex64,
+    },
+    /// Cost of state and input together that can be driven below zero.
+    #[error(
+        "the weights Q, R and the cross weight S together are not positive semidefinite: Q - S R^-1 S' has the \
+         eigenvalue {eigenvalue:.3e}; make S smaller"
+    )]
+    CrossWeight {
+        /// Its smallest eigenvalue.
+        eigenvalue: f64,
+    },
+    /// The sampling period is no positive number.
+    #[error("the sampling period is {period_s} s; it must be a positive number")]
+    Period {
+        /// The given period, s.
+        period_s: f64,
+    },
+    /// The delay is negative or not a number.
+    #[error("the delay is {delay_s} s; it must be zero or a positive number")]
+    Delay {
+        /// The given delay, s.
+        delay_s: f64,
+    },
     /// The answer is not good to working precision.
     #[error(
         "{equation} was not solved to working precision: the relative residual stays at {residual:.1e}; \

@@ -5,22 +5,34 @@
 //!
 //! - [`lyapunov()`]: `A' X + X A + Q = 0`; [`decay_rate_design`]: (15) and (17).
 //! - [`lqr`], [`care`], [`strong_care`]: the continuous algebraic Riccati equation, (20) and (21).
-//! - [`synthesis`]: (LYAP-F), (LYAP-E), (LQR-F), (LQR-E) with the paper's numbers.
+//! - [`stein()`]: `A' X A - X + Q = 0`; [`dlqr`], [`dare`]: the discrete algebraic Riccati equation.
+//! - [`discretise`]: a pair under held inputs, with or without a delay; [`sampled`]: gains for a control rate.
+//! - [`along`]: gains over time along a trajectory.
+//! - [`synthesis`]: (LYAP-F), (LYAP-E), (LQR-F), (LQR-E) with the paper's numbers; [`integral`]: E with the integral of
+//!   the position error.
 
+pub mod along;
 pub mod codegen;
+mod dare;
+pub mod discretise;
 mod double_double;
 mod equation;
 mod error;
 mod existence;
 mod hamiltonian;
+pub mod integral;
 mod lyapunov;
 mod newton;
 mod riccati;
+pub mod sampled;
+mod stein;
 pub mod synthesis;
 
+pub use dare::{DareSolution, dare, dlqr, dlqr_with_cross};
 pub use error::DesignError;
 pub use lyapunov::{DecayRateDesign, LyapunovSolution, decay_rate_design, lyapunov};
 pub use riccati::{RiccatiSolution, care, lqr, strong_care};
+pub use stein::{SteinSolution, stein};
 
 use nalgebra::DMatrix;
 

@@ -26,7 +26,7 @@ pub const PAPER_MU: f64 = 2.0;
 pub const EQUILIBRIUM_ERROR_NAMES: [&str; 9] = ["x_m", "y_m", "z_m", "q1", "q2", "q3", "vx_m_s", "vy_m_s", "vz_m_s"];
 
 /// Where the E error stands in the state `[r q v]` of (2a): everything but q0.
-const ERROR_STATES: [usize; 9] = [0, 1, 2, 4, 5, 6, 7, 8, 9];
+pub(super) const ERROR_STATES: [usize; 9] = [0, 1, 2, 4, 5, 6, 7, 8, 9];
 
 /// Share of the largest entry below which an entry of a gain is zero by structure.
 const STRUCTURAL_ZERO: f64 = 1e-12;
@@ -189,17 +189,17 @@ fn flat_design(
     })
 }
 
-fn dense_flat_chain() -> (DMatrix<f64>, DMatrix<f64>) {
+pub(super) fn dense_flat_chain() -> (DMatrix<f64>, DMatrix<f64>) {
     let (a, b) = flat_chain();
     (DMatrix::from_column_slice(10, 10, a.as_slice()), DMatrix::from_column_slice(10, 7, b.as_slice()))
 }
 
-fn diagonal(weights: &[f64]) -> DMatrix<f64> {
+pub(super) fn diagonal(weights: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(weights.len(), weights.len(), |i, j| if i == j { weights[i] } else { 0.0 })
 }
 
 /// The gain with its structural zeros made exact.
-fn without_noise(gain: &DMatrix<f64>) -> DMatrix<f64> {
+pub(super) fn without_noise(gain: &DMatrix<f64>) -> DMatrix<f64> {
     let threshold = STRUCTURAL_ZERO * gain.amax();
     gain.map(|entry| if entry.abs() < threshold { 0.0 } else { entry })
 }

@@ -1,0 +1,202 @@
+//! The certificate: a plant, a controller and a timing in; every figure that the loop as flown is held to out.
+
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+use serde::Serialize;
+
+use super::CertifyError;
+use super::decrease::{self, Decrease};
+use super::limits::{Disturbance, StabilityLimit, limits};
+use super::linear_loop::LinearLoop;
+use super::margins::{self, LoopMargins};
+use super::plant::{Controller, LagModel, Plant, Timing};
+use super::sampled_loop::SampledLoop;
+use crate::analysis::eigenvalues;
+
+/// Periods for which the searches end in seconds, s.
+const SHORTEST_PERIOD_S: f64 = 1e-5;
+const LONGEST_PERIOD_S: f64 = 10.0;
+/// Real parts closer than this share of the largest pole count as equal.
+const SAME: f64 = 1e-9;
+/// A rounding below this share of an entry is the f64 design's own.
+const NO_ROUNDING: f64 = 1e-12;
+/// Each known sample of delay is a state a channel.
+const MOST_DELAY_SAMPLES: usize = 100;
+
+/// What a gain promises, computed from it as rounded to f32.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Certificate {
+    /// Control rate, Hz.
+    pub rate_hz: f64,
+    /// Whole samples by which commands are known to act late; margins and limits come on top.
+    pub delay_samples: usize,
+    /// Distance of the f32 gain from the f64 gain.
+    pub rounding: Rounding,
+    /// In continuous time; absent for a controller with memory or a known delay, which have no continuous form.
+    pub continuous: Option<ContinuousLoop>,
+    /// Under commands held for a period.
+    pub sampled: SampledLoopFigures,
+    /// Largest delay on top of the known one, by channel and for all at once, s.
+    pub delay: Vec<StabilityLimit>,
+    /// Largest time constant of a first-order actuator, by channel and for all at once, s.
+    pub lag: Vec<StabilityLimit>,
+    /// Largest time constant of the motors inside a rate loop, by channel and for all at once, s; absent if not asked for.
+    pub motors_in_rate_loop: Option<Vec<StabilityLimit>>,
+}
+
+/// Distance of the gain as flown from the gain as designed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Rounding {
+    /// Largest difference of an entry.
+    pub largest_absolute: f64,
+    /// Largest difference of an entry over that entry; at most 2^-24 unless an entry is below 1e-38.
+    pub largest_relative: f64,
+}
+
+/// The loop in continuous time.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ContinuousLoop {
+    /// Poles, 1/s, real and imaginary part, sorted by real part.
+    pub poles_1_s: Vec<[f64; 2]>,
+    /// Largest real part, 1/s.
+    pub abscissa_1_s: f64,
+    /// Lyapunov function; absent for an unstable loop.
+    pub decrease: Option<Decrease>,
+    /// Margins; absent for an unstable loop.
+    pub margins: Option<LoopMargins>,
+}
+
+/// The loop at its rate.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SampledLoopFigures {
+    /// Poles per sample, real and imaginary part, sorted by real part.
+    pub poles: Vec<[f64; 2]>,
+    /// Largest modulus of the poles.
+    pub spectral_radius: f64,
+    /// Lyapunov function.
+    pub decrease: Decrease,
+    /// Margins up to the Nyquist frequency.
+    pub margins: LoopMargins,
+}
+
+/// Certifies a controller, every gain rounded to f32 first.
+///
+/// `motors_in_rate_loop`: the gain of the body rate loop, 1/s, for one more set of lag limits.
+///
+/// # Errors
+/// [`CertifyError::Matrix`] for a gain that does not fit the plant or is not finite; [`CertifyError::NotSinglePrecision`];
+/// [`CertifyError::Unstable`] for a loop that is not stable at its rate; [`CertifyError::RateGain`];
+/// [`CertifyError::Period`] and [`CertifyError::DelaySamples`] for a timing out of range; [`CertifyError::Design`] for an
+/// equation without a solution.
+pub fn certify(
+    plant: &Plant,
+    controller: &Controller,
+    timing: &Timing,
+    motors_in_rate_loop: Option<f64>,
+) -> Result<Certificate, CertifyError> {
+    plant.require_fitting(controller)?;
+    // Written so that NaN is refused.
+    if !(SHORTEST_PERIOD_S..=LONGEST_PERIOD_S).contains(&timing.period_s) {
+        return Err(CertifyError::Period { period_s: timing.period_s });
+    }
+    let memory = timing.delay_samples.max(controller.past_command_gains.len());
+    if memory > MOST_DELAY_SAMPLES {
+        return Err(CertifyError::DelaySamples { delay_samples: memory });
+    }
+    if let Some(gain_1_s) = motors_in_rate_loop.filter(|gain| !(gain.is_finite() && *gain > 0.0)) {
+        return Err(CertifyError::RateGain { gain_1_s });
+    }
+    let flown = Controller {
+        gain: single_precision(&controller.gain)?,
+        past_command_gains: controller.past_command_gains.iter().map(single_precision).collect::<Result<_, _>>()?,
+    };
+    let whole = LinearLoop::new(plant, &flown);
+    let parts = whole.independent();
+    let names = plant.input_names();
+    let closed = SampledLoop::new(&whole, timing, &[])?.closed_loop();
+    let poles = eigenvalues(&closed)?;
+    let spectral_radius = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
+    let rate_hz = 1.0 / timing.period_s;
+    let unstable = CertifyError::Unstable { rate_hz, spectral_radius };
+    if spectral_radius >= 1.0 {
+        return Err(unstable);
+    }
+    let sampled = SampledLoopFigures {
+        poles: pairs(&poles),
+        spectral_radius,
+        decrease: decrease::sampled(&closed)?,
+        margins: margins::sampled(&parts, timing, names)?.ok_or(unstable)?,
+    };
+    let has_continuous_form = flown.past_command_gains.is_empty() && timing.delay_samples == 0;
+    let search = |disturbance| limits(&parts, timing, names, disturbance);
+    Ok(Certificate {
+        rate_hz,
+        delay_samples: timing.delay_samples,
+        rounding: rounding(controller, &flown),
+        continuous: if has_continuous_form { Some(continuous(&whole, &parts, names)?) } else { None },
+        sampled,
+        delay: search(Disturbance::Delay)?,
+        lag: search(Disturbance::Lag(LagModel::FirstOrder))?,
+        motors_in_rate_loop: motors_in_rate_loop
+            .map(|rate_gain_1_s| search(Disturbance::Lag(LagModel::MotorsInRateLoop { rate_gain_1_s })))
+            .transpose()?,
+    })
+}
+
+fn continuous(whole: &LinearLoop, parts: &[LinearLoop], names: &[String]) -> Result<ContinuousLoop, CertifyError> {
+    let (a, b, gain) = whole.continuous();
+    let closed = a - b * gain;
+    let poles = eigenvalues(&closed)?;
+    let abscissa_1_s = poles.iter().map(|pole| pole.re).fold(f64::NEG_INFINITY, f64::max);
+    let stable = abscissa_1_s < 0.0;
+    Ok(ContinuousLoop {
+        poles_1_s: pairs(&poles),
+        abscissa_1_s,
+        decrease: if stable { Some(decrease::continuous(&closed)?) } else { None },
+        margins: if stable { margins::continuous(parts, names)? } else { None },
+    })
+}
+
+/// Every entry the nearest f32.
+fn single_precision(gain: &DMatrix<f64>) -> Result<DMatrix<f64>, CertifyError> {
+    for column in 0..gain.ncols() {
+        for row in 0..gain.nrows() {
+            let value = gain[(row, column)];
+            if !(value as f32).is_finite() {
+                return Err(CertifyError::NotSinglePrecision { row, column, value });
+            }
+        }
+    }
+    Ok(gain.map(|value| f64::from(value as f32)))
+}
+
+fn rounding(designed: &Controller, flown: &Controller) -> Rounding {
+    let matrices = |controller: &Controller| -> Vec<DMatrix<f64>> {
+        std::iter::once(&controller.gain).chain(&controller.past_command_gains).cloned().collect()
+    };
+    let mut found = Rounding { largest_absolute: 0.0, largest_relative: 0.0 };
+    for (designed, flown) in matrices(designed).iter().zip(&matrices(flown)) {
+        for (designed, flown) in designed.iter().zip(flown.iter()).filter(|(designed, _)| **designed != 0.0) {
+            let difference = (designed - flown).abs();
+            if difference < NO_ROUNDING * designed.abs() {
+                continue;
+            }
+            found.largest_absolute = found.largest_absolute.max(difference);
+            found.largest_relative = found.largest_relative.max(difference / designed.abs());
+        }
+    }
+    found
+}
+
+/// Sorted by real part, and by imaginary part where the real parts differ by rounding only: the order of poles that
+/// several axes share is then the same on every processor.
+fn pairs(values: &[Complex64]) -> Vec<[f64; 2]> {
+    let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
+    let mut sorted = values.to_vec();
+    sorted.sort_by(|x, y| x.re.total_cmp(&y.re));
+    let same = |x: &Complex64, y: &Complex64| (x.re - y.re).abs() <= SAME * largest;
+    for group in sorted.chunk_by_mut(same) {
+        group.sort_by(|x, y| x.im.total_cmp(&y.im));
+    }
+    sorted.iter().map(|value| [value.re, value.im]).collect()
+}

@@ -1,0 +1,56 @@
+//! Why there is no certificate, in one line each.
+
+use thiserror::Error;
+
+use crate::analysis::MatrixError;
+use crate::design::DesignError;
+
+/// A gain that cannot be certified.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum CertifyError {
+    /// A matrix that cannot be worked with.
+    #[error(transparent)]
+    Matrix(#[from] MatrixError),
+    /// An equation without a solution.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    /// An entry of the gain is too large for an f32.
+    #[error("K[{row},{column}] is {value:e}; as an f32 it would be infinite")]
+    NotSinglePrecision {
+        /// Row of the entry, from 0.
+        row: usize,
+        /// Column of the entry, from 0.
+        column: usize,
+        /// The entry.
+        value: f64,
+    },
+    /// The loop is not stable at its own rate.
+    #[error(
+        "the loop is unstable at {rate_hz} Hz: its spectral radius is {spectral_radius:.6}; \
+         raise the rate or lower the gain"
+    )]
+    Unstable {
+        /// Control rate, Hz.
+        rate_hz: f64,
+        /// Largest modulus of the poles per sample.
+        spectral_radius: f64,
+    },
+    /// The rate loop of the lag model has no positive gain.
+    #[error("the rate gain is {gain_1_s} 1/s; it must be a positive number")]
+    RateGain {
+        /// The given gain, 1/s.
+        gain_1_s: f64,
+    },
+    /// A rate at which no search ends in time.
+    #[error("the control period is {period_s} s; certificates are made for periods from 1e-5 s to 10 s")]
+    Period {
+        /// The given period, s.
+        period_s: f64,
+    },
+    /// A known delay of more samples than make sense.
+    #[error("the known delay is {delay_samples} samples; certificates are made for up to 100")]
+    DelaySamples {
+        /// The given delay.
+        delay_samples: usize,
+    },
+}

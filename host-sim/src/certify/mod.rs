@@ -1,0 +1,34 @@
+//! What a gain promises, as it will be flown: rounded to f32, at its control rate, behind its actuators.
+//!
+//! In flow a plant, a controller, the timing of the loop and a model of the actuators' lag; out flows a [`Certificate`],
+//! or the reason why there is none. Every figure is computed from the rounded gain:
+//!
+//! - poles in continuous time, and per sample under hold; P > 0 with its decrease checked after P was rounded;
+//! - disk margins at the plant's input, each channel alone and all at once, from the peak of the sensitivity;
+//! - the largest delay and the largest actuator lag up to which the sampled loop stays stable.
+//!
+//! A loop that falls apart into independent chains, as those of hover do, is taken apart first: its figures are then
+//! exact for all channels at once, too. [`require`] holds a certificate against the least that a design asks for.
+//!
+//! Reference: Seiler, Packard and Gahinet, An Introduction to Disk Margins, IEEE Control Systems Magazine 2020.
+
+mod certificate;
+mod decrease;
+mod error;
+mod limits;
+mod linear_loop;
+mod margins;
+mod minimum;
+mod plant;
+mod sampled_loop;
+mod structured;
+mod sweep;
+
+pub use certificate::{Certificate, ContinuousLoop, Rounding, SampledLoopFigures, certify};
+pub use decrease::Decrease;
+pub use error::CertifyError;
+pub use limits::StabilityLimit;
+pub use margins::{AllChannels, ChannelMargins, DiskMargin, LoopMargins};
+pub use minimum::{MarginTooSmall, Minimum, require};
+pub use plant::{Controller, LagModel, Plant, Timing};
+pub use structured::{StructuredBounds, structured_bounds};

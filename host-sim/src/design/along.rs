@@ -1,0 +1,137 @@
+//! Gains over time: the linear quadratic feedback along a trajectory, for a control rate.
+//!
+//! In flow a reference by time, weights and a sampling; out flows a table of gains 4 x 9 at evenly spaced knots, to be
+//! interpolated linearly. The error is that of the equilibrium law in the reference's heading frame,
+//! `e = [dr q1 q2 q3 dv]` with `dr`, `dv` turned by minus the heading and `(q1 q2 q3)` the vector part of `q_r^-1 q`; with
+//! the reference's input fed forward it moves, to first order, as
+//!
+//! ```text
+//! dr' = -psi' z x dr + dv
+//! q'  = -omega_r x q + d omega / 2
+//! dv' = -psi' z x dv + R_h (2 T_r q x z + z dT)        R_h: the reference's attitude seen from its heading frame
+//! ```
+//!
+//! At hover this is (E-LTI). Over each control period the pair at its middle is held and discretised exactly; the
+//! Riccati recursion then runs backwards from the end, where the stationary solution for the last pair stands in for what
+//! follows: trajectories end at rest.
+
+use nalgebra::{DMatrix, Matrix3, Rotation3, SMatrix, Vector3};
+
+use super::DesignError;
+use super::discretise::zero_order_hold;
+use super::sampled::{CostForm, SampledCost, Sampling, optimal, sampled_cost, shaped};
+use super::synthesis::{EquilibriumWeights, diagonal};
+use crate::model::attitude;
+use crate::model::flat::{ReferencePoint, unit};
+
+/// A table of gains over time.
+#[derive(Debug, Clone)]
+pub struct GainsAlong {
+    /// Time between two knots, s; the first one is at 0.
+    pub spacing_s: f64,
+    /// K at the knots, 4 x 9, columns `[x y z q1 q2 q3 vx vy vz]`, rows `[T p q r]`.
+    pub gains: Vec<SMatrix<f64, 4, 9>>,
+    /// Largest distance of the interpolated gain from the gain at any control step, over the norm of that gain.
+    pub interpolation_error: f64,
+}
+
+impl GainsAlong {
+    /// The gain at a time, linear between the knots and held beyond them.
+    pub fn at(&self, time_s: f64) -> SMatrix<f64, 4, 9> {
+        let last = self.gains.len().saturating_sub(1);
+        let position = (time_s / self.spacing_s).max(0.0).min(last as f64);
+        let knot = (position as usize).min(last.saturating_sub(1));
+        match (self.gains.get(knot), self.gains.get(knot + 1)) {
+            (Some(before), Some(after)) => before + (after - before) * (position - knot as f64),
+            (Some(only), None) => *only,
+            _ => SMatrix::zeros(),
+        }
+    }
+}
+
+/// The error dynamics about a reference point: A 9 x 9 and B 9 x 4, errors `[dr q dv]`, inputs `[T p q r]`.
+pub fn error_dynamics(point: &ReferencePoint) -> (DMatrix<f64>, DMatrix<f64>) {
+    let thrust_m_s2 = point.input[0];
+    let rates = Vector3::new(point.input[1], point.input[2], point.input[3]);
+    let to_heading = Rotation3::from_axis_angle(&Vector3::z_axis(), -point.heading_rad);
+    let attitude = (to_heading * unit(&attitude(&point.state)).to_rotation_matrix()).into_inner();
+    let turning = -Vector3::new(0.0, 0.0, point.heading_rate_rad_s).cross_matrix();
+    // 2 q x z: how the thrust axis tilts with the error of the attitude, in body axes.
+    let tilting = -Vector3::z().cross_matrix() * 2.0;
+    let mut a = DMatrix::zeros(9, 9);
+    a.view_mut((0, 0), (3, 3)).copy_from(&turning);
+    a.view_mut((0, 6), (3, 3)).copy_from(&Matrix3::identity());
+    a.view_mut((3, 3), (3, 3)).copy_from(&-rates.cross_matrix());
+    a.view_mut((6, 3), (3, 3)).copy_from(&(attitude * tilting * thrust_m_s2));
+    a.view_mut((6, 6), (3, 3)).copy_from(&turning);
+    let mut b = DMatrix::zeros(9, 4);
+    b.view_mut((3, 1), (3, 3)).copy_from(&(Matrix3::identity() * 0.5));
+    b.view_mut((6, 0), (3, 1)).copy_from(&attitude.column(2));
+    (a, b)
+}
+
+/// The table of gains along a reference of `duration_s`, with a knot every `steps_per_knot` control periods (at least 1).
+///
+/// # Errors
+/// What [`super::sampled::sampled_lqr`] refuses about weights and sampling, and [`DesignError::Delay`] for a sampling with
+/// a delay: the table has no place for past commands.
+pub fn gains_along(
+    reference: impl Fn(f64) -> ReferencePoint,
+    duration_s: f64,
+    weights: &EquilibriumWeights,
+    sampling: &Sampling,
+    steps_per_knot: usize,
+) -> Result<GainsAlong, DesignError> {
+    let h = sampling.period_s;
+    super::discretise::require_period(h)?;
+    super::discretise::require_period(duration_s)?;
+    if sampling.delay_samples > 0 {
+        return Err(DesignError::Delay { delay_s: sampling.delay_samples as f64 * h });
+    }
+    let (q, r) = (diagonal(&weights.state), diagonal(&weights.input));
+    let steps_per_knot = steps_per_knot.max(1);
+    // Whole knots, so that the last one is not before the end.
+    let steps = ((duration_s / h).ceil() as usize).div_ceil(steps_per_knot) * steps_per_knot;
+    let discretised = |time_s: f64| {
+        let (a, b) = error_dynamics(&reference(time_s.min(duration_s)));
+        let held = zero_order_hold(&a, &b, h)?;
+        let cost = match sampling.cost {
+            CostForm::Integral => sampled_cost(&a, &b, &q, &r, h)?,
+            CostForm::Sum => SampledCost { q: q.clone(), s: DMatrix::zeros(9, 4), r: r.clone() },
+        };
+        Ok::<_, DesignError>((held, cost))
+    };
+    let (held, cost) = discretised(duration_s)?;
+    let end = optimal(&held, &cost, 0)?;
+    let mut p = end.p;
+    let mut backwards = vec![fixed(&end.gain)];
+    for step in (0..steps).rev() {
+        let (held, cost) = discretised((step as f64 + 0.5) * h)?;
+        let pb = &p * &held.b;
+        let middle = &cost.r + held.b.transpose() * &pb;
+        let driven = pb.transpose() * &held.a + cost.s.transpose();
+        let inverse = middle.cholesky().ok_or(DesignError::NotPositiveDefinite { row: 0, pivot: 0.0 })?;
+        let gain = inverse.solve(&driven);
+        // The cost of the closed loop as a sum of squares: P stays positive whatever the rounding (Joseph's form).
+        let closed = &held.a - &held.b * &gain;
+        let crossed = &cost.s * &gain;
+        let stage = &cost.q - &crossed - crossed.transpose() + gain.transpose() * &cost.r * &gain;
+        let next = closed.transpose() * &p * &closed + stage;
+        p = (&next + next.transpose()) * 0.5;
+        backwards.push(fixed(&gain));
+    }
+    backwards.reverse();
+    let gains = backwards.iter().copied().step_by(steps_per_knot).collect();
+    let mut table = GainsAlong { spacing_s: h * steps_per_knot as f64, gains, interpolation_error: 0.0 };
+    table.interpolation_error = backwards
+        .iter()
+        .enumerate()
+        .map(|(step, gain)| (table.at(step as f64 * h) - gain).norm() / gain.norm())
+        .fold(0.0, f64::max);
+    Ok(table)
+}
+
+/// A gain of the recursion, which is 4 x 9 by construction.
+fn fixed(gain: &DMatrix<f64>) -> SMatrix<f64, 4, 9> {
+    shaped(gain).unwrap_or_else(SMatrix::zeros)
+}
