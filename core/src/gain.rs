@@ -14,6 +14,7 @@ pub struct Gain<const M: usize, const N: usize> {
 
 /// Why a matrix is no gain.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum GainError {
     /// An entry is infinite or not a number.

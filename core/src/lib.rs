@@ -41,8 +41,11 @@
 #[cfg(test)]
 extern crate std;
 
+#[cfg(feature = "table")]
+mod checksum;
 pub mod clock;
 pub mod command;
+pub mod crossfade;
 #[cfg(feature = "defmt")]
 mod defmt_formats;
 pub mod error;
@@ -64,6 +67,7 @@ pub use nalgebra;
 
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};
+pub use crossfade::Crossfade;
 pub use error::{ReferenceError, StateError, StepError};
 pub use law::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput};
 pub use quaternion::{Heading, Quaternion};
