@@ -146,11 +146,7 @@ pub(super) fn wrong_length(bytes: &[u8], payload: usize) -> TableError {
 }
 
 /// Writes the frame of a payload of `length` bytes, which `payload` writes, over the start of `buffer`.
-pub(super) fn seal(
-    buffer: &mut [u8],
-    length: u16,
-    payload: impl FnOnce(&mut [u8]) -> Option<()>,
-) -> Option<&[u8]> {
+pub(super) fn seal(buffer: &mut [u8], length: u16, payload: impl FnOnce(&mut [u8]) -> Option<()>) -> Option<&[u8]> {
     let (frame, _) = buffer.split_at_mut_checked(FRAME_BYTES + usize::from(length))?;
     let (content, checksum) = frame.split_last_chunk_mut::<4>()?;
     let (magic, rest) = content.split_first_chunk_mut::<4>()?;
