@@ -41,8 +41,7 @@
 #[cfg(test)]
 extern crate std;
 
-#[cfg(feature = "table")]
-mod checksum;
+pub mod checksum;
 pub mod clock;
 pub mod command;
 pub mod crossfade;

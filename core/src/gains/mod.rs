@@ -2,5 +2,4 @@
 //! loaded.
 
 pub mod paper;
-#[cfg(feature = "table")]
 pub mod table;

@@ -120,13 +120,15 @@ impl GainTable {
     /// [`TableError`]: the first thing that is wrong, from the frame inwards.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, TableError> {
         let payload = wire::open(bytes)?;
-        let (head, entries) = postcard::take_from_bytes::<wire::Wire>(payload)
-            .map_err(|_| wire::wrong_length(bytes, wire::HEAD_BYTES))?;
-        let kind = head.table_kind()?;
-        let rows = kind.rows_from(entries).ok_or(wire::wrong_length(bytes, usize::from(kind.payload_bytes())))?;
-        // Gains before the fields around them.
-        let gains = Gains::new(&rows)?;
-        let head = head.head()?;
+        let cut = wire::wrong_length(bytes, wire::HEAD_BYTES);
+        let (head, entries) = payload.split_first_chunk::<{ wire::HEAD_BYTES }>().ok_or(cut)?;
+        let mut fields = wire::Reader::new(head, cut);
+        let kind = fields.kind()?;
+        if payload.len() != usize::from(kind.payload_bytes()) {
+            return Err(wire::wrong_length(bytes, usize::from(kind.payload_bytes())));
+        }
+        let gains = Gains::read(kind, entries)?;
+        let head = fields.head()?;
         head.check()?;
         Ok(Self { head, gains })
     }
@@ -134,17 +136,11 @@ impl GainTable {
     /// Writes the table over the start of `buffer` and returns that part; nothing if it is too short. The same table
     /// gives the same bytes; [`TABLE_BYTES_MAX`] are enough for any.
     pub fn to_bytes<'b>(&self, buffer: &'b mut [u8]) -> Option<&'b [u8]> {
-        let kind = self.kind();
-        wire::seal(buffer, kind.payload_bytes(), |payload| {
-            let (head, entries) = payload.split_at_mut_checked(wire::HEAD_BYTES)?;
-            postcard::to_slice(&wire::Wire::of(kind, &self.head), head).ok()?;
-            match &self.gains {
-                Gains::Equilibrium(gain) => postcard::to_slice(gain.gain().rows(), entries),
-                Gains::FlatOutput(gain) => postcard::to_slice(gain.gain().rows(), entries),
-            }
-            .ok()?;
-            Some(())
-        })
+        let entries = match &self.gains {
+            Gains::Equilibrium(gain) => gain.gain().rows().as_flattened(),
+            Gains::FlatOutput(gain) => gain.gain().rows().as_flattened(),
+        };
+        wire::write(buffer, self.kind(), &self.head, entries)
     }
 
     /// The table as one that this board flies: it was designed for `vehicle` and certified at `rate`, that of the
@@ -211,27 +207,51 @@ impl TableHead {
 impl Gains {
     fn new(rows: &Rows) -> Result<Self, TableError> {
         match rows {
-            Rows::Equilibrium(rows) => {
-                let gain = EquilibriumGain::new(*rows).map_err(TableError::Gain)?;
-                in_proportion(rows)?;
-                Ok(Self::Equilibrium(gain))
+            Rows::Equilibrium(rows) => Self::equilibrium(rows),
+            Rows::FlatOutput(rows) => Self::flat_output(rows),
+        }
+    }
+
+    /// From the bytes behind the head.
+    fn read(kind: TableKind, entries: &[u8]) -> Result<Self, TableError> {
+        match kind {
+            TableKind::Equilibrium => {
+                let mut rows = [[0.0; 9]; 4];
+                wire::read_entries(entries, rows.as_flattened_mut());
+                Self::equilibrium(&rows)
             }
-            Rows::FlatOutput(rows) => {
-                let gain = FlatOutputGain::new(*rows).map_err(TableError::Gain)?;
-                in_proportion(rows)?;
-                Ok(Self::FlatOutput(gain))
+            TableKind::FlatOutput => {
+                let mut rows = [[0.0; 10]; 7];
+                wire::read_entries(entries, rows.as_flattened_mut());
+                Self::flat_output(&rows)
             }
         }
+    }
+
+    fn equilibrium(rows: &[[f32; 9]; 4]) -> Result<Self, TableError> {
+        let gain = EquilibriumGain::new(*rows).map_err(TableError::Gain)?;
+        in_proportion(rows.as_flattened(), 9)?;
+        Ok(Self::Equilibrium(gain))
+    }
+
+    fn flat_output(rows: &[[f32; 10]; 7]) -> Result<Self, TableError> {
+        let gain = FlatOutputGain::new(*rows).map_err(TableError::Gain)?;
+        in_proportion(rows.as_flattened(), 10)?;
+        Ok(Self::FlatOutput(gain))
     }
 }
 
 /// Whether every entry is 0 or of a size from [`ENTRY_MIN`] to [`ENTRY_MAX`].
-fn in_proportion<const N: usize>(rows: &[[f32; N]]) -> Result<(), TableError> {
-    for (row, entries) in (0_u8..).zip(rows) {
-        for (column, value) in (0_u8..).zip(entries.iter().copied()) {
-            if value != 0.0 && !(ENTRY_MIN..=ENTRY_MAX).contains(&value.abs()) {
-                return Err(TableError::Entry { row, column, value });
-            }
+#[inline(never)]
+fn in_proportion(entries: &[f32], columns: u8) -> Result<(), TableError> {
+    let (mut row, mut column) = (0, 0);
+    for value in entries.iter().copied() {
+        if value != 0.0 && !(ENTRY_MIN..=ENTRY_MAX).contains(&value.abs()) {
+            return Err(TableError::Entry { row, column, value });
+        }
+        column += 1;
+        if column == columns {
+            (row, column) = (row + 1, 0);
         }
     }
     Ok(())
@@ -265,20 +285,6 @@ impl TableKind {
     const fn payload_bytes(self) -> u16 {
         let (rows, columns) = self.dimensions();
         wire::HEAD_BYTES as u16 + 4 * rows as u16 * columns as u16
-    }
-
-    fn rows_from(self, entries: &[u8]) -> Option<Rows> {
-        let (rows, rest) = match self {
-            Self::Equilibrium => {
-                let (rows, rest) = postcard::take_from_bytes(entries).ok()?;
-                (Rows::Equilibrium(rows), rest)
-            }
-            Self::FlatOutput => {
-                let (rows, rest) = postcard::take_from_bytes(entries).ok()?;
-                (Rows::FlatOutput(rows), rest)
-            }
-        };
-        rest.is_empty().then_some(rows)
     }
 }
 

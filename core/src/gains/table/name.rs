@@ -75,6 +75,7 @@ impl Name {
     ///
     /// # Errors
     /// [`NameError`].
+    #[inline(never)]
     pub fn from_padded(padded: [u8; Self::BYTES]) -> Result<Self, NameError> {
         let mut ended = false;
         for (position, byte) in (0_u8..).zip(padded) {

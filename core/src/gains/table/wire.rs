@@ -1,11 +1,11 @@
 //! The bytes of a table: a frame around a payload, a payload of fields of fixed width. The page docs/gain-tables.md has
 //! every offset.
 //!
-//! The payload is postcard, of types that postcard writes at one width only (bytes, `f32`, fixed integers): one table
-//! has one encoding, and a length tells whether it is whole.
+//! The payload is what postcard makes of its fields, all of types that postcard writes at one width (bytes, `f32`,
+//! integers as arrays of bytes): one table has one encoding, and its length tells whether it is whole. It is taken apart
+//! by hand here: a derived reader takes several times the code on the target.
 
 use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
 
 use super::certificate::{Certificate, Hash, Margins, Vehicle};
 use super::error::{TableError, count};
@@ -24,66 +24,26 @@ pub const FORMAT_VERSION: u16 = 1;
 /// Magic, version and length before the payload, checksum behind it.
 pub(super) const FRAME_BYTES: usize = 4 + 2 + 2 + 4;
 
-/// Bytes of [`Wire`].
+/// Bytes of the payload before the gains: kind and dimensions, names, id and rate, limits, hashes, figures.
 pub(super) const HEAD_BYTES: usize = 3 + 2 * Name::BYTES + 2 * 4 + 5 * 4 + 2 * 32 + 7 * 4;
 
-/// The fields before the gains, as they stand.
-#[derive(Serialize, Deserialize)]
-pub(super) struct Wire {
-    pub(super) kind: u8,
-    pub(super) rows: u8,
-    pub(super) columns: u8,
-    name: [u8; Name::BYTES],
-    vehicle_name: [u8; Name::BYTES],
-    #[serde(with = "postcard::fixint::le")]
-    vehicle_id: u32,
-    #[serde(with = "postcard::fixint::le")]
-    rate_hz: u32,
-    thrust_min_m_s2: f32,
-    thrust_max_m_s2: f32,
-    body_rates_max_rad_s: [f32; 3],
-    design_hash: [u8; 32],
-    certificate_hash: [u8; 32],
-    one_channel_gain: f32,
-    one_channel_phase_rad: f32,
-    all_channels_gain: f32,
-    all_channels_phase_rad: f32,
-    delay_max_s: f32,
-    motor_lag_max_s: f32,
-    f32_distance: f32,
+/// Takes fields from the start of a payload. Inlined into one place, where the length is known and no field can be cut.
+pub(super) struct Reader<'b> {
+    rest: &'b [u8],
+    /// What to say where the payload ends before a field.
+    ended: TableError,
 }
 
-impl Wire {
-    pub(super) fn of(kind: TableKind, head: &TableHead) -> Self {
-        let TableHead { name, vehicle, rate, limits, design_hash, certificate } = head;
-        let (rows, columns) = kind.dimensions();
-        Self {
-            kind: kind.number(),
-            rows,
-            columns,
-            name: name.padded(),
-            vehicle_name: vehicle.name.padded(),
-            vehicle_id: vehicle.id,
-            rate_hz: rate.hz(),
-            thrust_min_m_s2: limits.thrust_min_m_s2(),
-            thrust_max_m_s2: limits.thrust_max_m_s2(),
-            body_rates_max_rad_s: limits.body_rates_max_rad_s().into(),
-            design_hash: design_hash.0,
-            certificate_hash: certificate.hash.0,
-            one_channel_gain: certificate.one_channel.gain_factor,
-            one_channel_phase_rad: certificate.one_channel.phase_rad,
-            all_channels_gain: certificate.all_channels.gain_factor,
-            all_channels_phase_rad: certificate.all_channels.phase_rad,
-            delay_max_s: certificate.delay_max_s,
-            motor_lag_max_s: certificate.motor_lag_max_s,
-            f32_distance: certificate.f32_distance,
-        }
+impl<'b> Reader<'b> {
+    pub(super) const fn new(payload: &'b [u8], ended: TableError) -> Self {
+        Self { rest: payload, ended }
     }
 
     /// The kind, if the table has its dimensions.
-    pub(super) fn table_kind(&self) -> Result<TableKind, TableError> {
-        let &Self { kind, rows, columns, .. } = self;
-        let kind = TableKind::numbered(kind).ok_or(TableError::Kind { found: kind })?;
+    #[inline(always)]
+    pub(super) fn kind(&mut self) -> Result<TableKind, TableError> {
+        let [found, rows, columns] = self.bytes()?;
+        let kind = TableKind::numbered(found).ok_or(TableError::Kind { found })?;
         if (rows, columns) == kind.dimensions() {
             Ok(kind)
         } else {
@@ -91,29 +51,108 @@ impl Wire {
         }
     }
 
-    /// The fields as types that hold nothing wrong.
-    pub(super) fn head(&self) -> Result<TableHead, TableError> {
-        let [p, q, r] = self.body_rates_max_rad_s;
+    /// The fields between the kind and the gains.
+    #[inline(always)]
+    pub(super) fn head(&mut self) -> Result<TableHead, TableError> {
         Ok(TableHead {
-            name: Name::from_padded(self.name).map_err(TableError::TableName)?,
+            name: Name::from_padded(self.bytes()?).map_err(TableError::TableName)?,
             vehicle: Vehicle {
-                name: Name::from_padded(self.vehicle_name).map_err(TableError::VehicleName)?,
-                id: self.vehicle_id,
+                name: Name::from_padded(self.bytes()?).map_err(TableError::VehicleName)?,
+                id: self.u32()?,
             },
-            rate: Rate::from_hz(self.rate_hz).ok_or(TableError::Rate { hz: self.rate_hz })?,
-            limits: Limits::new(self.thrust_min_m_s2, self.thrust_max_m_s2, Vector3::new(p, q, r))
-                .map_err(TableError::Limits)?,
-            design_hash: Hash(self.design_hash),
+            rate: self.rate()?,
+            limits: self.limits()?,
+            design_hash: Hash(self.bytes()?),
             certificate: Certificate {
-                hash: Hash(self.certificate_hash),
-                one_channel: Margins { gain_factor: self.one_channel_gain, phase_rad: self.one_channel_phase_rad },
-                all_channels: Margins { gain_factor: self.all_channels_gain, phase_rad: self.all_channels_phase_rad },
-                delay_max_s: self.delay_max_s,
-                motor_lag_max_s: self.motor_lag_max_s,
-                f32_distance: self.f32_distance,
+                hash: Hash(self.bytes()?),
+                one_channel: self.margins()?,
+                all_channels: self.margins()?,
+                delay_max_s: self.f32()?,
+                motor_lag_max_s: self.f32()?,
+                f32_distance: self.f32()?,
             },
         })
     }
+
+    #[inline(always)]
+    fn rate(&mut self) -> Result<Rate, TableError> {
+        let hz = self.u32()?;
+        Rate::from_hz(hz).ok_or(TableError::Rate { hz })
+    }
+
+    #[inline(always)]
+    fn limits(&mut self) -> Result<Limits, TableError> {
+        let (thrust_min_m_s2, thrust_max_m_s2) = (self.f32()?, self.f32()?);
+        let body_rates_max_rad_s = Vector3::new(self.f32()?, self.f32()?, self.f32()?);
+        Limits::new(thrust_min_m_s2, thrust_max_m_s2, body_rates_max_rad_s).map_err(TableError::Limits)
+    }
+
+    #[inline(always)]
+    fn margins(&mut self) -> Result<Margins, TableError> {
+        Ok(Margins { gain_factor: self.f32()?, phase_rad: self.f32()? })
+    }
+
+    #[inline(always)]
+    fn u32(&mut self) -> Result<u32, TableError> {
+        self.bytes().map(u32::from_le_bytes)
+    }
+
+    #[inline(always)]
+    fn f32(&mut self) -> Result<f32, TableError> {
+        self.bytes().map(f32::from_le_bytes)
+    }
+
+    #[inline(always)]
+    fn bytes<const N: usize>(&mut self) -> Result<[u8; N], TableError> {
+        let (field, rest) = self.rest.split_first_chunk().ok_or(self.ended)?;
+        self.rest = rest;
+        Ok(*field)
+    }
+}
+
+/// Puts fields at the start of a payload, in the order in which [`Reader`] takes them.
+struct Writer<'b> {
+    rest: &'b mut [u8],
+}
+
+impl Writer<'_> {
+    fn head(&mut self, kind: TableKind, head: &TableHead) -> Option<()> {
+        let TableHead { name, vehicle, rate, limits, design_hash, certificate } = head;
+        let (rows, columns) = kind.dimensions();
+        self.bytes(&[kind.number(), rows, columns])?;
+        self.bytes(&name.padded())?;
+        self.bytes(&vehicle.name.padded())?;
+        self.bytes(&vehicle.id.to_le_bytes())?;
+        self.bytes(&rate.hz().to_le_bytes())?;
+        self.f32s(&[limits.thrust_min_m_s2(), limits.thrust_max_m_s2()])?;
+        self.f32s(limits.body_rates_max_rad_s().as_slice())?;
+        self.bytes(&design_hash.0)?;
+        self.bytes(&certificate.hash.0)?;
+        let Margins { gain_factor, phase_rad } = certificate.one_channel;
+        self.f32s(&[gain_factor, phase_rad])?;
+        let Margins { gain_factor, phase_rad } = certificate.all_channels;
+        self.f32s(&[gain_factor, phase_rad])?;
+        self.f32s(&[certificate.delay_max_s, certificate.motor_lag_max_s, certificate.f32_distance])
+    }
+
+    fn f32s(&mut self, values: &[f32]) -> Option<()> {
+        values.iter().try_for_each(|value| self.bytes(&value.to_le_bytes()))
+    }
+
+    #[inline(never)]
+    fn bytes(&mut self, field: &[u8]) -> Option<()> {
+        let (place, rest) = core::mem::take(&mut self.rest).split_at_mut_checked(field.len())?;
+        place.iter_mut().zip(field).for_each(|(place, byte)| *place = *byte);
+        self.rest = rest;
+        Some(())
+    }
+}
+
+/// Reads as many entries as there are places, from as many times four bytes.
+#[inline(never)]
+pub(super) fn read_entries(bytes: &[u8], entries: &mut [f32]) {
+    let (fields, _) = bytes.as_chunks();
+    entries.iter_mut().zip(fields).for_each(|(entry, field)| *entry = f32::from_le_bytes(*field));
 }
 
 /// The payload of a frame that is whole and of this version.
@@ -145,17 +184,17 @@ pub(super) fn wrong_length(bytes: &[u8], payload: usize) -> TableError {
     TableError::Length { bytes: count(bytes.len()), wanted: count(payload.saturating_add(FRAME_BYTES)) }
 }
 
-/// Writes the frame of a payload of `length` bytes, which `payload` writes, over the start of `buffer`.
-pub(super) fn seal(buffer: &mut [u8], length: u16, payload: impl FnOnce(&mut [u8]) -> Option<()>) -> Option<&[u8]> {
+/// Writes a table over the start of `buffer` and returns that part; nothing if it is too short.
+pub(super) fn write<'b>(buffer: &'b mut [u8], kind: TableKind, head: &TableHead, entries: &[f32]) -> Option<&'b [u8]> {
+    let length = kind.payload_bytes();
     let (frame, _) = buffer.split_at_mut_checked(FRAME_BYTES + usize::from(length))?;
-    let (content, checksum) = frame.split_last_chunk_mut::<4>()?;
-    let (magic, rest) = content.split_first_chunk_mut::<4>()?;
-    let (version, rest) = rest.split_first_chunk_mut::<2>()?;
-    let (stated, rest) = rest.split_first_chunk_mut::<2>()?;
-    *magic = MAGIC;
-    *version = FORMAT_VERSION.to_le_bytes();
-    *stated = length.to_le_bytes();
-    payload(rest)?;
+    let (content, checksum) = frame.split_last_chunk_mut()?;
+    let mut writer = Writer { rest: content };
+    writer.bytes(&MAGIC)?;
+    writer.bytes(&FORMAT_VERSION.to_le_bytes())?;
+    writer.bytes(&length.to_le_bytes())?;
+    writer.head(kind, head)?;
+    writer.f32s(entries)?;
     *checksum = crc32c(content).to_le_bytes();
     Some(frame)
 }
