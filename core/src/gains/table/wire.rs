@@ -198,3 +198,43 @@ pub(super) fn write<'b>(buffer: &'b mut [u8], kind: TableKind, head: &TableHead,
     *checksum = crc32c(content).to_le_bytes();
     Some(frame)
 }
+
+#[cfg(all(test, feature = "link"))]
+mod tests {
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::gains::table::{GainTable, Rows, TABLE_BYTES_MAX};
+
+    #[test]
+    fn the_payload_is_what_postcard_writes() {
+        let rows = *crate::gains::paper::LQR_E.gain().rows();
+        let margins = Margins { gain_factor: 2.0, phase_rad: 0.75 };
+        let certificate = Certificate {
+            hash: Hash([7; 32]),
+            one_channel: margins,
+            all_channels: margins,
+            delay_max_s: 0.05,
+            motor_lag_max_s: 0.025,
+            f32_distance: 1e-8,
+        };
+        let (name, craft) = (Name::literal("lqr-e"), Name::literal("craft"));
+        let head = TableHead {
+            name,
+            vehicle: Vehicle { name: craft, id: 0x8899_AABB },
+            rate: Rate::from_hz(1000).unwrap(),
+            limits: Limits::new(1.0, 16.0, Vector3::new(20.0, 21.0, 5.0)).unwrap(),
+            design_hash: Hash([9; 32]),
+            certificate,
+        };
+        let names = (name.padded(), craft.padded(), 0x8899_AABB_u32.to_le_bytes(), 1000_u32.to_le_bytes());
+        let figures = [2.0_f32, 0.75, 2.0, 0.75, 0.05, 0.025, 1e-8];
+        let fields =
+            ((1_u8, 4_u8, 9_u8), names, [1.0_f32, 16.0, 20.0, 21.0, 5.0], [9_u8; 32], [7_u8; 32], figures, rows);
+        let expected: Vec<u8> = postcard::to_slice(&fields, &mut [0; TABLE_BYTES_MAX]).unwrap().to_vec();
+
+        let mut buffer = [0; TABLE_BYTES_MAX];
+        let bytes = GainTable::new(head, &Rows::Equilibrium(rows)).unwrap().to_bytes(&mut buffer).unwrap();
+        assert_eq!(open(bytes), Ok(&expected[..]));
+    }
+}
