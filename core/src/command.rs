@@ -137,6 +137,21 @@ impl Limits {
         }
     }
 
+    /// Least thrust, m/s^2.
+    pub const fn thrust_min_m_s2(&self) -> f32 {
+        self.thrust_min_m_s2
+    }
+
+    /// Most thrust, m/s^2.
+    pub const fn thrust_max_m_s2(&self) -> f32 {
+        self.thrust_max_m_s2
+    }
+
+    /// Largest body rates `p q r`, rad/s.
+    pub const fn body_rates_max_rad_s(&self) -> Vector3<f32> {
+        self.body_rates_max_rad_s
+    }
+
     /// The command cut to the limits and what was cut; nothing where a number is not finite.
     #[inline]
     pub fn saturate(&self, command: &Command) -> Option<(Command, Limited)> {

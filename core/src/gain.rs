@@ -14,6 +14,7 @@ pub struct Gain<const M: usize, const N: usize> {
 
 /// Why a matrix is no gain.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum GainError {
     /// An entry is infinite or not a number.
@@ -57,24 +58,11 @@ impl<const M: usize, const N: usize> Gain<M, N> {
     /// # Errors
     /// [`GainError`] names the entry or column.
     pub const fn new(rows: [[f32; N]; M]) -> Result<Self, GainError> {
-        let mut column = 0;
-        while column < N {
-            let mut used = false;
-            let mut row = 0;
-            while row < M {
-                let entry = rows[row][column];
-                if !entry.is_finite() {
-                    return Err(GainError::NonFinite { row, column });
-                }
-                used |= entry != 0.0;
-                row += 1;
-            }
-            if !used {
-                return Err(GainError::UnusedError { column });
-            }
-            column += 1;
+        const { assert!(N <= 64, "a bit of a u64 stands for each column") };
+        match fault(rows.as_flattened(), N) {
+            None => Ok(Self { rows }),
+            Some(fault) => Err(fault),
         }
-        Ok(Self { rows })
     }
 
     /// The rows.
@@ -98,14 +86,14 @@ impl<const M: usize, const N: usize> Gain<M, N> {
         product
     }
 
-    /// `-K`; a zero stays a zero without a sign.
+    /// `-K`; twice gives back every bit.
     pub(crate) const fn negated(&self) -> Self {
         let mut rows = self.rows;
         let mut row = 0;
         while row < M {
             let mut column = 0;
             while column < N {
-                rows[row][column] = 0.0 - rows[row][column];
+                rows[row][column] = -rows[row][column];
                 column += 1;
             }
             row += 1;
@@ -115,24 +103,7 @@ impl<const M: usize, const N: usize> Gain<M, N> {
 
     /// Whether every entry outside the listed ones, as (row, column), is zero.
     pub(crate) const fn is_zero_outside(&self, entries: &[(usize, usize)]) -> bool {
-        let mut row = 0;
-        while row < M {
-            let mut column = 0;
-            while column < N {
-                let mut listed = false;
-                let mut i = 0;
-                while i < entries.len() {
-                    listed |= entries[i].0 == row && entries[i].1 == column;
-                    i += 1;
-                }
-                if !listed && self.rows[row][column] != 0.0 {
-                    return false;
-                }
-                column += 1;
-            }
-            row += 1;
-        }
-        true
+        is_zero_outside(self.rows.as_flattened(), N, entries)
     }
 }
 
@@ -140,6 +111,55 @@ impl<const M: usize, const N: usize> Gain<M, N> {
 #[inline(never)]
 fn inner_product(row: &[f32], error: &[f32]) -> f32 {
     row.iter().zip(error).fold(0.0, |sum, (k, e)| sum + k * e)
+}
+
+// Tables are checked once, when they are compiled or loaded: one function for all dimensions, and loops that stay loops.
+
+/// The first entry, by rows, that is not finite, else the first column without an entry.
+#[inline(never)]
+const fn fault(entries: &[f32], columns: usize) -> Option<GainError> {
+    let (mut rest, mut row, mut column) = (entries, 0, 0);
+    // A bit for each column.
+    let mut used: u64 = 0;
+    while let Some((entry, after)) = rest.split_first() {
+        if !entry.is_finite() {
+            return Some(GainError::NonFinite { row, column });
+        }
+        used |= ((*entry != 0.0) as u64) << (column & 63);
+        (row, column) = next(row, column, columns);
+        rest = after;
+    }
+    let unused = used.trailing_ones() as usize;
+    if unused < columns { Some(GainError::UnusedError { column: unused }) } else { None }
+}
+
+#[inline(never)]
+const fn is_zero_outside(entries: &[f32], columns: usize, listed: &[(usize, usize)]) -> bool {
+    let (mut rest, mut row, mut column) = (entries, 0, 0);
+    while let Some((entry, after)) = rest.split_first() {
+        if *entry != 0.0 && !contains(listed, row, column) {
+            return false;
+        }
+        (row, column) = next(row, column, columns);
+        rest = after;
+    }
+    true
+}
+
+const fn contains(listed: &[(usize, usize)], row: usize, column: usize) -> bool {
+    let mut rest = listed;
+    while let Some((place, after)) = rest.split_first() {
+        if place.0 == row && place.1 == column {
+            return true;
+        }
+        rest = after;
+    }
+    false
+}
+
+/// The place after (row, column), by rows.
+const fn next(row: usize, column: usize, columns: usize) -> (usize, usize) {
+    if column + 1 < columns { (row, column + 1) } else { (row + 1, 0) }
 }
 
 #[cfg(test)]

@@ -21,6 +21,7 @@
 //!
 //! ```text
 //! link                        frames, uploads (feature `link`)
+//!   crossfade                 from one tracker to another
 //!   tracker, supervisor       one step: normalise, law, saturate; whether its command may pass
 //!     law                     equilibrium (E) and flat output (F)
 //!       trajectory, gains     pieces played by ticks; tables
@@ -28,7 +29,7 @@
 //!           flatness          the flat map and its inverse
 //!             state, command, gain, clock
 //!               quaternion, error
-//!                 math        square root, sine and cosine
+//!                 math        square root, sine and cosine; checksum
 //! ```
 //!
 //! Features: `link` (default) for the serial link's frames; `serde` and `defmt` for plain data to be stored or logged.
@@ -41,8 +42,10 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod checksum;
 pub mod clock;
 pub mod command;
+pub mod crossfade;
 #[cfg(feature = "defmt")]
 mod defmt_formats;
 pub mod error;
@@ -64,6 +67,7 @@ pub use nalgebra;
 
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};
+pub use crossfade::Crossfade;
 pub use error::{ReferenceError, StateError, StepError};
 pub use law::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput};
 pub use quaternion::{Heading, Quaternion};

@@ -5,6 +5,11 @@
 #[cfg(doctest)]
 pub struct Readme;
 
+/// So are the examples of the page on gain tables.
+#[doc = include_str!("../../docs/gain-tables.md")]
+#[cfg(doctest)]
+pub struct GainTablesPage;
+
 /// Point `index` of the Halton sequence in `N` dimensions, each coordinate in (0, 1): random enough to cover a box
 /// evenly, and the same on every machine.
 pub fn halton<const N: usize>(index: u32) -> [f64; N] {

@@ -1,3 +1,5 @@
-//! Gain tables made offline: constants in the image, checked when it is compiled.
+//! Gain tables made offline: constants in the image, checked when it is compiled, and files, checked when they are
+//! loaded.
 
 pub mod paper;
+pub mod table;

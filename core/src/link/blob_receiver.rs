@@ -1,7 +1,7 @@
 //! The receiving end of an upload: an announcement and chunks in, the whole and checked blob out.
 
-use super::checksum::crc32c;
 use super::upload::{BlobKind, Chunk, Progress, UploadBegin, UploadError};
+use crate::checksum::crc32c;
 
 /// Collects one blob of at most `N` bytes. A new one is all zeros, so that a static costs no flash.
 #[derive(Clone, Debug)]

@@ -5,11 +5,11 @@
 
 use core::marker::PhantomData;
 
-use super::checksum::Crc32c;
 use super::counters::{Counters, Rejected};
 use super::size::RAW_FRAME_BYTES;
 use super::window::Window;
 use super::{DELIMITER, Message, PROTOCOL_VERSION};
+use crate::checksum::Crc32c;
 
 /// A message and the numbers of its frame.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,8 +4,8 @@ use core::fmt;
 
 use postcard::ser_flavors::Flavor;
 
-use super::checksum::Crc32c;
 use super::{DELIMITER, Message, PROTOCOL_VERSION};
+use crate::checksum::Crc32c;
 
 /// Numbers and frames the messages of one session.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

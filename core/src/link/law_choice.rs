@@ -17,7 +17,7 @@ pub enum Table {
     LyapF,
     /// (LQR-F) of the paper.
     LqrF,
-    /// One that was loaded into this slot.
+    /// A loaded one, see [`super::GainStore::table`]: slot 0 is the one in use, slot 1 the one before.
     Loaded(u8),
 }
 

@@ -25,11 +25,11 @@
 //! no flash.
 
 mod blob_receiver;
-mod checksum;
 mod counters;
 mod decoder;
 mod encoder;
 mod from_board;
+mod gain_store;
 mod law_choice;
 mod size;
 mod to_board;
@@ -37,14 +37,15 @@ mod trajectory_store;
 mod upload;
 mod window;
 
+pub use crate::checksum::{Crc32c, crc32c};
 pub use blob_receiver::BlobReceiver;
-pub use checksum::{Crc32c, crc32c};
 pub use counters::{Counters, Rejected};
 pub use decoder::{Decoder, Received};
 pub use encoder::{EncodeError, Encoder};
 pub use from_board::{
     CommandOut, FaultReport, FromBoard, Identity, LoopStatistics, NoCommand, Refusal, Telemetry, Version,
 };
+pub use gain_store::GainStore;
 pub use law_choice::{LawChoice, Table};
 pub use size::{CHUNK_BYTES, FRAME_BYTES, MESSAGE_BYTES};
 pub use to_board::{LimitsSetting, Parameter, ParameterId, StateIn, ToBoard, TrajectoryCommand, TrajectoryId};

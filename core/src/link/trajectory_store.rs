@@ -9,6 +9,7 @@ use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 use super::upload::BlobKind;
+use crate::gains::table::LoadError;
 use crate::trajectory::{Piece, Summary, Trajectory, TrajectoryError};
 
 /// Pieces that an uploaded trajectory may have; the paper's longest has 38.
@@ -42,6 +43,8 @@ pub enum BlobError {
     },
     /// The pieces are no trajectory.
     Trajectory(TrajectoryError),
+    /// The gain table is not flown.
+    GainTable(LoadError),
 }
 
 impl fmt::Display for BlobError {
@@ -54,6 +57,7 @@ impl fmt::Display for BlobError {
             Self::Malformed { piece } => write!(f, "blob: piece {piece} does not decode; encode it as documented"),
             Self::BytesLeft { bytes } => write!(f, "blob: {bytes} bytes after the last piece; encode it as documented"),
             Self::Trajectory(error) => error.fmt(f),
+            Self::GainTable(error) => error.fmt(f),
         }
     }
 }

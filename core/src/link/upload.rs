@@ -8,8 +8,8 @@ use core::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::checksum::crc32c;
 use super::size::CHUNK_BYTES;
+use crate::checksum::crc32c;
 
 /// What a blob is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -17,7 +17,7 @@ use super::size::CHUNK_BYTES;
 pub enum BlobKind {
     /// A trajectory, see [`super::TrajectorySlot`].
     Trajectory,
-    /// A gain table.
+    /// A gain table, see [`crate::gains::table`] and [`super::GainStore`].
     GainTable,
 }
 

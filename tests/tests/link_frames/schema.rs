@@ -3,6 +3,8 @@
 
 use std::fmt::Write;
 
+use quatrack::gain::GainError;
+use quatrack::gains::table::{AcceptError, Name, TableError, Vehicle};
 use quatrack::link::*;
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{ArmError, Fault, Mode, StopReason};
@@ -81,6 +83,8 @@ fn from_board() -> Vec<FromBoard> {
         lost: 11,
     };
     let jump = Refusal::Blob(BlobError::Trajectory(TrajectoryError::Jump { piece: 3, size: 1.0 }));
+    let column = TableError::Gain(GainError::UnusedError { column: 3 });
+    let other = AcceptError::Vehicle { table: Vehicle { name: Name::literal("crazyflie-2.1"), id: 0x0102_0304 } };
     vec![
         FromBoard::Hello(Identity {
             firmware: Version { major: 0, minor: 1, patch: 2 },
@@ -102,6 +106,8 @@ fn from_board() -> Vec<FromBoard> {
         FromBoard::Nack { sequence: 5, reason: Refusal::Arm(ArmError::LinkSilent) },
         FromBoard::Nack { sequence: 5, reason: Refusal::Upload(UploadError::Checksum { announced: 1, found: 2 }) },
         FromBoard::Nack { sequence: 5, reason: jump },
+        FromBoard::Nack { sequence: 5, reason: Refusal::Blob(BlobError::GainTable(column.into())) },
+        FromBoard::Nack { sequence: 5, reason: Refusal::Blob(BlobError::GainTable(other.into())) },
         FromBoard::Upload(Progress { id: 1, wanted_offset: 96, length: 300 }),
         FromBoard::Parameter(Parameter::Decimation(2)),
         FromBoard::Fault(FaultReport { fault: Fault::ClockStopped, tick: 7, address: 0x0800_0000 }),

@@ -48,6 +48,7 @@ impl Crc32c {
     }
 
     /// Whether the last four bytes were the checksum, lowest byte first, of the bytes before them.
+    #[cfg(any(feature = "link", test))]
     pub(crate) const fn ends_with_itself(self) -> bool {
         // What is left of any bytes followed by their own checksum.
         const RESIDUE: u32 = 0xB798_B438;
@@ -62,6 +63,7 @@ impl Default for Crc32c {
 }
 
 /// The checksum of `bytes`.
+#[inline(never)]
 pub fn crc32c(bytes: &[u8]) -> u32 {
     let mut crc = Crc32c::new();
     bytes.iter().for_each(|byte| crc.update(*byte));

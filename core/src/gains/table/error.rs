@@ -1,0 +1,223 @@
+//! Why bytes are no table, and why a table is not flown here: one variant for each reason, with what was found.
+
+use core::fmt;
+
+use super::TableKind;
+use super::certificate::{Figure, Vehicle};
+use super::name::NameError;
+use crate::command::LimitsError;
+use crate::gain::GainError;
+
+/// Why bytes are no gain table, or numbers no table to be written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum TableError {
+    /// The first four bytes are not [`super::MAGIC`].
+    Magic {
+        /// What they are.
+        found: [u8; 4],
+    },
+    /// Cut off, or with bytes behind the end.
+    Length {
+        /// Bytes found.
+        bytes: u32,
+        /// Bytes that the frame states, or that its kind has.
+        wanted: u32,
+    },
+    /// The bytes are not those that were written.
+    Checksum {
+        /// As it stands in the table.
+        stated: u32,
+        /// Of what is there.
+        found: u32,
+    },
+    /// Written by a later or an earlier format.
+    Version {
+        /// The version found.
+        found: u16,
+    },
+    /// A kind of table that this firmware does not fly.
+    Kind {
+        /// Its number.
+        found: u8,
+    },
+    /// The matrix has other dimensions than its kind.
+    Dimensions {
+        /// What the table is said to be.
+        kind: TableKind,
+        /// Rows found.
+        rows: u8,
+        /// Columns found.
+        columns: u8,
+    },
+    /// An entry is not finite, or an error goes unused.
+    Gain(GainError),
+    /// An entry is out of proportion: larger than [`super::ENTRY_MAX`], or not zero and below [`super::ENTRY_MIN`].
+    Entry {
+        /// Row, from 0.
+        row: u8,
+        /// Column, from 0.
+        column: u8,
+        /// What stands there.
+        value: f32,
+    },
+    /// The table's own name is none.
+    TableName(NameError),
+    /// The vehicle's name is none.
+    VehicleName(NameError),
+    /// No control rate.
+    Rate {
+        /// What stands there, Hz.
+        hz: u32,
+    },
+    /// The vehicle's limits are none.
+    Limits(LimitsError),
+    /// The limits are out of proportion: hover is not within, or beyond [`super::THRUST_MAX_M_S2`].
+    Thrust {
+        /// Least thrust, m/s^2.
+        min_m_s2: f32,
+        /// Most thrust, m/s^2.
+        max_m_s2: f32,
+    },
+    /// A body rate limit is beyond [`super::BODY_RATE_MAX_RAD_S`].
+    BodyRate {
+        /// The limit, rad/s.
+        max_rad_s: f32,
+    },
+    /// The design's hash is zero: nobody knows what the gains come from.
+    NoDesign,
+    /// The certificate's hash is zero.
+    NoCertificate,
+    /// The certificate leaves no room for any error, or a figure of it is no such figure.
+    Uncertified {
+        /// Which.
+        figure: Figure,
+        /// What stands there.
+        value: f32,
+    },
+}
+
+/// Why a sound table is not flown on this board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum AcceptError {
+    /// Designed for another vehicle, or for other parameters of it.
+    Vehicle {
+        /// The one that the table is for.
+        table: Vehicle,
+    },
+    /// Certified at another control rate.
+    Rate {
+        /// The table's, Hz.
+        table_hz: u32,
+        /// The loop's, Hz.
+        loop_hz: u32,
+    },
+}
+
+/// Why a blob does not become a table that is flown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum LoadError {
+    /// It is no table.
+    Table(TableError),
+    /// It is one, but not for this board.
+    Accept(AcceptError),
+}
+
+impl fmt::Display for TableError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("gain table: ")?;
+        match self {
+            Self::Magic { found } => {
+                write!(f, "starts with {found:02x?}, not {:02x?}; give a binary gain table", super::MAGIC)
+            }
+            Self::Length { bytes, wanted } => {
+                write!(f, "{bytes} bytes, not {wanted}; copy the whole file, nothing else")
+            }
+            Self::Checksum { stated, found } => {
+                write!(f, "checksum {found:08x}, stated {stated:08x}; damaged, send it again")
+            }
+            Self::Version { found } => {
+                let version = super::FORMAT_VERSION;
+                write!(f, "format version {found}, not {version}; generate the table and build the firmware together")
+            }
+            Self::Kind { found } => write!(f, "kind {found} is not flown by this firmware; update it"),
+            Self::Dimensions { kind, rows, columns } => {
+                let (m, n) = kind.dimensions();
+                write!(f, "{rows} by {columns}, but {kind} is {m} by {n}; generate it again")
+            }
+            Self::Gain(error) => write!(f, "{error}; design it again"),
+            Self::Entry { row, column, value } => write!(
+                f,
+                "entry ({row}, {column}) is {value:e}; must be 0 or of a size from {:e} to {:e}",
+                super::ENTRY_MIN,
+                super::ENTRY_MAX
+            ),
+            Self::TableName(error) => write!(f, "its own {error}"),
+            Self::VehicleName(error) => write!(f, "its vehicle's {error}"),
+            Self::Rate { hz } => write!(f, "control rate {hz} Hz; state the rate it was certified at"),
+            Self::Limits(error) => error.fmt(f),
+            Self::Thrust { min_m_s2, max_m_s2 } => write!(
+                f,
+                "thrust from {min_m_s2} to {max_m_s2} m/s^2; must hold hover and end at {} or below",
+                super::THRUST_MAX_M_S2
+            ),
+            Self::BodyRate { max_rad_s } => {
+                write!(f, "body rate {max_rad_s} rad/s; must be {} or below", super::BODY_RATE_MAX_RAD_S)
+            }
+            Self::NoDesign => f.write_str("no design hash; generate it from a design"),
+            Self::NoCertificate => f.write_str("no certificate; certify the design"),
+            Self::Uncertified { figure, value } => {
+                write!(f, "certified {figure} is {value}, which certifies nothing; change the design")
+            }
+        }
+    }
+}
+
+impl fmt::Display for AcceptError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Vehicle { table } => {
+                write!(f, "gain table: designed for {table}, which this board does not fly; design it for this one")
+            }
+            Self::Rate { table_hz, loop_hz } => write!(
+                f,
+                "gain table: certified at {table_hz} Hz, the loop runs at {loop_hz} Hz; certify it at the loop's rate"
+            ),
+        }
+    }
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Table(error) => error.fmt(f),
+            Self::Accept(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for TableError {}
+impl core::error::Error for AcceptError {}
+impl core::error::Error for LoadError {}
+
+impl From<TableError> for LoadError {
+    fn from(error: TableError) -> Self {
+        Self::Table(error)
+    }
+}
+
+impl From<AcceptError> for LoadError {
+    fn from(error: AcceptError) -> Self {
+        Self::Accept(error)
+    }
+}
+
+/// A number of bytes as errors state it.
+pub(super) fn count(bytes: usize) -> u32 {
+    u32::try_from(bytes).unwrap_or(u32::MAX)
+}

@@ -1,0 +1,73 @@
+//! Tables of the paper's gains, as files for a vehicle of the tests.
+
+use quatrack::gains::paper;
+use quatrack::gains::table::{
+    Certificate, GainTable, Hash, Margins, Name, Rows, TABLE_BYTES_MAX, TableHead, TableKind, Vehicle,
+};
+use quatrack::nalgebra::Vector3;
+use quatrack::{Limits, Rate};
+
+pub(crate) const VEHICLE: Vehicle = Vehicle { name: Name::literal("crazyflie-2.1"), id: 0x0102_0304 };
+
+pub(crate) fn rate() -> Rate {
+    Rate::from_hz(500).unwrap()
+}
+
+/// The figures only have to be possible ones: no test here is about what they claim.
+pub(crate) fn head(name: &str) -> TableHead {
+    TableHead {
+        name: Name::new(name).unwrap(),
+        vehicle: VEHICLE,
+        rate: rate(),
+        limits: Limits::new(1.75, 16.5, Vector3::new(20.0, 20.0, 5.0)).unwrap(),
+        design_hash: Hash([0xD5; 32]),
+        certificate: Certificate {
+            hash: Hash([0xCE; 32]),
+            one_channel: Margins { gain_factor: 3.0, phase_rad: 1.0 },
+            all_channels: Margins { gain_factor: 2.0, phase_rad: 0.75 },
+            delay_max_s: 0.0625,
+            motor_lag_max_s: 0.03125,
+            f32_distance: 2.5e-8,
+        },
+    }
+}
+
+/// The four tables of the paper, by name.
+pub(crate) fn paper_tables() -> [(&'static str, Rows); 4] {
+    [
+        ("lyap-e", Rows::Equilibrium(*paper::LYAP_E.gain().rows())),
+        ("lqr-e", Rows::Equilibrium(*paper::LQR_E.gain().rows())),
+        ("lyap-f", Rows::FlatOutput(*paper::LYAP_F.gain().rows())),
+        ("lqr-f", Rows::FlatOutput(*paper::LQR_F.gain().rows())),
+    ]
+}
+
+pub(crate) fn table(name: &str) -> GainTable {
+    let (_, rows) = paper_tables().into_iter().find(|(known, _)| *known == name).unwrap();
+    GainTable::new(head(name), &rows).unwrap()
+}
+
+pub(crate) fn bytes_of(table: &GainTable) -> Vec<u8> {
+    table.to_bytes(&mut [0; TABLE_BYTES_MAX]).unwrap().to_vec()
+}
+
+/// With the checksum that belongs to the bytes before it: damage that no checksum finds.
+pub(crate) fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    let end = bytes.len() - 4;
+    let checksum = quatrack::link::crc32c(&bytes[..end]);
+    bytes[end..].copy_from_slice(&checksum.to_le_bytes());
+    bytes
+}
+
+/// Entries of a table's gain, by rows.
+pub(crate) fn entries(rows: &Rows) -> Vec<f32> {
+    match rows {
+        Rows::Equilibrium(rows) => rows.as_flattened().to_vec(),
+        Rows::FlatOutput(rows) => rows.as_flattened().to_vec(),
+    }
+}
+
+pub(crate) fn dimensions(kind: TableKind) -> (usize, usize) {
+    let (rows, columns) = kind.dimensions();
+    (usize::from(rows), usize::from(columns))
+}

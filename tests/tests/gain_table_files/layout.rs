@@ -1,0 +1,57 @@
+//! The offsets that docs/gain-tables.md states, and that the same table has the same bytes.
+
+use quatrack::gains::table::{FORMAT_VERSION, GainTable, Name, TABLE_BYTES_MAX};
+use quatrack::link::crc32c;
+
+use super::fixture::{VEHICLE, bytes_of, entries, head, paper_tables, table};
+
+fn f32_at(bytes: &[u8], offset: usize) -> f32 {
+    f32::from_le_bytes(bytes[offset..offset + 4].try_into().unwrap())
+}
+
+#[test]
+fn every_field_stands_where_the_page_says() {
+    assert_eq!(FORMAT_VERSION, 1, "a new version has offsets of its own: write them down");
+    for (name, rows) in paper_tables() {
+        let table = table(name);
+        let bytes = bytes_of(&table);
+        let (kind, m, n, length) = if name.ends_with('e') { (1, 4, 9, 327) } else { (2, 7, 10, 463) };
+        assert_eq!(bytes.len(), length, "{name}");
+        assert_eq!(bytes[..8], [b'Q', b'T', b'G', b'T', 1, 0, (length - 12) as u8, ((length - 12) >> 8) as u8]);
+        assert_eq!(bytes[8..11], [kind, m, n]);
+        assert_eq!(bytes[11..35], Name::new(name).unwrap().padded());
+        assert_eq!(bytes[35..59], VEHICLE.name.padded());
+        assert_eq!(bytes[59..63], [4, 3, 2, 1], "vehicle's id");
+        assert_eq!(bytes[63..67], 500_u32.to_le_bytes());
+        assert_eq!([67, 71, 75, 79, 83].map(|at| f32_at(&bytes, at)), [1.75, 16.5, 20.0, 20.0, 5.0], "limits");
+        assert_eq!((&bytes[87..119], &bytes[119..151]), (&[0xD5; 32][..], &[0xCE; 32][..]), "hashes");
+        let figures = [151, 155, 159, 163, 167, 171, 175].map(|at| f32_at(&bytes, at));
+        assert_eq!(figures, [3.0, 1.0, 2.0, 0.75, 0.0625, 0.03125, 2.5e-8]);
+        let gains: Vec<f32> = (179..length - 4).step_by(4).map(|at| f32_at(&bytes, at)).collect();
+        assert_eq!(gains, entries(&rows));
+        assert_eq!(bytes[length - 4..], crc32c(&bytes[..length - 4]).to_le_bytes());
+    }
+}
+
+#[test]
+fn a_table_read_back_is_the_table_and_writes_the_same_bytes() {
+    for (name, rows) in paper_tables() {
+        let table = table(name);
+        let bytes = bytes_of(&table);
+        let read = GainTable::from_bytes(&bytes).unwrap();
+        assert_eq!((read, read.rows(), *read.head()), (table, rows, head(name)));
+        assert_eq!(bytes_of(&read), bytes);
+    }
+}
+
+#[test]
+fn a_buffer_that_is_too_short_gets_no_table() {
+    let table = table("lqr-f");
+    assert_eq!(bytes_of(&table).len(), TABLE_BYTES_MAX, "the flat output's is the longest");
+    for length in 0..TABLE_BYTES_MAX {
+        assert_eq!(table.to_bytes(&mut vec![0; length]), None, "{length} bytes");
+    }
+    let mut longer = [0xAA; TABLE_BYTES_MAX + 3];
+    assert_eq!(table.to_bytes(&mut longer).map(<[u8]>::len), Some(TABLE_BYTES_MAX));
+    assert_eq!(longer[TABLE_BYTES_MAX..], [0xAA; 3], "what is behind the table is not written");
+}

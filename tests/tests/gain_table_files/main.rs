@@ -1,0 +1,8 @@
+//! Gain tables as files: written, read back, refused, flown, uploaded, swapped.
+
+mod fixture;
+mod flight;
+mod layout;
+mod properties;
+mod refusals;
+mod store;

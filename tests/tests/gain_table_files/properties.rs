@@ -1,0 +1,69 @@
+//! Any bytes: the loader never panics, and what it takes is a table that writes the same bytes again.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use quatrack::gains::table::{ENTRY_MAX, GainTable, Hash};
+
+use super::fixture::{bytes_of, entries, paper_tables, sealed, table};
+
+/// What holds for every table that comes out of any bytes.
+fn holds_for_a_table(bytes: &[u8]) -> Result<bool, TestCaseError> {
+    let Ok(table) = GainTable::from_bytes(bytes) else { return Ok(false) };
+    prop_assert_eq!(&bytes_of(&table)[..], bytes, "one table has one encoding");
+    prop_assert!(entries(&table.rows()).iter().all(|entry| entry.is_finite() && entry.abs() <= ENTRY_MAX));
+    let (head, certificate) = (table.head(), &table.head().certificate);
+    prop_assert!(head.design_hash != Hash::NONE && certificate.hash != Hash::NONE);
+    prop_assert!(certificate.all_channels.gain_factor > 1.0 && certificate.delay_max_s > 0.0);
+    Ok(true)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn noise_is_refused(bytes in vec(any::<u8>(), 0..600)) {
+        prop_assert!(GainTable::from_bytes(&bytes).is_err());
+    }
+
+    #[test]
+    fn noise_in_a_sound_frame_is_refused(payload in vec(any::<u8>(), 0..600)) {
+        let mut bytes = b"QTGT\x01\x00".to_vec();
+        bytes.extend((payload.len() as u16).to_le_bytes());
+        bytes.extend(&payload);
+        bytes.extend([0; 4]);
+        prop_assert!(GainTable::from_bytes(&sealed(bytes)).is_err());
+    }
+
+    #[test]
+    fn damage_under_a_good_checksum_gives_a_sound_table_or_none(
+        which in 0..4_usize, changes in vec((any::<prop::sample::Index>(), any::<u8>()), 1..4)
+    ) {
+        let mut bytes = bytes_of(&table(paper_tables()[which].0));
+        for (at, byte) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        holds_for_a_table(&sealed(bytes.clone()))?;
+        holds_for_a_table(&bytes)?;
+    }
+
+    #[test]
+    fn any_entries_give_a_sound_table_or_none(patterns in vec(any::<u32>(), 36), small in vec(-50.0_f32..50.0, 36)) {
+        let mut bytes = bytes_of(&table("lqr-e"));
+        for (at, pattern) in (179..).step_by(4).zip(patterns) {
+            bytes[at..at + 4].copy_from_slice(&pattern.to_le_bytes());
+        }
+        holds_for_a_table(&sealed(bytes.clone()))?;
+        for (at, entry) in (179..).step_by(4).zip(small) {
+            bytes[at..at + 4].copy_from_slice(&entry.to_le_bytes());
+        }
+        prop_assert!(holds_for_a_table(&sealed(bytes))?, "gains of a usual size are a table");
+    }
+
+    #[test]
+    fn two_tables_after_each_other_are_not_one(first in 0..4_usize, second in 0..4_usize) {
+        let names = paper_tables().map(|(name, _)| name);
+        let both = [bytes_of(&table(names[first])), bytes_of(&table(names[second]))].concat();
+        prop_assert!(GainTable::from_bytes(&both).is_err());
+    }
+}
