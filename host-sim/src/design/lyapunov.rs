@@ -18,11 +18,10 @@ use num_complex::Complex64;
 
 use super::double_double::DoubleMatrix;
 use super::equation::Equation;
+use super::lyapunov_operator::LyapunovOperator;
 use super::newton::refine;
 use super::{DesignError, require_symmetric};
-use crate::analysis::{
-    ComplexSchur, MatrixError, balance, complex_schur, eigenvalues, require_finite, require_square, staircase,
-};
+use crate::analysis::{balance, eigenvalues, require_square, staircase};
 
 /// Solution of `A' X + X A + Q = 0`.
 #[derive(Debug, Clone)]
@@ -113,56 +112,4 @@ pub fn decay_rate_design(a: &DMatrix<f64>, b: &DMatrix<f64>, mu: f64) -> Result<
     // A - B K is (A + mu I - B B' P + A - mu I) / 2, but forming it from K keeps what is reported what is flown.
     let poles = eigenvalues(&(a - b * &gain))?;
     Ok(DecayRateDesign { p: p.hi, gain, poles, relative_residual })
-}
-
-/// The map `X -> A' X + X A`, ready to be inverted.
-pub(super) struct LyapunovOperator {
-    schur: ComplexSchur,
-}
-
-impl LyapunovOperator {
-    pub(super) fn new(a: &DMatrix<f64>) -> Result<Self, MatrixError> {
-        require_finite("A", a)?;
-        Ok(Self { schur: complex_schur(a)? })
-    }
-
-    /// X with `A' X + X A + C = 0` for a symmetric C; not finite if two eigenvalues of A add up to exactly zero.
-    pub(super) fn solve(&self, c: &DMatrix<f64>) -> DMatrix<f64> {
-        let (u, t) = (&self.schur.unitary, &self.schur.triangular);
-        let n = t.nrows();
-        let mut y = -(u.adjoint() * c.map(|value| Complex64::new(value, 0.0)) * u);
-        // Column j of T* Y + Y T = -U* C U, with the columns before it known.
-        for j in 0..n {
-            let (known, mut open) = y.columns_range_pair_mut(0..j, j..n);
-            let mut column = open.column_mut(0);
-            for (k, solved) in known.column_iter().enumerate() {
-                let factor = t[(k, j)];
-                if factor != Complex64::ZERO {
-                    column.axpy(-factor, &solved, Complex64::ONE);
-                }
-            }
-            let shift = t[(j, j)];
-            for i in 0..n {
-                let sum: Complex64 = (0..i).map(|k| t[(k, i)].conj() * column[k]).sum();
-                column[i] = (column[i] - sum) / (t[(i, i)].conj() + shift);
-            }
-        }
-        let x = (u * y * u.adjoint()).map(|value| value.re);
-        (&x + x.transpose()) * 0.5
-    }
-
-    /// Refuses A if two of its eigenvalues add up to zero within the rounding of A.
-    fn require_regular(&self, norm: f64) -> Result<(), DesignError> {
-        let values = self.schur.eigenvalues();
-        let tolerance = values.len() as f64 * f64::EPSILON * norm;
-        for (i, first) in values.iter().enumerate() {
-            for second in &values[i..] {
-                // Eigenvalues of a real matrix come in conjugate pairs: conj(first) is one of them.
-                if (first.conj() + second).norm() <= tolerance {
-                    return Err(DesignError::OppositeEigenvalues { first: first.conj(), second: *second });
-                }
-            }
-        }
-        Ok(())
-    }
 }

@@ -22,6 +22,7 @@ mod existence;
 mod hamiltonian;
 pub mod integral;
 mod lyapunov;
+mod lyapunov_operator;
 mod newton;
 mod riccati;
 pub mod sampled;

@@ -9,7 +9,7 @@ use nalgebra::DMatrix;
 
 use super::double_double::DoubleMatrix;
 use super::equation::Equation;
-use super::lyapunov::LyapunovOperator;
+use super::lyapunov_operator::LyapunovOperator;
 
 /// Newton steps at most: 3 or 4 from a good start, some 50 halvings where the closed loop ends on the imaginary axis.
 const MAX_STEPS: usize = 70;

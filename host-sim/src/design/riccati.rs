@@ -31,7 +31,7 @@ use super::existence::{
     marginal_pole, no_solution, require_detectable, require_positive_semidefinite, require_stabilisable,
 };
 use super::hamiltonian::{by_precise_sign_function, by_schur_vectors, by_sign_function};
-use super::lyapunov::LyapunovOperator;
+use super::lyapunov_operator::LyapunovOperator;
 use super::newton::{Refined, refine};
 use super::{DesignError, require_symmetric};
 use crate::analysis::{MatrixError, eigenvalues, require_finite, require_square, spectral_abscissa};

@@ -1,0 +1,60 @@
+//! The map `X -> A' X + X A` of a Lyapunov equation and of each Newton step on a Riccati equation: A in, its inverse map
+//! out.
+
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+
+use super::DesignError;
+use crate::analysis::{ComplexSchur, MatrixError, complex_schur, require_finite};
+
+/// The map `X -> A' X + X A`, ready to be inverted.
+pub(super) struct LyapunovOperator {
+    schur: ComplexSchur,
+}
+
+impl LyapunovOperator {
+    pub(super) fn new(a: &DMatrix<f64>) -> Result<Self, MatrixError> {
+        require_finite("A", a)?;
+        Ok(Self { schur: complex_schur(a)? })
+    }
+
+    /// X with `A' X + X A + C = 0` for a symmetric C; not finite if two eigenvalues of A add up to exactly zero.
+    pub(super) fn solve(&self, c: &DMatrix<f64>) -> DMatrix<f64> {
+        let (u, t) = (&self.schur.unitary, &self.schur.triangular);
+        let n = t.nrows();
+        let mut y = -(u.adjoint() * c.map(|value| Complex64::new(value, 0.0)) * u);
+        // Column j of T* Y + Y T = -U* C U, with the columns before it known.
+        for j in 0..n {
+            let (known, mut open) = y.columns_range_pair_mut(0..j, j..n);
+            let mut column = open.column_mut(0);
+            for (k, solved) in known.column_iter().enumerate() {
+                let factor = t[(k, j)];
+                if factor != Complex64::ZERO {
+                    column.axpy(-factor, &solved, Complex64::ONE);
+                }
+            }
+            let shift = t[(j, j)];
+            for i in 0..n {
+                let sum: Complex64 = (0..i).map(|k| t[(k, i)].conj() * column[k]).sum();
+                column[i] = (column[i] - sum) / (t[(i, i)].conj() + shift);
+            }
+        }
+        let x = (u * y * u.adjoint()).map(|value| value.re);
+        (&x + x.transpose()) * 0.5
+    }
+
+    /// Refuses A if two of its eigenvalues add up to zero within the rounding of A.
+    pub(super) fn require_regular(&self, norm: f64) -> Result<(), DesignError> {
+        let values = self.schur.eigenvalues();
+        let tolerance = values.len() as f64 * f64::EPSILON * norm;
+        for (i, first) in values.iter().enumerate() {
+            for second in &values[i..] {
+                // Eigenvalues of a real matrix come in conjugate pairs: conj(first) is one of them.
+                if (first.conj() + second).norm() <= tolerance {
+                    return Err(DesignError::OppositeEigenvalues { first: first.conj(), second: *second });
+                }
+            }
+        }
+        Ok(())
+    }
+}
