@@ -25,7 +25,7 @@ pub(crate) fn pipes_image() -> PathBuf {
     IMAGE.get_or_init(|| image::build(&image::checkout().unwrap(), Image::Pipes).unwrap()).clone()
 }
 
-fn connected() -> Client {
+pub(crate) fn connected() -> Client {
     emulated::connect(&pipes_image(), Transport::Pipes, None, Interrupt::default()).unwrap()
 }
 

@@ -4,3 +4,4 @@ mod emulated;
 mod failures;
 mod hard_fault;
 mod support;
+mod two_ways;
