@@ -170,8 +170,7 @@ impl Tilt {
         self.mapped(attitude, Vector3::new(p, q, r))
     }
 
-    /// Out of line: most flights do not turn, and go [`Self::straight`].
-    #[inline(never)]
+    #[inline]
     pub(crate) fn with_heading(&self, heading: Heading, heading_rate_rad_s: f32) -> AttitudeAndInput {
         let root = sqrt(self.cos_half_tilt_squared());
         let attitude = self.attitude(root * heading.cos_half(), root * heading.sin_half());
