@@ -4,21 +4,24 @@
 //! for a reference that is not on that trajectory, the last knot's gain is flown: the trajectory ends at rest, and there
 //! the gain is that of a hover. Errors are those of [`super::ErrorForm::HeadingFrame`].
 
+use core::fmt;
+
 use nalgebra::Vector3;
 
 use super::{FeedForward, difference};
 use crate::clock::Rate;
 use crate::command::Command;
 use crate::flatness::GRAVITY_M_S2;
+use crate::gain::{Gain, GainError};
 use crate::reference::Reference;
 use crate::state::Measured;
 use crate::trajectory::Progress;
 
-/// A gain by rows as it stands in a table, each entry an `f32` lowest byte first: outputs `[T p q r]` from errors
-/// `[x y z q1 q2 q3 vx vy vz]`.
-pub(crate) type Knot = [[[u8; 4]; 9]; 4];
+/// A gain at a knot by rows as it stands in a table, each entry an `f32` lowest byte first: outputs `[T p q r]` from
+/// errors `[x y z q1 q2 q3 vx vy vz]`. Made by [`GainSchedule::knot`].
+pub type Knot = [[[u8; 4]; 9]; 4];
 
-/// Gains over time that have been checked; borrowed from the bytes of the table, which are too many to copy.
+/// Gains over time; borrowed from where they stand, for they are too many to copy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainSchedule<'a> {
     knots: &'a [Knot],
@@ -27,13 +30,54 @@ pub struct GainSchedule<'a> {
     trajectory: u32,
 }
 
-impl<'a> GainSchedule<'a> {
-    /// Of entries that have been checked; nothing without a knot.
-    pub(crate) const fn of_checked(knots: &'a [Knot], steps_per_knot: u16, trajectory: u32) -> Option<Self> {
-        match knots.last() {
-            Some(last) => Some(Self { knots, last, steps_per_knot, trajectory }),
-            None => None,
+/// Why knots are no gains over time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ScheduleError {
+    /// There are none.
+    Empty,
+    /// They are no control step apart.
+    NoSpacing,
+    /// The gain at one of them is none.
+    Knot {
+        /// Which, from 0.
+        knot: usize,
+        /// Why.
+        error: GainError,
+    },
+}
+
+impl fmt::Display for ScheduleError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Empty => f.write_str("gains over time: no knots"),
+            Self::NoSpacing => f.write_str("gains over time: knots 0 control steps apart; must be at least 1"),
+            Self::Knot { knot, error } => write!(f, "gains over time: knot {knot}: {error}"),
         }
+    }
+}
+
+impl core::error::Error for ScheduleError {}
+
+impl<'a> GainSchedule<'a> {
+    /// Checks gains for the trajectory of a checksum ([`crate::Trajectory::checksum`]), the first at its start, the others
+    /// so many control steps after each other.
+    ///
+    /// # Errors
+    /// [`ScheduleError`].
+    pub fn new(knots: &'a [Knot], steps_per_knot: u16, trajectory: u32) -> Result<Self, ScheduleError> {
+        let last = knots.last().ok_or(ScheduleError::Empty)?;
+        if steps_per_knot == 0 {
+            return Err(ScheduleError::NoSpacing);
+        }
+        for (knot, gain) in knots.iter().enumerate() {
+            Gain::new(rows(gain)).map_err(|error| ScheduleError::Knot { knot, error })?;
+        }
+        Ok(Self { knots, last, steps_per_knot, trajectory })
+    }
+
+    /// A gain by rows as a knot.
+    pub fn knot(rows: &[[f32; 9]; 4]) -> Knot {
+        rows.map(|row| row.map(f32::to_le_bytes))
     }
 
     /// Knots; the first one is at the trajectory's start.
@@ -53,7 +97,7 @@ impl<'a> GainSchedule<'a> {
 
     /// The gain at a knot, counted from 0.
     pub fn gain(&self, knot: usize) -> Option<[[f32; 9]; 4]> {
-        self.knots.get(knot).map(|rows| rows.map(|row| row.map(f32::from_le_bytes)))
+        self.knots.get(knot).map(rows)
     }
 
     /// `K e`, `position` knots behind the first one.
@@ -70,6 +114,10 @@ impl<'a> GainSchedule<'a> {
         let between = |from: f32, to: f32| from + (to - from) * share;
         [between(t0, t1), between(p0, p1), between(q0, q1), between(r0, r1)]
     }
+}
+
+fn rows(knot: &Knot) -> [[f32; 9]; 4] {
+    knot.map(|row| row.map(f32::from_le_bytes))
 }
 
 /// `K e` of one knot, each sum in the order of the columns.

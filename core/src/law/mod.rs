@@ -8,8 +8,7 @@ mod equilibrium;
 mod flat_output;
 mod integral_action;
 
-pub(crate) use along_trajectory::Knot;
-pub use along_trajectory::{AlongTrajectory, GainSchedule};
+pub use along_trajectory::{AlongTrajectory, GainSchedule, Knot, ScheduleError};
 pub use equilibrium::{Equilibrium, EquilibriumGain, ErrorForm};
 pub use flat_output::{FlatOutput, FlatOutputGain};
 pub use integral_action::{IntegralAction, IntegralGain};

@@ -4,8 +4,7 @@ use super::error::{KnotFault, TableError};
 use super::{AcceptError, LoadError, TableHead, TableKind, Vehicle, out_of_proportion, wire};
 use crate::clock::Rate;
 use crate::command::Limits;
-use crate::gain::Gain;
-use crate::law::{AlongTrajectory, FeedForward, GainSchedule, Knot};
+use crate::law::{AlongTrajectory, FeedForward, GainSchedule, Knot, ScheduleError};
 use crate::trajectory::Trajectory;
 
 /// Most knots: with as many, a table goes where an uploaded trajectory goes.
@@ -84,15 +83,14 @@ impl<'a> ScheduleTable<'a> {
         if payload.len() != payload_bytes(knots) {
             return Err(wire::wrong_length(bytes, payload_bytes(knots)));
         }
-        if steps_per_knot == 0 {
-            return Err(TableError::KnotSpacing);
-        }
         let gains = as_knots(entries);
+        let schedule = GainSchedule::new(gains, steps_per_knot, trajectory)?;
         for (knot, gain) in (0..).zip(gains) {
-            check_knot(gain).map_err(|fault| TableError::Knot { knot, fault })?;
+            let gain = gain.map(|row| row.map(f32::from_le_bytes));
+            if let Some((row, column, value)) = out_of_proportion(gain.as_flattened(), 9) {
+                return Err(TableError::Knot { knot, fault: KnotFault::Entry { row, column, value } });
+            }
         }
-        let schedule =
-            GainSchedule::of_checked(gains, steps_per_knot, trajectory).ok_or(TableError::Knots { found: 0 })?;
         Ok(Self { bytes, head: TableHead::read(head)?, schedule })
     }
 
@@ -168,11 +166,14 @@ fn as_knots(entries: &[u8]) -> &[Knot] {
     knots
 }
 
-fn check_knot(knot: &Knot) -> Result<(), KnotFault> {
-    let gain = knot.map(|row| row.map(f32::from_le_bytes));
-    let gain = Gain::new(gain).map_err(KnotFault::Gain)?;
-    match out_of_proportion(gain.rows().as_flattened(), 9) {
-        None => Ok(()),
-        Some((row, column, value)) => Err(KnotFault::Entry { row, column, value }),
+impl From<ScheduleError> for TableError {
+    fn from(error: ScheduleError) -> Self {
+        match error {
+            ScheduleError::Empty => Self::Knots { found: 0 },
+            ScheduleError::NoSpacing => Self::KnotSpacing,
+            ScheduleError::Knot { knot, error } => {
+                Self::Knot { knot: u16::try_from(knot).unwrap_or(u16::MAX), fault: KnotFault::Gain(error) }
+            }
+        }
     }
 }
