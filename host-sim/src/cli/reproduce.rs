@@ -31,8 +31,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
     /// Go past the paper as well: sampled LQR, LQI and time-varying LQR beside the paper's designs, flown by the f32 core at
-    /// 100 and 500 Hz with feedback alone ("100 Hz"), with the reference's input fed forward ("with input"), and with the
-    /// input of half a period later ("half ahead"), which is that of the middle of the time a command is held.
+    /// 25, 100 and 500 Hz with feedback alone ("feedback"), with the reference's input fed forward ("+ input"), and with the
+    /// input of half a period later ("+ ahead"), which is that of the middle of the time a command is held.
     #[arg(long)]
     beyond: bool,
 }

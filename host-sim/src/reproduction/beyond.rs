@@ -25,8 +25,9 @@ use crate::flight::reference::{Exact, Reference as _};
 use crate::trajectory::Trajectory as _;
 use crate::trajectory::polynomial::PiecewisePolynomial;
 
-/// Rates at which the core is flown, and for which the sampled designs are made, Hz.
-pub const RATES_HZ: [u32; 2] = [100, 500];
+/// Rates at which the core is flown, and for which the sampled designs are made, Hz. At the slowest one a hold is longer than
+/// the paper's LQR-E bears.
+pub const RATES_HZ: [u32; 3] = [25, 100, 500];
 
 /// Weight of each integral in LQI-E, beside the paper's weights of the errors: half of what the position has.
 const INTEGRAL_WEIGHT: f64 = 50.0;
@@ -74,7 +75,7 @@ impl Method {
     ];
 
     /// Whether the law takes the reference's input as one, and it can therefore be that of another time.
-    fn takes_input(self) -> bool {
+    pub(super) fn takes_input(self) -> bool {
         !matches!(self, Self::LyapF | Self::LqrF | Self::SampledLqrF)
     }
 }

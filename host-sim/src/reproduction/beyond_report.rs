@@ -11,14 +11,18 @@ impl fmt::Display for Beyond {
         for (course, methods) in self.courses() {
             write!(f, "\n{:<16}", format!("{course:?}"))?;
             for rate_hz in RATES_HZ {
-                write!(f, "{:>11}{:>12}{:>12}", format!("{rate_hz} Hz"), "with input", "half ahead")?;
+                write!(f, "{:>20}{:10}", format!("{rate_hz} Hz"), "")?;
+            }
+            write!(f, "\n{:16}", "")?;
+            for _ in RATES_HZ {
+                write!(f, "{:>10}{:>10}{:>10}", "feedback", "+ input", "+ ahead")?;
             }
             writeln!(f)?;
             for (method, rates) in methods {
                 write!(f, "  {method:<14}")?;
                 for Figures { feedback, feed_forward, half_period_ahead } in rates.values() {
-                    let ahead = half_period_ahead.map_or_else(|| "-".to_owned(), |iae| digits(Some(iae)));
-                    write!(f, "{:>11}{:>12}{ahead:>12}", digits(*feedback), digits(*feed_forward))?;
+                    let ahead = if method.takes_input() { digits(*half_period_ahead) } else { "-".to_owned() };
+                    write!(f, "{:>10}{:>10}{ahead:>10}", digits(*feedback), digits(*feed_forward))?;
                 }
                 writeln!(f)?;
             }
