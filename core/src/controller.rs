@@ -12,7 +12,7 @@ use crate::error::StepError;
 use crate::law::{AlongTrajectory, FlightLaw, IntegralAction};
 use crate::reference::Reference;
 use crate::state::State;
-use crate::tracker::{Step, Tracker};
+use crate::tracker::{Step, Tracker, refuse};
 use crate::trajectory::Progress;
 
 /// What a law remembers from one step to the next. A flight begins with a new one.
@@ -111,11 +111,4 @@ fn along(
         Some((command, limited)) => Ok(Step { command, limited }),
         None => refuse(state),
     }
-}
-
-/// Why there is no command. The reference has been checked when it was made.
-#[cold]
-#[inline(never)]
-fn refuse(state: &State) -> Result<Step, StepError> {
-    Err(state.fault().map_or(StepError::Singular, StepError::State))
 }

@@ -8,7 +8,8 @@ use core::fmt;
 
 use nalgebra::Vector3;
 
-use super::{FeedForward, difference};
+use super::FeedForward;
+use super::equilibrium::heading_frame_error;
 use crate::clock::Rate;
 use crate::command::Command;
 use crate::flatness::GRAVITY_M_S2;
@@ -145,14 +146,10 @@ impl<'a> AlongTrajectory<'a> {
     /// The command before saturation.
     #[inline]
     pub fn command(&self, progress: Option<Progress>, state: &Measured<'_>, reference: &Reference) -> Command {
-        let target = &reference.state;
-        let r = reference.heading.to_heading_frame(difference(state.position_m(), &target.position_m));
-        let v = reference.heading.to_heading_frame(difference(state.velocity_m_s(), &target.velocity_m_s));
-        let a = state.attitude_from(target.attitude);
         let position = progress
             .filter(|progress| progress.trajectory == self.schedule.trajectory)
             .map(|progress| progress.tick as f32 * self.knots_per_tick);
-        let [t, p, q, r] = self.schedule.times(position, &[r.x, r.y, r.z, a.x, a.y, a.z, v.x, v.y, v.z]);
+        let [t, p, q, r] = self.schedule.times(position, &heading_frame_error(state, reference));
         match self.feed_forward {
             FeedForward::Without => {
                 Command { thrust_m_s2: GRAVITY_M_S2 - t, body_rates_rad_s: Vector3::new(-p, -q, -r) }
