@@ -9,15 +9,10 @@ impl fmt::Display for Beyond {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "Past the paper: IAE (23) of the position with the f32 core under a hold, m s")?;
         for (course, methods) in self.courses() {
-            write!(f, "\n{:<16}", format!("{course:?}"))?;
-            for rate_hz in RATES_HZ {
-                write!(f, "{:>20}{:10}", format!("{rate_hz} Hz"), "")?;
-            }
-            write!(f, "\n{:16}", "")?;
-            for _ in RATES_HZ {
-                write!(f, "{:>10}{:>10}{:>10}", "feedback", "+ input", "+ ahead")?;
-            }
-            writeln!(f)?;
+            let rates: String = RATES_HZ.map(|rate_hz| format!("{:>20}{:10}", format!("{rate_hz} Hz"), "")).concat();
+            writeln!(f, "\n{}", format!("{:<16}{rates}", format!("{course:?}")).trim_end())?;
+            let columns = format!("{:>10}{:>10}{:>10}", "feedback", "+ input", "+ ahead");
+            writeln!(f, "{:16}{}", "", columns.repeat(RATES_HZ.len()))?;
             for (method, rates) in methods {
                 write!(f, "  {method:<14}")?;
                 for Figures { feedback, feed_forward, half_period_ahead } in rates.values() {
