@@ -53,6 +53,7 @@ impl<'a> Tracker<'a> {
     /// # Errors
     /// [`StepError`] where the state is no state or the law has no answer. There is then no command: the caller stops
     /// or levels, and never holds the last one.
+    #[inline(never)]
     pub fn step(&self, state: &State, reference: &Reference) -> Result<Step, StepError> {
         match &self.flown {
             Flown::Equilibrium(limiting) => limiting.step(state, reference),

@@ -26,7 +26,7 @@ mod image {
     use quatrack::nalgebra::Vector3;
     use quatrack::{
         Command, Equilibrium, ErrorForm, FeedForward, Piece, Player, Quaternion, Reference, ReferenceError, State,
-        Step, StepError, Tick, Tracker, Trajectory,
+        Step, Tick, Tracker, Trajectory,
     };
     use quatrack_firmware::counter::Counter;
     use quatrack_firmware::flight::{DECIMATION as TICKS_PER_STEP, Flight, TICK_RATE};
@@ -63,7 +63,7 @@ mod image {
             counter.now().wrapping_sub(start).wrapping_sub(overhead)
         });
         write_words(&mut counts, [overhead, loops[0], loops[1]])?;
-        let turning = turning.map(|pieces| turn(pieces));
+        let turning = turning.map(turn);
         let mut rows = [[0.0; 9]; 4];
         for row in &mut rows {
             *row = read_words(&mut states)?.map(f32::from_bits);
@@ -224,9 +224,10 @@ mod image {
             Some((count, black_box(reference.ok()?)))
         }
 
+        /// One step of the law with validation, sign handling and saturation: a call of the core's own function.
         fn law(&self, calls: &mut Calls, tracker: &Tracker<'_>, state: &State, reference: &Reference) -> Option<Step> {
             let start = self.counter.now();
-            let step = law_step(tracker, state, reference);
+            let step = tracker.step(state, reference);
             let count = self.since(start);
             let step = black_box(step.ok()?);
             calls.add(count, &step);
@@ -288,12 +289,6 @@ mod image {
     #[inline(never)]
     fn reference(player: &mut Player<'_>, tick: Tick) -> Result<Reference, ReferenceError> {
         player.reference(tick)
-    }
-
-    /// One step of the law with validation, sign handling and saturation.
-    #[inline(never)]
-    fn law_step(tracker: &Tracker<'_>, state: &State, reference: &Reference) -> Result<Step, StepError> {
-        tracker.step(state, reference)
     }
 
     fn words(command: &Command) -> [u32; 4] {

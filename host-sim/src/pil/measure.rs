@@ -104,7 +104,8 @@ struct Recorded {
     steps: Vec<(State, Command)>,
 }
 
-fn record() -> Result<Vec<Recorded>, PilError> {
+/// All flights, or the first `limit` steps of each.
+fn record(limit: Option<usize>) -> Result<Vec<Recorded>, PilError> {
     let plans = Plans::solve()?;
     let mut flights = Vec::new();
     for course in COURSES {
@@ -112,6 +113,9 @@ fn record() -> Result<Vec<Recorded>, PilError> {
             let mut core = HostCore::new(course, controller)?;
             let mut steps = Vec::new();
             fly(plans.of(course), |tick, state| {
+                if limit.is_some_and(|limit| steps.len() >= limit) {
+                    return Err("as far as was asked for".to_owned());
+                }
                 let command = core.step(tick, state)?;
                 steps.push((*state, command));
                 Ok(command)
@@ -154,15 +158,16 @@ fn runs(flights: &[Recorded]) -> impl Iterator<Item = (&Recorded, Option<Control
 /// Steps that are flown on the target for its stack.
 const STACK_STEPS: u32 = 500;
 
-/// Flies the paper's flights on the host and counts every step of them on the emulated target.
+/// Flies the paper's flights on the host and counts every step of them on the emulated target; the first `limit` steps of
+/// each flight where one is given.
 ///
 /// # Errors
 /// [`PilError`].
-pub fn count(images: &Images) -> Result<Report, PilError> {
+pub fn count(images: &Images, limit: Option<usize>) -> Result<Report, PilError> {
     let (control_path, flying) = (image::size(&images.control_path)?, image::size(&images.flying)?);
     image::size(&images.counting)?;
     let interrupt = Interrupt::listen()?;
-    let flights = record()?;
+    let flights = record(limit)?;
     let folder = Folder::create()?;
     let states = folder.path().join("states.bin");
     fs::write(&states, states_file(&flights)).map_err(PilError::io("writing the recorded states"))?;
