@@ -196,7 +196,8 @@ impl Limits {
         let p = within_size(rates.x, max.x, 2, &mut limited);
         let q = within_size(rates.y, max.y, 4, &mut limited);
         let r = within_size(rates.z, max.z, 8, &mut limited);
-        Some((Command { thrust_m_s2: thrust, body_rates_rad_s: Vector3::new(p, q, r) }, limited))
+        let rates = Vector3::new(f32::from_bits(p), f32::from_bits(q), f32::from_bits(r));
+        Some((Command { thrust_m_s2: thrust, body_rates_rad_s: rates }, limited))
     }
 }
 
@@ -217,16 +218,17 @@ fn within(value: f32, min: f32, max: f32, bit: u8, limited: &mut Limited) -> f32
     bound
 }
 
-/// A finite value cut to `[-max, max]`, likewise; on the bits, in the integer unit, where it takes fewer instructions.
+/// The bits of a finite value cut to `[-max, max]`, likewise. All of it is done in the integer unit, where it takes fewer
+/// instructions.
 #[inline(always)]
-fn within_size(value: f32, max: f32, bit: u8, limited: &mut Limited) -> f32 {
+fn within_size(value: f32, max: f32, bit: u8, limited: &mut Limited) -> u32 {
     let (bits, max) = (value.to_bits(), max.to_bits());
     if bits << 1 <= max << 1 {
-        return value;
+        return bits;
     }
     cold_path();
     limited.note(bit);
-    f32::from_bits(bits & SIGN | max & !SIGN)
+    bits & SIGN | max & !SIGN
 }
 
 /// The sign bit.
