@@ -163,7 +163,7 @@ fn a_planned_file_flies_like_its_plan() {
 fn reproduce_writes_the_table_and_the_figures() {
     let dir = folder("reproduce");
     let json = dir.join("table.json");
-    let output = quatrack(&["reproduce", "--out", dir.to_str().unwrap(), "--json", json.to_str().unwrap()]);
+    let output = quatrack(&["reproduce", "--beyond", "--out", dir.to_str().unwrap(), "--json", json.to_str().unwrap()]);
     assert!(output.status.success());
     let text = String::from_utf8(output.stdout).unwrap();
     assert!(text.contains("8 of 8 cells round to the printed digits") && text.contains("saturated steps: 0"));
@@ -174,6 +174,8 @@ fn reproduce_writes_the_table_and_the_figures() {
     let table: serde_json::Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
     assert_eq!(table["iae"]["mild"]["LQR-E"]["paper"], 0.018);
     assert!(table["iae"]["aggressive"]["LYAP-F"]["core_f32"]["1000"].is_f64());
+    assert!(text.contains("Past the paper"));
+    assert!(table["beyond"]["aggressive"]["LQR-E"]["100"]["feed_forward"].is_f64());
 }
 
 #[test]

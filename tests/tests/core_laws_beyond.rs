@@ -395,3 +395,14 @@ fn a_crossfade_of_controllers_ends_at_the_new_one_and_counts_each_step_once() {
         assert!(fade.is_over());
     }
 }
+
+#[test]
+fn a_reference_with_the_input_of_one_ahead_is_otherwise_the_same() {
+    for index in 0..100 {
+        let ((present, _), (ahead, _)) = (case(index), case(index + 1));
+        let mixed = present.with_input_of(&ahead);
+        assert_eq!((mixed.state(), mixed.heading()), (present.state(), present.heading()));
+        assert_eq!(mixed.input(), ahead.input());
+        assert_eq!(mixed.with_input_of(&present), present);
+    }
+}

@@ -107,3 +107,26 @@ fn what_cannot_be_flown_is_refused_by_piece() {
     assert_eq!(long, TrajectoryError::TooLong { piece: 1 });
     assert_eq!(refused(&[constant(u64::MAX, 0.0)]), TrajectoryError::TooLong { piece: 0 });
 }
+
+#[test]
+fn a_checksum_tells_trajectories_apart() {
+    let [mild, aggressive] = paper_trajectories().map(|trajectory| core_loop::pieces(&trajectory));
+    let checksum = |pieces: &[Piece]| Trajectory::new(pieces).unwrap().checksum();
+    // Byte by byte as documented, with the checksum of the frames of the link.
+    let bytes: Vec<u8> = mild
+        .iter()
+        .flat_map(|piece| {
+            let coefficients = [piece.x, piece.y, piece.z, piece.heading].concat();
+            let coefficients = coefficients.into_iter().flat_map(f32::to_le_bytes);
+            piece.duration_ns.to_le_bytes().into_iter().chain(coefficients).collect::<Vec<u8>>()
+        })
+        .collect();
+    assert_eq!(checksum(&mild), quatrack::checksum::crc32c(&bytes));
+    assert_ne!(checksum(&mild), checksum(&aggressive));
+    let mut later = mild.clone();
+    later[3].duration_ns += 1;
+    assert_ne!(checksum(&mild), checksum(&later));
+    let mut moved = mild.clone();
+    moved[7].y[0] = moved[7].y[0].next_up();
+    assert_ne!(checksum(&mild), checksum(&moved));
+}

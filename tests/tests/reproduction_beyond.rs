@@ -4,14 +4,19 @@ use std::sync::LazyLock;
 
 use quatrack_sim::plan;
 use quatrack_sim::reproduction::beyond::{Beyond, Figures, Method, RATES_HZ};
+use quatrack_sim::reproduction::report::Reproduction;
 use quatrack_sim::reproduction::table::Course;
 use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
 
 const COURSES: [Course; 2] = [Course::Mild, Course::Aggressive];
 
+fn paper_trajectories() -> [PiecewisePolynomial; 2] {
+    [plan::paper::mild(), plan::paper::aggressive()]
+        .map(|plan| PiecewisePolynomial::from_bspline(&plan.unwrap().solve().unwrap()).unwrap())
+}
+
 static BEYOND: LazyLock<Beyond> = LazyLock::new(|| {
-    let [mild, aggressive] = [plan::paper::mild(), plan::paper::aggressive()]
-        .map(|plan| PiecewisePolynomial::from_bspline(&plan.unwrap().solve().unwrap()).unwrap());
+    let [mild, aggressive] = paper_trajectories();
     Beyond::fly(&mild, &aggressive).unwrap()
 });
 
@@ -91,7 +96,13 @@ fn the_integral_leaves_less_error_than_the_same_design_without_it() {
 
 #[test]
 fn the_report_holds_the_same_figures() {
-    let report = serde_json::to_value(&*BEYOND).unwrap();
+    let [mild, aggressive] = paper_trajectories();
+    let reproduction = Reproduction::fly(&mild, &aggressive).unwrap();
+    let without = serde_json::to_value(reproduction.report()).unwrap();
+    assert!(without.get("beyond").is_none(), "only where it was asked for");
+    let report = serde_json::to_value(reproduction.report().with(Some(&BEYOND))).unwrap();
+    assert_eq!(report["iae"], without["iae"], "beside the paper's table");
+    let report = &report["beyond"];
     for (course, name) in [(Course::Mild, "mild"), (Course::Aggressive, "aggressive")] {
         for (method, rate_hz) in Method::ALL.into_iter().flat_map(|method| RATES_HZ.map(|rate_hz| (method, rate_hz))) {
             let row = &report[name][method.to_string()][rate_hz.to_string()];

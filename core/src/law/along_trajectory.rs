@@ -76,6 +76,12 @@ impl<'a> GainSchedule<'a> {
         Ok(Self { knots, last, steps_per_knot, trajectory })
     }
 
+    /// Of knots and a spacing that have been checked before; nothing without a knot.
+    #[cfg(feature = "link")]
+    pub(crate) fn of_checked(knots: &'a [Knot], steps_per_knot: u16, trajectory: u32) -> Option<Self> {
+        Some(Self { knots, last: knots.last()?, steps_per_knot, trajectory })
+    }
+
     /// A gain by rows as a knot.
     pub fn knot(rows: &[[f32; 9]; 4]) -> Knot {
         rows.map(|row| row.map(f32::to_le_bytes))

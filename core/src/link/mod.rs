@@ -31,6 +31,7 @@ mod encoder;
 mod from_board;
 mod gain_store;
 mod law_choice;
+mod schedule_store;
 mod size;
 mod to_board;
 mod trajectory_store;
@@ -47,6 +48,7 @@ pub use from_board::{
 };
 pub use gain_store::GainStore;
 pub use law_choice::{LawChoice, Table};
+pub use schedule_store::{ScheduleSlot, ScheduleStore};
 pub use size::{CHUNK_BYTES, FRAME_BYTES, MESSAGE_BYTES};
 pub use to_board::{LimitsSetting, Parameter, ParameterId, StateIn, ToBoard, TrajectoryCommand, TrajectoryId};
 pub use trajectory_store::{

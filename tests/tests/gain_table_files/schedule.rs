@@ -7,8 +7,11 @@ use quatrack::gains::table::{
     AcceptError, AcceptedSchedule, GainTable, KNOTS_MAX, KnotFault, LoadError, SCHEDULE_BYTES_MAX, ScheduleRows,
     ScheduleTable, TableError, TableKind, Vehicle,
 };
-use quatrack::link::TRAJECTORY_BLOB_BYTES;
-use quatrack::{Piece, Rate, Trajectory};
+use quatrack::link::{ScheduleStore, TRAJECTORY_BLOB_BYTES};
+use quatrack::nalgebra::Vector3;
+use quatrack::{
+    AlongTrajectory, Controller, FeedForward, Limits, Memory, Piece, Progress, Rate, Reference, State, Trajectory,
+};
 
 use super::fixture::{
     TRAJECTORY, VEHICLE, bytes_of, gains_over_time, head, rate, schedule_bytes, sealed, table, tables,
@@ -139,6 +142,46 @@ fn a_table_for_another_board_or_trajectory_is_told() {
     assert_eq!(AcceptedSchedule::from_bytes(bytes, &heavier, rate()), Err(refused));
     let refused = LoadError::Accept(AcceptError::Rate { table_hz: 500, loop_hz: 100 });
     assert_eq!(AcceptedSchedule::from_bytes(bytes, &VEHICLE, Rate::from_hz(100).unwrap()), Err(refused));
+}
+
+#[test]
+fn an_uploaded_table_is_put_to_use_as_a_whole_and_gone_back_from() {
+    let mut store = ScheduleStore::new(VEHICLE, rate());
+    let player_rate = Rate::from_hz(1000).unwrap();
+    let hover = Reference::hover(Vector3::zeros(), 0.0).unwrap();
+    let state = State::at_rest(Vector3::new(0.1, -0.2, 0.3));
+    let command = |law: AlongTrajectory<'_>, tick| {
+        let controller = Controller::new(law, Limits::NONE);
+        let progress = Some(Progress { trajectory: TRAJECTORY, tick });
+        controller.step(&mut Memory::new(), progress, &state, &hover).unwrap().command
+    };
+    assert!(store.active().law(player_rate, FeedForward::With).is_none() && !store.revert());
+    let blobs = [4, 60].map(|knots| schedule_bytes(&gains_over_time(knots)));
+    for (blob, last_gain) in blobs.iter().zip([3.0_f32, 59.0]) {
+        store.commit(blob).unwrap();
+        let direct = AcceptedSchedule::from_bytes(blob, &VEHICLE, rate()).unwrap();
+        let [stored, direct] =
+            [store.active().law(player_rate, FeedForward::With).unwrap(), direct.law(player_rate, FeedForward::With)];
+        for tick in [0, 17, 50, 1_000_000] {
+            assert_eq!(command(stored, tick), command(direct, tick), "tick {tick}");
+        }
+        // Of the last knot, k / 64 stiffer than LQR-E, with k / 64 from x besides.
+        let thrust = 9.81 - 0.3 * 100.0 * (1.0 + last_gain / 64.0) - 0.1 * last_gain / 64.0;
+        assert!((command(stored, u32::MAX).thrust_m_s2 - thrust).abs() < 1e-4);
+    }
+    let mut damaged = blobs[0].clone();
+    damaged[300] ^= 1;
+    assert!(matches!(store.commit(&damaged), Err(LoadError::Table(TableError::Checksum { .. }))));
+    let other_kind = LoadError::Table(TableError::OtherKind { kind: TableKind::Equilibrium });
+    assert_eq!(store.commit(&bytes_of(&table("lqr-e"))), Err(other_kind));
+    assert_eq!(store.active().head().map(|head| head.name), Some(head("along").name), "what was in use stays");
+    let knots_in_use =
+        |store: &ScheduleStore| command(store.active().law(player_rate, FeedForward::With).unwrap(), u32::MAX);
+    let sixty = knots_in_use(&store);
+    assert!(store.revert());
+    assert_ne!(knots_in_use(&store), sixty, "the table before");
+    assert!(store.revert());
+    assert_eq!(knots_in_use(&store), sixty, "and back");
 }
 
 /// What holds for every table that comes out of any bytes.

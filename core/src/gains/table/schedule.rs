@@ -129,6 +129,16 @@ impl<'a> AcceptedSchedule<'a> {
         Ok(ScheduleTable::from_bytes(bytes)?.accept_for(vehicle, rate)?)
     }
 
+    /// The gains in the bytes of a table that has been accepted, without another look at them.
+    #[cfg(feature = "link")]
+    pub(crate) fn gains_of_checked(bytes: &'a [u8]) -> Option<GainSchedule<'a>> {
+        let (_, rest) = bytes.split_at_checked(wire::PAYLOAD_OFFSET + wire::HEAD_BYTES)?;
+        let ([_, _, s0, s1, t0, t1, t2, t3], rest) = rest.split_first_chunk::<FIELD_BYTES>()?;
+        let (entries, _checksum) = rest.split_last_chunk::<4>()?;
+        let trajectory = u32::from_le_bytes([*t0, *t1, *t2, *t3]);
+        GainSchedule::of_checked(as_knots(entries), u16::from_le_bytes([*s0, *s1]), trajectory)
+    }
+
     /// The law, for a trajectory that is played at `player_rate`.
     pub fn law(&self, player_rate: Rate, feed_forward: FeedForward) -> AlongTrajectory<'a> {
         AlongTrajectory::new(self.table.schedule, self.table.head.rate, player_rate, feed_forward)

@@ -21,8 +21,11 @@ pub const MAGIC: [u8; 4] = *b"QTGT";
 /// Version of the payload. The frame (magic, version, length, checksum) is the same in all of them.
 pub const FORMAT_VERSION: u16 = 1;
 
-/// Magic, version and length before the payload, checksum behind it.
-pub(super) const FRAME_BYTES: usize = 4 + 2 + 2 + 4;
+/// Magic, version and length before the payload.
+pub(super) const PAYLOAD_OFFSET: usize = 4 + 2 + 2;
+
+/// What is around the payload: the checksum is behind it.
+pub(super) const FRAME_BYTES: usize = PAYLOAD_OFFSET + 4;
 
 /// Bytes of the payload before the gains: kind and dimensions, names, id and rate, limits, hashes, figures.
 pub(super) const HEAD_BYTES: usize = 3 + 2 * Name::BYTES + 2 * 4 + 5 * 4 + 2 * 32 + 7 * 4;
