@@ -217,27 +217,44 @@ fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// Commands cut to the range of a motor one by one and whether any was; nothing where one is not finite. `min` is not negative.
+/// The forces that a motor can give, not below zero.
 ///
 /// By integers: floats of one sign stand in the order of their bits, and those below zero or not finite come after all others.
 /// That takes half the instructions of two comparisons by the FPU.
-#[inline(always)]
-pub(crate) fn saturate_each(commands: &MotorForces, min: f32, max: f32) -> Option<(MotorForces, MotorLimited)> {
-    let (least, range) = (min.to_bits(), max.to_bits().wrapping_sub(min.to_bits()));
-    let is_within = |command: f32| command.to_bits().wrapping_sub(least) <= range;
-    let [u1, u2, u3, u4] = *commands;
-    if is_within(u1) && is_within(u2) && is_within(u3) && is_within(u4) {
-        return Some((*commands, MotorLimited::NOTHING));
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ForceRange {
+    /// Bits of the least force, and what the bits of the most are beyond them.
+    least: u32,
+    span: u32,
+    min_n: f32,
+    max_n: f32,
+}
+
+impl ForceRange {
+    pub(crate) const fn of(airframe: &Airframe) -> Self {
+        let AirframeFigures { force_min_n: min_n, force_max_n: max_n, .. } = *airframe.figures();
+        Self { least: min_n.to_bits(), span: max_n.to_bits() - min_n.to_bits(), min_n, max_n }
     }
-    // NaN and infinities stay visible in a sum.
-    if ((u1 + u2) + (u3 + u4)).to_bits() << 1 >= f32::INFINITY.to_bits() << 1 {
-        return None;
+
+    /// Commands cut to the range one by one and whether any was; nothing where one is not finite.
+    #[inline(always)]
+    pub(crate) fn saturate(&self, commands: &MotorForces) -> Option<(MotorForces, MotorLimited)> {
+        let is_within = |command: f32| command.to_bits().wrapping_sub(self.least) <= self.span;
+        let [u1, u2, u3, u4] = *commands;
+        if is_within(u1) && is_within(u2) && is_within(u3) && is_within(u4) {
+            return Some((*commands, MotorLimited::NOTHING));
+        }
+        // NaN and infinities stay visible in a sum.
+        if ((u1 + u2) + (u3 + u4)).to_bits() << 1 >= f32::INFINITY.to_bits() << 1 {
+            return None;
+        }
+        // Signed: what is below zero comes first.
+        let (least, most) = (self.min_n.to_bits() as i32, self.max_n.to_bits() as i32);
+        let cut = |command: f32| {
+            let order = command.to_bits() as i32;
+            let at_least = if order < least { self.min_n } else { command };
+            if order > most { self.max_n } else { at_least }
+        };
+        Some(([cut(u1), cut(u2), cut(u3), cut(u4)], MotorLimited { bits: MotorLimited::MOTORS }))
     }
-    // Signed: what is below zero comes first.
-    let cut = |command: f32| {
-        let order = command.to_bits() as i32;
-        let at_least = if order < min.to_bits() as i32 { min } else { command };
-        if order > max.to_bits() as i32 { max } else { at_least }
-    };
-    Some(([cut(u1), cut(u2), cut(u3), cut(u4)], MotorLimited { bits: MotorLimited::MOTORS }))
 }

@@ -10,10 +10,10 @@
 use nalgebra::Vector3;
 
 use super::difference;
-use crate::airframe::{Airframe, AirframeFigures};
+use crate::airframe::Airframe;
 use crate::clock::Rate;
 use crate::gain::{Gain, GainError};
-use crate::mixer::{MotorLimited, Parts, saturate_each};
+use crate::mixer::{ForceRange, MotorLimited, Parts};
 use crate::motor_lag::{MotorForces, MotorLag, MotorLagError};
 use crate::motor_reference::MotorReference;
 use crate::rigid_state::RigidState;
@@ -55,8 +55,7 @@ pub struct ActuatorAware<'a> {
     /// The gain.
     pub gain: &'a ActuatorAwareGain,
     lag: MotorLag,
-    force_min_n: f32,
-    force_max_n: f32,
+    range: ForceRange,
 }
 
 /// What the law remembers from step to step.
@@ -268,9 +267,8 @@ impl<'a> ActuatorAware<'a> {
     /// # Errors
     /// [`MotorLagError`] for a lag shorter than two control periods.
     pub const fn new(gain: &'a ActuatorAwareGain, airframe: &Airframe, rate: Rate) -> Result<Self, MotorLagError> {
-        let AirframeFigures { force_min_n, force_max_n, motor_lag_s, .. } = *airframe.figures();
-        match MotorLag::new(motor_lag_s, rate) {
-            Ok(lag) => Ok(Self { gain, lag, force_min_n, force_max_n }),
+        match MotorLag::new(airframe.figures().motor_lag_s, rate) {
+            Ok(lag) => Ok(Self { gain, lag, range: ForceRange::of(airframe) }),
             Err(error) => Err(error),
         }
     }
@@ -306,7 +304,7 @@ impl<'a> ActuatorAware<'a> {
             integral: heading.to_heading_frame(memory.integral_m_s),
         };
         let asked = self.gain.feedback.added_to(reference.commands_n, &errors);
-        let (commands, limited) = saturate_each(&asked, self.force_min_n, self.force_max_n)?;
+        let (commands, limited) = self.range.saturate(&asked)?;
         memory.forces_n = self.lag.next(&memory.forces_n, &commands);
         if !limited.any() {
             let (h, i) = (self.lag.period_s(), &memory.integral_m_s);
