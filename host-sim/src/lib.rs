@@ -13,6 +13,7 @@
 //!     design                      Section IV: Lyapunov and Riccati equations, the four gains, gains for a control rate
 //!     analysis                    Section III: poles, Jordan blocks, controllability
 //!       model                     Section II: the model (1), its linearisations
+//!   vehicle                       mass, inertia, motors and limits of a craft, from TOML
 //! ```
 //!
 //! Conventions: world frame z up, quaternion scalar first, Hamilton product, body to world; thrust is divided by mass
@@ -28,3 +29,4 @@ pub mod pil;
 pub mod plan;
 pub mod reproduction;
 pub mod trajectory;
+pub mod vehicle;
