@@ -54,7 +54,7 @@ pub(super) fn read(text: &str) -> Result<Vehicle, VehicleError> {
         return Err(VehicleError::Syntax { line: 1, reason });
     }
     positive("body.mass_kg", file.body.mass_kg)?;
-    let inertia_kg_m2 = inertia(&file.body.inertia_kg_m2)?;
+    let (inertia_kg_m2, inverse_inertia) = inertia(&file.body.inertia_kg_m2)?;
     let rates = file.limits.body_rates_rad_s;
     rates.iter().try_for_each(|rate| positive("limits.body_rates_rad_s", *rate))?;
     Ok(Vehicle {
@@ -62,6 +62,7 @@ pub(super) fn read(text: &str) -> Result<Vehicle, VehicleError> {
         name: file.name,
         mass_kg: file.body.mass_kg,
         inertia_kg_m2,
+        inverse_inertia,
         body_rates_max_rad_s: Vector3::from(rates),
     })
 }
@@ -82,8 +83,8 @@ fn positive(field: &str, value: f64) -> Result<(), VehicleError> {
     check((SMALLEST..=LARGEST).contains(&value), field, value, format!("positive, from {SMALLEST} to {LARGEST}"))
 }
 
-/// Symmetric, and that of a body: no principal moment above the sum of the two others.
-fn inertia(rows: &[[f64; 3]; 3]) -> Result<Matrix3<f64>, VehicleError> {
+/// Symmetric, and that of a body: no principal moment above the sum of the two others. With its inverse.
+fn inertia(rows: &[[f64; 3]; 3]) -> Result<(Matrix3<f64>, Matrix3<f64>), VehicleError> {
     let field = "body.inertia_kg_m2";
     let matrix = Matrix3::from_fn(|i, j| rows[i][j]);
     for i in 0..3 {
@@ -95,7 +96,12 @@ fn inertia(rows: &[[f64; 3]; 3]) -> Result<Matrix3<f64>, VehicleError> {
     }
     let moments = matrix.symmetric_eigenvalues();
     let (least, most) = (moments.min(), moments.max());
-    check(least > 0.0, field, least, "positive definite; this is its least principal moment")?;
+    let singular = || VehicleError::Value {
+        field: field.to_owned(),
+        value: least,
+        must: "positive definite; this is its least principal moment".to_owned(),
+    };
+    let inverse = matrix.cholesky().ok_or_else(singular)?.inverse();
     // The sum of all three is the trace. A flat body reaches equality, up to rounding.
     let others = matrix.trace() - most;
     check(
@@ -104,7 +110,7 @@ fn inertia(rows: &[[f64; 3]; 3]) -> Result<Matrix3<f64>, VehicleError> {
         most,
         format!("that of a body: this is its largest principal moment, the two others come to {others:e}"),
     )?;
-    Ok(matrix)
+    Ok((matrix, inverse))
 }
 
 fn motors(entry: &MotorsEntry, hover_n: f64) -> Result<Motors, VehicleError> {

@@ -36,6 +36,7 @@ pub struct Vehicle {
     name: String,
     mass_kg: f64,
     inertia_kg_m2: Matrix3<f64>,
+    inverse_inertia: Matrix3<f64>,
     motors: Motors,
     body_rates_max_rad_s: Vector3<f64>,
 }
@@ -122,6 +123,11 @@ impl Vehicle {
     /// Inertia about the centre of mass in the body frame, kg m^2; symmetric.
     pub fn inertia_kg_m2(&self) -> &Matrix3<f64> {
         &self.inertia_kg_m2
+    }
+
+    /// The inverse of that, 1/(kg m^2).
+    pub fn inverse_inertia(&self) -> &Matrix3<f64> {
+        &self.inverse_inertia
     }
 
     /// Its motors.
