@@ -261,8 +261,8 @@ struct Errors {
 }
 
 impl<'a> ActuatorAware<'a> {
-    /// The law for a craft at a control rate, those of the gain's design. References are to be made for the same airframe:
-    /// they too depend on its motor lag.
+    /// The law for a craft at a control rate, those of the gain's design. References are to be made for the same airframe,
+    /// [`Airframe::commanded_at`] that rate: they too depend on its motor lag.
     ///
     /// # Errors
     /// [`MotorLagError`] for a lag shorter than two control periods.

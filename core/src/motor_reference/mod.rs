@@ -124,12 +124,12 @@ impl MotorReference {
             pitch: iy * q2 + gy * (p1 * r + p * r1),
             yaw: iz * r2 + gz * (p1 * q + p * q1),
         };
-        let lag_s = airframe.figures().motor_lag_s;
+        let lead_s = airframe.lead_s;
         let commands = Parts {
-            thrust: forces.thrust + lag_s * rates.thrust,
-            roll: forces.roll + lag_s * rates.roll,
-            pitch: forces.pitch + lag_s * rates.pitch,
-            yaw: forces.yaw + lag_s * rates.yaw,
+            thrust: forces.thrust + lead_s * rates.thrust,
+            roll: forces.roll + lead_s * rates.roll,
+            pitch: forces.pitch + lead_s * rates.pitch,
+            yaw: forces.yaw + lead_s * rates.yaw,
         };
         // Every derivative is in one of the commands; what is not finite stays so in their sum.
         let sum = (commands.thrust + commands.roll) + (commands.pitch + commands.yaw);
@@ -181,7 +181,8 @@ impl MotorReference {
         self.forces_n
     }
 
-    /// Commands that give these forces behind the lag of the airframe that the reference was made for, `f + tau df/dt`, N.
+    /// Commands that give these forces behind the motor lag of the airframe that the reference was made for, `f + tau df/dt`, N;
+    /// with half a control period beside tau where that is [`Airframe::commanded_at`] a rate.
     pub fn commands_n(&self) -> MotorForces {
         self.commands_n
     }
