@@ -67,7 +67,7 @@ fn an_offset_dies_out_the_same_way_at_every_heading() {
         let heading = std::f64::consts::TAU * f64::from(k) / 8.0;
         let reference = MotorReference::hover(Vector3::new(0.0, 0.0, 1.0), heading as f32, &airframe).unwrap();
         let mut start = on(&reference);
-        start.position_m += nalgebra::Vector3::new(0.2, -0.1, 0.1);
+        start.position_m += Vector3::new(0.2, -0.1, 0.1);
         let (errors, _) = fly(&craft, &tracker, 6.0, start, |_| reference);
         // Without the turn into the heading frame the loop is unstable from 45 degrees on.
         assert!(errors.last().unwrap() < &2e-3, "heading {heading}: {} m left", errors.last().unwrap());
