@@ -22,13 +22,17 @@
 //! ```text
 //! link                        frames, uploads (feature `link`)
 //!   crossfade                 from one tracker to another
+//!     motor_tracker           any law, down to four motor forces
 //!     controller              any law, and what it remembers
 //!       tracker, supervisor   one step: normalise, law, saturate; whether its command may pass
-//!     law                     equilibrium (E), flat output (F), integral action, gains along a trajectory
+//!     law                     equilibrium (E), flat output (F), integral action, gains along a trajectory, actuator-aware
 //!       trajectory, gains     pieces played by ticks; tables
+//!         motor_reference     flat output -> motor forces and commands
+//!           body_rate, mixer  command -> wrench -> motor forces
+//!             airframe        mass, inertia, levers, range and lag of the motors
 //!         reference           flat output -> state and input, checked
 //!           flatness          the flat map and its inverse
-//!             state, command, gain, clock
+//!             state, rigid_state, command, gain, motor_lag, clock
 //!               quaternion, error
 //!                 math        square root, sine and cosine; checksum
 //! ```
@@ -43,6 +47,8 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod airframe;
+pub mod body_rate;
 pub mod checksum;
 pub mod clock;
 pub mod command;
@@ -58,8 +64,13 @@ pub mod law;
 #[cfg(feature = "link")]
 pub mod link;
 pub mod math;
+pub mod mixer;
+pub mod motor_lag;
+pub mod motor_reference;
+pub mod motor_tracker;
 pub mod quaternion;
 pub mod reference;
+pub mod rigid_state;
 pub mod state;
 pub mod supervisor;
 pub mod tracker;
@@ -67,14 +78,24 @@ pub mod trajectory;
 
 pub use nalgebra;
 
+pub use airframe::{Airframe, AirframeFigures};
+pub use body_rate::BodyRateLoop;
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};
 pub use controller::{Controller, Memory};
 pub use crossfade::Crossfade;
 pub use error::{ReferenceError, StateError, StepError};
-pub use law::{AlongTrajectory, AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlightLaw, IntegralAction};
+pub use law::{
+    ActuatorAware, ActuatorAwareGain, ActuatorMemory, AlongTrajectory, AnyLaw, Equilibrium, ErrorForm, FeedForward,
+    FlatOutput, FlightLaw, IntegralAction,
+};
+pub use mixer::{MotorLimited, Wrench};
+pub use motor_lag::{MotorForces, MotorLag};
+pub use motor_reference::{FifthOrderSample, MotorReference};
+pub use motor_tracker::{ByBodyRates, MotorLaw, MotorStep, MotorTracker};
 pub use quaternion::{Heading, Quaternion};
 pub use reference::{FlatSample, Reference};
+pub use rigid_state::RigidState;
 pub use state::State;
 pub use tracker::{Step, Tracker};
 pub use trajectory::{Bookmark, Piece, Player, Progress, Trajectory};

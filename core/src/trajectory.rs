@@ -1,4 +1,4 @@
-//! Stored trajectories: polynomial pieces and a tick in, the flat output to jerk out.
+//! Stored trajectories: polynomial pieces and a tick in, the flat output to jerk out, or to its fifth derivative.
 //!
 //! A [`Trajectory`] is pieces that have been checked; a [`Player`] walks along them at a fixed rate. Time is the tick:
 //! the time within a piece is found by integers, in nanoseconds, and only then becomes an `f32`.
@@ -7,9 +7,11 @@ use core::fmt;
 
 use nalgebra::Vector3;
 
+use crate::airframe::Airframe;
 use crate::checksum::Crc32c;
 use crate::clock::{Rate, Tick, TickClock};
 use crate::error::ReferenceError;
+use crate::motor_reference::{FifthOrderSample, Motion, MotorReference, Turn};
 use crate::reference::{FlatSample, Reference};
 
 /// Coefficients of a polynomial of degree at most 7, ascending powers of the seconds since the piece began.
@@ -215,6 +217,24 @@ impl Piece {
         }
     }
 
+    /// Position, velocity and the derivatives behind them to the fifth.
+    #[inline(always)]
+    fn motion(&self, t: f32, shape: Shape) -> (Vector3<f32>, Vector3<f32>, Motion) {
+        let [x, y, z] = if shape.quintic {
+            [&self.x, &self.y, &self.z].map(|axis| quintic_derivatives_to_fifth(axis, t))
+        } else {
+            [&self.x, &self.y, &self.z].map(|axis| derivatives_to_fifth(axis, t))
+        };
+        let [[x, vx, ax, jx, sx, cx], [y, vy, ay, jy, sy, cy], [z, vz, az, jz, sz, cz]] = [x, y, z];
+        let motion = Motion {
+            acceleration: Vector3::new(ax, ay, az),
+            jerk: Vector3::new(jx, jy, jz),
+            snap: Vector3::new(sx, sy, sz),
+            crackle: Vector3::new(cx, cy, cz),
+        };
+        (Vector3::new(x, y, z), Vector3::new(vx, vy, vz), motion)
+    }
+
     /// The rest at which it begins.
     fn start(&self) -> FlatSample {
         // A polynomial begins with its first coefficient.
@@ -249,8 +269,8 @@ impl Piece {
     fn is_finite(&self) -> bool {
         let t = 1.0 + seconds(self.duration_ns);
         [&self.x, &self.y, &self.z, &self.heading].iter().all(|coefficients| {
-            // Bounds |p|, |p'|, |p''| and |p'''| over the piece: 210 = 7 * 6 * 5.
-            (210.0 * coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c.abs())).is_finite()
+            // Bounds the derivatives to the fifth over the piece: 2520 = 7 * 6 * 5 * 4 * 3.
+            (2520.0 * coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c.abs())).is_finite()
         })
     }
 
@@ -292,6 +312,32 @@ fn quintic_derivatives(coefficients: &Coefficients, t: f32) -> [f32; 4] {
     let (d3, d2, d1, p) = (d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c1);
     let (d3, d2, d1, p) = (d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c0);
     [p, d1, 2.0 * d2, 6.0 * d3]
+}
+
+/// A polynomial and its first five derivatives at `t`; the first four to the same bits as by [`derivatives`].
+#[inline]
+fn derivatives_to_fifth(coefficients: &Coefficients, t: f32) -> [f32; 6] {
+    let [c0, c1, c2, c3, c4, c5, c6, c7] = *coefficients;
+    let (d1, p) = (c7, c7 * t + c6);
+    let (d2, d1, p) = (d1, d1 * t + p, p * t + c5);
+    let (d3, d2, d1, p) = (d2, d2 * t + d1, d1 * t + p, p * t + c4);
+    let (d4, d3, d2, d1, p) = (d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c3);
+    let (d5, d4, d3, d2, d1, p) = (d4, d4 * t + d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c2);
+    let (d5, d4, d3, d2, d1, p) = (d5 * t + d4, d4 * t + d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c1);
+    let (d5, d4, d3, d2, d1, p) = (d5 * t + d4, d4 * t + d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c0);
+    [p, d1, 2.0 * d2, 6.0 * d3, 24.0 * d4, 120.0 * d5]
+}
+
+/// The same for a polynomial of degree 5, to the same bits.
+#[inline]
+fn quintic_derivatives_to_fifth(coefficients: &Coefficients, t: f32) -> [f32; 6] {
+    let [c0, c1, c2, c3, c4, c5, ..] = *coefficients;
+    let (d1, p) = (c5, c5 * t + c4);
+    let (d2, d1, p) = (d1, d1 * t + p, p * t + c3);
+    let (d3, d2, d1, p) = (d2, d2 * t + d1, d1 * t + p, p * t + c2);
+    let (d4, d3, d2, d1, p) = (d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c1);
+    let (d5, d4, d3, d2, d1, p) = (d4, d4 * t + d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c0);
+    [p, d1, 2.0 * d2, 6.0 * d3, 24.0 * d4, 120.0 * d5]
 }
 
 /// A polynomial and its first derivative at `t`.
@@ -406,6 +452,48 @@ impl<'a> Player<'a> {
         };
         // The pieces have been checked: what they give is finite.
         Reference::of_finite(&sample)
+    }
+
+    /// What flies the trajectory with a craft `tick` ticks after the start, to the motor forces and their rates.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] where the trajectory asks for what cannot be flown.
+    pub fn motor_reference(&mut self, tick: Tick, airframe: &Airframe) -> Result<MotorReference, ReferenceError> {
+        let Summary { end, shape, .. } = self.trajectory.summary;
+        if tick >= self.end_tick {
+            return MotorReference::of_finite(&FifthOrderSample::of_jerk(end), airframe);
+        }
+        let t = seconds(self.seek(tick));
+        // First, while there is little else to be kept.
+        let turn = (!shape.straight).then(|| Turn::new(derivatives(&self.piece.heading, t)));
+        let (position_m, velocity_m_s, motion) = self.piece.motion(t, shape);
+        MotorReference::of_motion(&position_m, &velocity_m_s, &motion, turn.as_ref(), airframe)
+    }
+
+    /// The flat output and its derivatives to the fifth `tick` ticks after the start.
+    pub fn at_fifth_order(&mut self, tick: Tick) -> FifthOrderSample {
+        let Summary { end, shape, .. } = self.trajectory.summary;
+        if tick >= self.end_tick {
+            return FifthOrderSample::of_jerk(end);
+        }
+        let t = seconds(self.seek(tick));
+        let [heading_rad, heading_rate_rad_s, heading_acceleration_rad_s2, heading_jerk_rad_s3] =
+            derivatives(&self.piece.heading, t);
+        let (position_m, velocity_m_s, motion) = self.piece.motion(t, shape);
+        FifthOrderSample {
+            flat: FlatSample {
+                position_m,
+                velocity_m_s,
+                acceleration_m_s2: motion.acceleration,
+                jerk_m_s3: motion.jerk,
+                heading_rad,
+                heading_rate_rad_s,
+            },
+            snap_m_s4: motion.snap,
+            crackle_m_s5: motion.crackle,
+            heading_acceleration_rad_s2,
+            heading_jerk_rad_s3,
+        }
     }
 
     /// The flat output `tick` ticks after the start.
