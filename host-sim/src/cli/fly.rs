@@ -122,7 +122,7 @@ enum Gain {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let rate = args.rate_hz.map(checked_rate).transpose()?;
     let gain = design(args)?;
-    let trajectory = load(&args.trajectory)?;
+    let trajectory = trajectory(&args.trajectory)?;
     if let Some(dir) = &args.out {
         output::create_dir(dir)?;
     }
@@ -173,7 +173,7 @@ fn design(args: &Args) -> Result<Gain, Failure> {
 }
 
 /// A trajectory by name or from a file, as the pieces that the board flies.
-fn load(name: &str) -> Result<PiecewisePolynomial, Failure> {
+pub(super) fn trajectory(name: &str) -> Result<PiecewisePolynomial, Failure> {
     let from_spline = |spline: &BSpline| {
         PiecewisePolynomial::from_bspline(spline).map_err(|error| Failure::input(format!("{name}: {error}")))
     };

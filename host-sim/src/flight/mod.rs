@@ -5,11 +5,13 @@
 //!   core_loop        the f32 core in the loop: the one crossing between f64 and f32
 //!   law, reference   the laws in f64; references sampled as in the paper, or exact
 //!   integrator       Bogacki-Shampine 3, Runge-Kutta 4, Dormand-Prince 5(4)
+//! deviation          how far one reference is from another
 //! metrics, log       what a flight came to; its rows as CSV
 //! ```
 
 pub mod closed_loop;
 pub mod core_loop;
+pub mod deviation;
 pub mod integrator;
 pub mod law;
 pub mod log;
