@@ -153,7 +153,7 @@ fn text(name: &str, report: &Report) -> String {
     let mut text = format!(
         "{name}: {original_pieces} pieces, {duration_s:.2} s\n\
          stored: {pieces} pieces, {how}, {memory_bytes} of {MEMORY_BYTES} bytes\n\n\
-         largest difference, as stored in f32 and evaluated by the firmware\n\
+         largest difference, as stored in f32 and evaluated on board\n\
          \x20 position       {:.2e} m\n\
          \x20 velocity       {:.2e} m/s\n\
          \x20 acceleration   {:.2e} m/s^2\n\
