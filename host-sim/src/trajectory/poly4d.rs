@@ -1,11 +1,11 @@
-//! Trajectories as the Crazyflie stores them: polynomial pieces in; `poly4d` of 132 bytes, and what they evaluate to, out.
+//! Trajectories as the Crazyflie stores them: polynomial pieces in; `poly4d` of 132 bytes, and their values, out.
 //!
 //! Layout and evaluation are those of Bitcraze's crazyflie-firmware: `struct poly4d` in `pptraj.h`; `piecewise_eval`,
 //! `poly4d_eval`, `polyval` and `polyder` in `pptraj.c`; the size of the memory in `crtp_commander_high_level.c`. The
 //! arithmetic is theirs too, step by step in `f32`; where their compiler fuses a product and a sum, last bits differ.
 //!
-//! The fourth polynomial is the heading psi of `q = q_tilt(n) q_z(psi)` here and passes through the firmware unchanged. The
-//! firmware's own controllers read it as Z-Y-X yaw, which is the same at hover.
+//! The fourth polynomial is the heading psi of `q = q_tilt(n) q_z(psi)` here and passes through the firmware unchanged.
+//! The firmware's own controllers read it as Z-Y-X yaw, which is the same at hover.
 
 use nalgebra::Vector3;
 
@@ -70,7 +70,7 @@ impl StoredTrajectory {
         &self.pieces
     }
 
-    /// The same numbers in f64: what is written to a file, and read back by the Crazyflie's tools, without another rounding.
+    /// The same numbers in f64: what a file holds, and the Crazyflie's tools read, without another rounding.
     pub fn polynomials(&self) -> &PiecewisePolynomial {
         &self.polynomials
     }

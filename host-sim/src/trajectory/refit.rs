@@ -3,8 +3,8 @@
 //! Between two knots a piece takes position, velocity, acceleration and jerk of the source at both: eight conditions on
 //! eight coefficients (two-point Hermite interpolation; Stoer and Bulirsch, Introduction to Numerical Analysis, 2.1.5).
 //! Neighbours therefore meet up to the third derivative wherever the knots are, start and end stay what they were, and
-//! where no breakpoint of the source lies between two knots the piece is the source's own. Heading is fitted like a
-//! coordinate.
+//! where a source that is itself continuous up to jerk has no breakpoint between two knots, the piece is the source's
+//! own. Where the source jumps, a knot takes the mean of both sides. Heading is fitted like a coordinate.
 //!
 //! The knots are chosen among the source's breakpoints and equal parts of its pieces. Dynamic programming finds those
 //! whose largest error is least, and among them those with the least sum of squares; a radian of heading counts as a
@@ -28,7 +28,8 @@ const PROBES: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
 type Jets = [[f64; 4]; 4];
 
 /// A trajectory of at most `pieces_max` pieces close to `source`; the source itself where it has no more. Durations of
-/// fitted pieces are numbers that `f32` holds, so that storing them moves no knot; the end may move by 6e-8 of the last piece.
+/// fitted pieces are numbers that `f32` holds, so that storing them moves no knot; the end may move by 6e-8 of the last
+/// piece.
 ///
 /// # Errors
 /// [`PolynomialError`] if the source is so large or so short that a coefficient overflows.
@@ -182,7 +183,7 @@ fn hermite(start: &[f64; 4], end: &[f64; 4], duration_s: f64) -> [f64; COEFFICIE
     ]
 }
 
-/// The path from 0 to `costs.len()` in at most `steps` steps, each forwards, whose costs combine to the least; and that.
+/// The path from 0 to `costs.len()` in at most `steps` steps forwards whose costs combine to the least, and that least.
 /// Entry `[to - 1][from]` is the cost of a step.
 fn cheapest_path(costs: &[Vec<f64>], steps: usize, combine: fn(f64, f64) -> f64) -> (Vec<usize>, f64) {
     let end = costs.len();
