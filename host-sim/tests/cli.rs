@@ -160,6 +160,48 @@ fn a_planned_file_flies_like_its_plan() {
 }
 
 #[test]
+fn a_refit_fits_the_memory_and_flies_like_its_original() {
+    let dir = folder("refit");
+    let at = |name: &str| dir.join(name).to_str().unwrap().to_owned();
+    let (csv, json) = (at("w.csv"), at("fit.json"));
+    let output = quatrack(&["refit", "aggressive", "--csv", &csv, "--json", &json]);
+    assert!(output.status.success());
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("38 pieces") && text.contains("4092 of 4096 bytes"), "{text}");
+    let report: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
+    assert_eq!((report["original_pieces"].as_u64(), report["pieces"].as_u64()), (Some(38), Some(31)));
+    assert!(report["largest_difference"]["position_m"].as_f64().unwrap() < 1e-5);
+    // IAE of positions that differ by less than 1e-5 m for 12 s.
+    let iae = |law: &str, of: &str| report[law][of].as_f64().unwrap();
+    for law in ["lqr_e", "lqr_e_feed_forward"] {
+        let original = iae(law, "original_iae_m_s");
+        assert!((iae(law, "refit_from_original_iae_m_s") - original).abs() < 12.0 * 1e-5);
+        assert!((iae(law, "refit_iae_m_s") - original).abs() < 12.0 * 1e-5);
+    }
+    assert!((iae("lqr_e", "original_iae_m_s") - 0.1115).abs() < 1e-3);
+    // The file is read as it was stored: nothing is left to fit.
+    let again = at("again.csv");
+    assert!(quatrack(&["refit", &csv, "--csv", &again]).status.success());
+    assert_eq!(fs::read_to_string(&csv).unwrap(), fs::read_to_string(&again).unwrap());
+}
+
+#[test]
+fn a_refit_out_of_tolerance_exits_1_and_writes_nothing() {
+    let dir = folder("coarse_refit");
+    let csv = dir.join("w.csv");
+    let arguments = ["refit", "aggressive", "--pieces", "8", "--tolerance-m", "0.001", "--csv", csv.to_str().unwrap()];
+    let output = quatrack(&arguments);
+    assert_eq!(output.status.code(), Some(1));
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert!(stderr.contains("aggressive: 8 pieces are") && stderr.contains("--tolerance-m 0.001"), "{stderr}");
+    assert!(!csv.exists());
+    assert_refused(&["refit", "aggressive", "--pieces", "32"], 2, &["32", "1..=31"]);
+    assert_refused(&["refit", "aggressive", "--pieces", "0"], 2, &["0", "1..=31"]);
+    assert_refused(&["refit", "mild", "--tolerance-m", "0"], 2, &["--tolerance-m", "positive"]);
+    assert_refused(&["refit", "no/such/file.csv"], 2, &["no/such/file.csv"]);
+}
+
+#[test]
 fn reproduce_writes_the_table_and_the_figures() {
     let dir = folder("reproduce");
     let json = dir.join("table.json");
@@ -180,7 +222,7 @@ fn reproduce_writes_the_table_and_the_figures() {
 
 #[test]
 fn help_is_for_people() {
-    for command in ["reproduce", "fly", "plan", "analyze"] {
+    for command in ["reproduce", "fly", "plan", "refit", "analyze"] {
         let output = quatrack(&[command, "--help"]);
         assert!(output.status.success(), "{command}");
         let text = String::from_utf8(output.stdout).unwrap();

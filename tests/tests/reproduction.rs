@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use quatrack_sim::flight::closed_loop::{SAMPLE_PERIOD_S, Solver, fly_continuous};
-use quatrack_sim::flight::integrator::Method;
 use quatrack_sim::flight::metrics::Metrics;
 use quatrack_sim::flight::reference::{Exact, Sampled};
+use quatrack_sim::integrator::Method;
 use quatrack_sim::plan;
 use quatrack_sim::reproduction::report::Reproduction;
 use quatrack_sim::reproduction::table::{Controller, Course, Gains, fly_cell};

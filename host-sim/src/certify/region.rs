@@ -117,7 +117,7 @@ pub fn certify_region(
         let radius = spectral_radius(vehicle, &controller, period_s, &variation)?;
         points += 1;
         // A NaN is as bad as it gets.
-        if worst.is_none_or(|(_, held)| !(radius <= held)) {
+        if worst.is_none_or(|(_, held)| radius.is_nan() || radius > held) {
             worst = Some((variation, radius));
         }
     }

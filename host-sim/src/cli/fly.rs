@@ -10,9 +10,10 @@ use quatrack_sim::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAP
 use quatrack_sim::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
 use quatrack_sim::flight::core_loop::{self, CoreLoop};
 use quatrack_sim::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
+use quatrack_sim::flight::log;
 use quatrack_sim::flight::metrics::Metrics;
 use quatrack_sim::flight::reference::{Exact, Reference};
-use quatrack_sim::flight::{integrator::Method, log};
+use quatrack_sim::integrator::Method;
 use quatrack_sim::plan::{self, Plan, PlanError};
 use quatrack_sim::trajectory::Trajectory;
 use quatrack_sim::trajectory::bspline::BSpline;
@@ -122,7 +123,7 @@ enum Gain {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let rate = args.rate_hz.map(checked_rate).transpose()?;
     let gain = design(args)?;
-    let trajectory = load(&args.trajectory)?;
+    let trajectory = trajectory(&args.trajectory)?;
     if let Some(dir) = &args.out {
         output::create_dir(dir)?;
     }
@@ -173,7 +174,7 @@ fn design(args: &Args) -> Result<Gain, Failure> {
 }
 
 /// A trajectory by name or from a file, as the pieces that the board flies.
-fn load(name: &str) -> Result<PiecewisePolynomial, Failure> {
+pub(super) fn trajectory(name: &str) -> Result<PiecewisePolynomial, Failure> {
     let from_spline = |spline: &BSpline| {
         PiecewisePolynomial::from_bspline(spline).map_err(|error| Failure::input(format!("{name}: {error}")))
     };

@@ -7,6 +7,7 @@ mod measure;
 mod output;
 mod pil;
 mod plan;
+mod refit;
 mod reproduce;
 
 use std::process::ExitCode;
@@ -47,6 +48,7 @@ enum Command {
     Measure(measure::Args),
     Pil(pil::Args),
     Plan(plan::Args),
+    Refit(refit::Args),
     Reproduce(reproduce::Args),
 }
 
@@ -62,6 +64,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Measure(args) => measure::run(args),
         Command::Pil(args) => pil::run(args),
         Command::Plan(args) => plan::run(args),
+        Command::Refit(args) => refit::run(args),
         Command::Reproduce(args) => reproduce::run(args),
     };
     match outcome {

@@ -15,10 +15,10 @@ use crate::design::synthesis::{
 };
 use crate::flight::closed_loop::{Flight, SAMPLE_PERIOD_S, Solver, fly_continuous, fly_sampled};
 use crate::flight::core_loop::{self, CoreLoop};
-use crate::flight::integrator::DormandPrince;
 use crate::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
 use crate::flight::metrics::Metrics;
 use crate::flight::reference::{Exact, Sampled};
+use crate::integrator::DormandPrince;
 use crate::model::flat::reference_point;
 use crate::trajectory::polynomial::PiecewisePolynomial;
 

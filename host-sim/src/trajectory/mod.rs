@@ -3,7 +3,9 @@
 
 pub mod bspline;
 pub mod file;
+pub mod poly4d;
 pub mod polynomial;
+pub mod refit;
 
 use nalgebra::Vector3;
 

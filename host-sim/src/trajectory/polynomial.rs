@@ -208,6 +208,11 @@ impl PiecewisePolynomial {
         &self.pieces
     }
 
+    /// Start of each piece, then the end of the last, s.
+    pub fn boundaries_s(&self) -> &[f64] {
+        &self.boundaries_s
+    }
+
     /// The piece flown at `t_s` and its start, s; at a joint the later piece, at and after the end the last.
     fn piece_at(&self, t_s: f64) -> (&Piece, f64) {
         let last = self.pieces.len() - 1;
