@@ -29,6 +29,6 @@ pub use decrease::Decrease;
 pub use error::CertifyError;
 pub use limits::StabilityLimit;
 pub use margins::{AllChannels, ChannelMargins, DiskMargin, LoopMargins};
-pub use minimum::{MarginTooSmall, Minimum, require};
+pub use minimum::{Judged, MarginTooSmall, Minimum, Quantity, judge, require};
 pub use plant::{Controller, LagModel, Plant, Timing};
 pub use structured::{StructuredBounds, structured_bounds};

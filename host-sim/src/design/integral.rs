@@ -7,6 +7,7 @@
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
+use serde::Serialize;
 
 use super::discretise::{Held, zero_order_hold};
 use super::sampled::{CostForm, SampledCost, SampledDesign, Sampling, equilibrium_pair, optimal, sampled_cost};
@@ -31,7 +32,7 @@ pub const INTEGRAL_ERROR_NAMES: [&str; 12] = [
 ];
 
 /// Diagonal weights of the LQI designs.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct IntegralWeights {
     /// Weights of the error and the input.
     pub equilibrium: EquilibriumWeights,

@@ -1,0 +1,206 @@
+//! What a design computes: a validated problem in; the model, the gain in f64 and the plant it is certified on out.
+
+use nalgebra::{DMatrix, SMatrix};
+use num_complex::Complex64;
+use quatrack::gains::table::{Rows, TableKind};
+
+use super::GainsError;
+use super::design::{Design, Method, Problem};
+use super::names::{EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, Signal};
+use crate::certify::{Controller, Plant, Timing};
+use crate::design::codegen::rounded;
+use crate::design::sampled::{SampledDesign, Sampling, equilibrium_pair, sampled_equilibrium, sampled_flat, shaped};
+use crate::design::synthesis::{
+    EquilibriumDesign, EquilibriumWeights, FlatDesign, FlatWeights, dense_flat_chain, diagonal, lqr_equilibrium,
+    lqr_flat, lyapunov_equilibrium, lyapunov_flat,
+};
+
+/// A gain with all that it came from.
+#[derive(Debug, Clone)]
+pub struct Designed {
+    /// The model that it was designed on.
+    pub model: LinearModel,
+    /// Q and R; a Lyapunov design has none.
+    pub weights: Option<Weights>,
+    /// The gain as designed.
+    pub gains: Gains,
+    /// `K_1 ... K_d` of a design that knows of a delay: of the last command, the one before, and so on.
+    pub past_command_gains: Vec<DMatrix<f64>>,
+    /// P, of the equation that the gain solves.
+    pub p: DMatrix<f64>,
+    /// Poles of the closed loop.
+    pub poles: Poles,
+    /// Relative residual of P.
+    pub relative_residual: f64,
+}
+
+/// `x' = A x + B u`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearModel {
+    /// A, n x n, 1/s.
+    pub a: DMatrix<f64>,
+    /// B, n x m.
+    pub b: DMatrix<f64>,
+    /// The states in order.
+    pub states: &'static [Signal],
+    /// The inputs in order.
+    pub inputs: &'static [Signal],
+}
+
+/// Weights of the cost in continuous time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weights {
+    /// Q, n x n.
+    pub q: DMatrix<f64>,
+    /// R, m x m.
+    pub r: DMatrix<f64>,
+}
+
+/// Poles, and in which time.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Poles {
+    /// 1/s.
+    Continuous(Vec<Complex64>),
+    /// Per sample.
+    Sampled(Vec<Complex64>),
+}
+
+/// Gains by the law that flies them; each kind is one of the table format's.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Gains {
+    /// 4 x 9.
+    Equilibrium(SMatrix<f64, 4, 9>),
+    /// 7 x 10.
+    FlatOutput(SMatrix<f64, 7, 10>),
+}
+
+impl Gains {
+    /// Which table it makes.
+    pub fn kind(&self) -> TableKind {
+        match self {
+            Self::Equilibrium(_) => TableKind::Equilibrium,
+            Self::FlatOutput(_) => TableKind::FlatOutput,
+        }
+    }
+
+    /// As one matrix.
+    pub fn dense(&self) -> DMatrix<f64> {
+        match self {
+            Self::Equilibrium(gain) => DMatrix::from_column_slice(4, 9, gain.as_slice()),
+            Self::FlatOutput(gain) => DMatrix::from_column_slice(7, 10, gain.as_slice()),
+        }
+    }
+
+    /// As the core flies it, every entry the nearest f32.
+    pub fn rows(&self) -> Rows {
+        match self {
+            Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),
+            Self::FlatOutput(gain) => Rows::FlatOutput(rounded(gain)),
+        }
+    }
+}
+
+impl Designed {
+    /// Computes the gain.
+    ///
+    /// # Errors
+    /// [`GainsError::Design`] where the equations have no solution.
+    pub fn of(design: &Design) -> Result<Self, GainsError> {
+        let rate_hz = design.rate.hz();
+        match &design.problem {
+            Problem::Equilibrium(Method::Lyapunov { mu_1_s }) => {
+                Ok(Self::equilibrium(lyapunov_equilibrium(*mu_1_s)?, None))
+            }
+            Problem::Equilibrium(Method::Lqr { weights }) => {
+                Ok(Self::equilibrium(lqr_equilibrium(weights)?, Some(of_equilibrium(weights))))
+            }
+            Problem::Equilibrium(Method::SampledLqr { weights, delay_samples }) => {
+                let designed = sampled_equilibrium(weights, &sampling(rate_hz, *delay_samples))?;
+                let gains = Gains::Equilibrium(shaped(&designed.gain).unwrap_or_else(SMatrix::zeros));
+                Ok(Self::sampled(designed, LinearModel::equilibrium(), gains, of_equilibrium(weights)))
+            }
+            Problem::FlatOutput(Method::Lyapunov { mu_1_s }) => Ok(Self::flat(lyapunov_flat(*mu_1_s)?, None)),
+            Problem::FlatOutput(Method::Lqr { weights }) => {
+                Ok(Self::flat(lqr_flat(weights)?, Some(of_flat(weights))))
+            }
+            Problem::FlatOutput(Method::SampledLqr { weights, delay_samples }) => {
+                let designed = sampled_flat(weights, &sampling(rate_hz, *delay_samples))?;
+                let gains = Gains::FlatOutput(shaped(&designed.gain).unwrap_or_else(SMatrix::zeros));
+                Ok(Self::sampled(designed, LinearModel::flat_chain(), gains, of_flat(weights)))
+            }
+        }
+    }
+
+    /// What is certified: the plant, the controller before it is rounded, and when it runs.
+    pub fn closed_loop(&self, rate_hz: u32) -> (Plant, Controller, Timing) {
+        let plant = match &self.gains {
+            Gains::Equilibrium(_) => Plant::equilibrium(),
+            Gains::FlatOutput(_) => Plant::flat_chain(),
+        };
+        let past_command_gains = self.past_command_gains.clone();
+        let timing = Timing { delay_samples: past_command_gains.len(), ..Timing::at_rate(rate_hz) };
+        (plant, Controller { gain: self.gains.dense(), past_command_gains }, timing)
+    }
+
+    fn equilibrium(design: EquilibriumDesign, weights: Option<Weights>) -> Self {
+        Self {
+            model: LinearModel::equilibrium(),
+            weights,
+            gains: Gains::Equilibrium(design.gain),
+            past_command_gains: Vec::new(),
+            p: DMatrix::from_column_slice(9, 9, design.p.as_slice()),
+            poles: Poles::Continuous(design.poles),
+            relative_residual: design.relative_residual,
+        }
+    }
+
+    fn flat(design: FlatDesign, weights: Option<Weights>) -> Self {
+        Self {
+            model: LinearModel::flat_chain(),
+            weights,
+            gains: Gains::FlatOutput(design.gain),
+            past_command_gains: Vec::new(),
+            p: DMatrix::from_column_slice(10, 10, design.p.as_slice()),
+            poles: Poles::Continuous(design.poles),
+            relative_residual: design.relative_residual,
+        }
+    }
+
+    fn sampled(design: SampledDesign, model: LinearModel, gains: Gains, weights: Weights) -> Self {
+        Self {
+            model,
+            weights: Some(weights),
+            gains,
+            past_command_gains: design.past_command_gains,
+            p: design.p,
+            poles: Poles::Sampled(design.poles),
+            relative_residual: design.relative_residual,
+        }
+    }
+}
+
+impl LinearModel {
+    /// Hover, without q0, which no input moves.
+    pub fn equilibrium() -> Self {
+        let (a, b) = equilibrium_pair();
+        Self { a, b, states: &EQUILIBRIUM_STATES, inputs: &EQUILIBRIUM_INPUTS }
+    }
+
+    /// The flat chain.
+    pub fn flat_chain() -> Self {
+        let (a, b) = dense_flat_chain();
+        Self { a, b, states: &FLAT_STATES, inputs: &FLAT_INPUTS }
+    }
+}
+
+fn sampling(rate_hz: u32, delay_samples: usize) -> Sampling {
+    Sampling { delay_samples, ..Sampling::at_rate(rate_hz) }
+}
+
+fn of_equilibrium(weights: &EquilibriumWeights) -> Weights {
+    Weights { q: diagonal(&weights.state), r: diagonal(&weights.input) }
+}
+
+fn of_flat(weights: &FlatWeights) -> Weights {
+    Weights { q: diagonal(&weights.state), r: diagonal(&weights.input) }
+}

@@ -1,0 +1,72 @@
+//! What the rows and columns of the matrices stand for, with their units.
+
+use serde::Serialize;
+
+/// A state or an input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Signal {
+    /// Its name in the paper.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+const fn signal(name: &'static str, unit: &'static str) -> Signal {
+    Signal { name, unit }
+}
+
+/// States of the model (1), `[r q v]`.
+pub const MODEL_STATES: [Signal; 10] = [
+    signal("x", "m"),
+    signal("y", "m"),
+    signal("z", "m"),
+    signal("q0", "1"),
+    signal("q1", "1"),
+    signal("q2", "1"),
+    signal("q3", "1"),
+    signal("vx", "m/s"),
+    signal("vy", "m/s"),
+    signal("vz", "m/s"),
+];
+
+/// Errors of the equilibrium laws.
+pub const EQUILIBRIUM_STATES: [Signal; 9] = [
+    signal("x", "m"),
+    signal("y", "m"),
+    signal("z", "m"),
+    signal("q1", "1"),
+    signal("q2", "1"),
+    signal("q3", "1"),
+    signal("vx", "m/s"),
+    signal("vy", "m/s"),
+    signal("vz", "m/s"),
+];
+
+/// Inputs of the model (1).
+pub const EQUILIBRIUM_INPUTS: [Signal; 4] =
+    [signal("T", "m/s^2"), signal("p", "rad/s"), signal("q", "rad/s"), signal("r", "rad/s")];
+
+/// The flat state (6a).
+pub const FLAT_STATES: [Signal; 10] = [
+    signal("x", "m"),
+    signal("y", "m"),
+    signal("z", "m"),
+    signal("vx", "m/s"),
+    signal("vy", "m/s"),
+    signal("vz", "m/s"),
+    signal("ax", "m/s^2"),
+    signal("ay", "m/s^2"),
+    signal("az", "m/s^2"),
+    signal("q3", "1"),
+];
+
+/// The flat input (6b).
+pub const FLAT_INPUTS: [Signal; 7] = [
+    signal("ax", "m/s^2"),
+    signal("ay", "m/s^2"),
+    signal("az", "m/s^2"),
+    signal("jx", "m/s^3"),
+    signal("jy", "m/s^3"),
+    signal("jz", "m/s^3"),
+    signal("q3_rate", "1/s"),
+];
