@@ -25,6 +25,7 @@ pub mod certify;
 pub mod design;
 pub mod figures;
 pub mod flight;
+pub mod gains;
 pub mod integrator;
 pub mod model;
 pub mod pil;

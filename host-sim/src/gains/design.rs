@@ -74,6 +74,36 @@ pub enum Method<W> {
     },
 }
 
+impl Problem {
+    /// Linearisation and method, as they are written in the file.
+    pub fn named(&self) -> (&'static str, &'static str) {
+        match self {
+            Self::Equilibrium(method) => ("equilibrium", method.named()),
+            Self::FlatOutput(method) => ("flat-output", method.named()),
+        }
+    }
+
+    /// mu of a Lyapunov design, 1/s.
+    pub fn mu_1_s(&self) -> Option<f64> {
+        match self {
+            Self::Equilibrium(Method::Lyapunov { mu_1_s }) | Self::FlatOutput(Method::Lyapunov { mu_1_s }) => {
+                Some(*mu_1_s)
+            }
+            _ => None,
+        }
+    }
+}
+
+impl<W> Method<W> {
+    fn named(&self) -> &'static str {
+        match self {
+            Self::Lyapunov { .. } => "lyapunov",
+            Self::Lqr { .. } => "lqr",
+            Self::SampledLqr { .. } => "sampled-lqr",
+        }
+    }
+}
+
 impl Design {
     /// Reads a design; paths in it are relative to its folder.
     ///

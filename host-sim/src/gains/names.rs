@@ -16,7 +16,7 @@ const fn signal(name: &'static str, unit: &'static str) -> Signal {
 }
 
 /// States of the model (1), `[r q v]`.
-pub const MODEL_STATES: [Signal; 10] = [
+pub(super) const MODEL_STATES: [Signal; 10] = [
     signal("x", "m"),
     signal("y", "m"),
     signal("z", "m"),
@@ -30,7 +30,7 @@ pub const MODEL_STATES: [Signal; 10] = [
 ];
 
 /// Errors of the equilibrium laws.
-pub const EQUILIBRIUM_STATES: [Signal; 9] = [
+pub(super) const EQUILIBRIUM_STATES: [Signal; 9] = [
     signal("x", "m"),
     signal("y", "m"),
     signal("z", "m"),
@@ -43,11 +43,11 @@ pub const EQUILIBRIUM_STATES: [Signal; 9] = [
 ];
 
 /// Inputs of the model (1).
-pub const EQUILIBRIUM_INPUTS: [Signal; 4] =
+pub(super) const EQUILIBRIUM_INPUTS: [Signal; 4] =
     [signal("T", "m/s^2"), signal("p", "rad/s"), signal("q", "rad/s"), signal("r", "rad/s")];
 
 /// The flat state (6a).
-pub const FLAT_STATES: [Signal; 10] = [
+pub(super) const FLAT_STATES: [Signal; 10] = [
     signal("x", "m"),
     signal("y", "m"),
     signal("z", "m"),
@@ -61,7 +61,7 @@ pub const FLAT_STATES: [Signal; 10] = [
 ];
 
 /// The flat input (6b).
-pub const FLAT_INPUTS: [Signal; 7] = [
+pub(super) const FLAT_INPUTS: [Signal; 7] = [
     signal("ax", "m/s^2"),
     signal("ay", "m/s^2"),
     signal("az", "m/s^2"),
