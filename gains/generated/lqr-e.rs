@@ -1,6 +1,6 @@
 // lqr-e for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design b9defba39066f48f255dacf568af6481b68f355618f06fdc808f9138fd6f239c
-// Certificate 18b347491e250f7bba469d797f0aa5eb9bf4af6685449282b64aaa046a1c3433
+// Design f026623a14bbfd48f75caf37d954ce5e29749af81b27b05e82de0b31d5cdcebb
+// Certificate fc705af3eee7bb4c543d136d97917c3d61178ff90b47ecfd0c7ae24e29136b1c
 
 /// (LQR-E), equation (21): the paper's weights at hover.
 #[rustfmt::skip]

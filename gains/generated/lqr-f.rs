@@ -1,6 +1,6 @@
 // lqr-f for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 32ebe9676e83d4da3f1aeff651dd63e0f9c14104aed11308f2122150c1577aa3
-// Certificate b1ba11b0eb8890cf3a1fefc8d5f398ce8ec40616c52f0a52babd90c9a5695429
+// Design bd9b7318475aae028dc4219e41384bd29e2fe0248cbd32e1f9de60266c482b05
+// Certificate 9731ce6d565604fe23b2525afd3442ed55184b82e62ed117276345326d8d642e
 
 /// (LQR-F), equation (20): the paper's weights on the flat chain.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // lyap-e for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 1f24379242e2c4cea1286c9a050295b0342f05f499076d1bb4ebc38ee7c4a5ee
-// Certificate 3cc3b6d490f557c5a6a755f95e4a1aca10dc87d6de0d6475d79c3ab6e244cda5
+// Design 2266f2cb5e02c4da32afecafaa087d771e04f52e7a3afb060ca466d8146b5719
+// Certificate 1c99aa863c0be550733e6d090908ccd55dd65aba746b6b8db473f361798501ac
 
 /// (LYAP-E), equation (17): every pole of the hover model at real part -2 1/s.
 #[rustfmt::skip]

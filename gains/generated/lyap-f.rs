@@ -1,6 +1,6 @@
 // lyap-f for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design c29fa147c48a2168640ceb33142b47851daa0e5bac089016e9761fd2cfcfb8d1
-// Certificate b312d05957ed0e37506631d239440e00a5653bbd74e49220a9a8e6b6ebd9df6e
+// Design 212e04680409e3dc1a112cbace39d99bec27d66057f62fc9afdd4bddd9228348
+// Certificate 8c922c9dd2d59705d15fc60043236d075799880906bf64e92e113f9edd2da6a8
 
 /// (LYAP-F), equation (15): every pole of the flat chain at real part -2 1/s.
 #[rustfmt::skip]

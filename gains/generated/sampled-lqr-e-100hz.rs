@@ -1,6 +1,6 @@
 // sampled-lqr-e-100hz for crazyflie-2.1 at 100 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 55cc71e56d8e3f763521c9a5aaa96449299be4f4a8d8e30b6851712c49c54b24
-// Certificate defcc6512d1f8a2497a16d1157d7cdc0f542a4cc80e908e1c3ba3de5f02f0b9b
+// Design 7941a3b09a09f3d0f6ac8d50d3eb27656d8f002e9ca8721441805004fdaaf49d
+// Certificate b5ddc833a3a0ef67ba891ef0b190afb870c835c0d9413abe056350fbb63c7045
 
 /// The paper's weights at hover, under commands held for 10 ms.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // sampled-lqr-e for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 25c79af4507fb0d7700b836dee2615439c7d06a1736a8848118c693ec533d462
-// Certificate 6607de307212c4796fc907e467e2ce9d5cb83e2e9894cc81bf27bb9b78711254
+// Design a6674cba188f3b51f8a220e4731a575f58b5ea4d92e98146bac3a60c2eed3d84
+// Certificate 5ec294f278d1992083e6793207672dc9be1ad77f43d93867a46990dfb59cc348
 
 /// The paper's weights at hover, under commands held for 2 ms.
 #[rustfmt::skip]

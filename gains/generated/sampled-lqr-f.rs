@@ -1,6 +1,6 @@
 // sampled-lqr-f for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 3b34857f644488d2ec2ba8e130acc73421508d63f2aab3d8c6b84381a25e1967
-// Certificate 29aae199ff48b8b45d31326f91d4f99f338ef4675fd640a3d44fb7024983d177
+// Design eb3d3b29f3c9a9b514ae3b99f6bb4a688bff34636a91ac6f7299bafed885d6c1
+// Certificate 88a4081f31dafba99559d55590281cf02119edd57d54b3a8fdacd9d7a0bb492d
 
 /// The paper's weights on the flat chain, under commands held for 2 ms.
 #[rustfmt::skip]

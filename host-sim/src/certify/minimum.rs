@@ -30,8 +30,7 @@ pub struct Minimum {
 }
 
 /// What a figure is a number of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// No unit.
     Number,
@@ -44,7 +43,7 @@ pub enum Quantity {
 }
 
 /// A figure of the certificate that a design may ask something of.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
     /// Name of the figure, with its channel.
     pub figure: String,
@@ -71,19 +70,21 @@ pub struct MarginTooSmall {
 }
 
 impl Quantity {
-    /// A value in words, with its unit.
-    pub fn told(self, value: f64) -> String {
+    /// A value in the unit that people give it in, and that unit.
+    pub fn in_unit(self, value: f64) -> (f64, &'static str) {
         let (value, unit) = match self {
             Self::Number => (value, ""),
-            Self::Phase => (value.to_degrees(), " deg"),
-            Self::Duration => (value * 1e3, " ms"),
-            Self::Decay => (value, " 1/s"),
+            Self::Phase => (value.to_degrees(), "deg"),
+            Self::Duration => (value * 1e3, "ms"),
+            Self::Decay => (value, "1/s"),
         };
-        if value.is_infinite() {
-            return String::from("unlimited");
-        }
         // Millionths are more than anybody asks for; what is left of the conversion of units is less.
-        format!("{}{unit}", (value * 1e6).round() / 1e6)
+        (if value.is_finite() { (value * 1e6).round() / 1e6 } else { value }, unit)
+    }
+
+    fn told(self, value: f64) -> String {
+        let (value, unit) = self.in_unit(value);
+        if unit.is_empty() { value.to_string() } else { format!("{value} {unit}") }
     }
 }
 

@@ -6,8 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use quatrack::gains::table::{GainTable, Rows};
-use quatrack_sim::certify::judge;
-use quatrack_sim::gains::{self, Certified, Checked, Design, Failed, GainsError};
+use quatrack_sim::gains::{self, Certified, Checked, Design, Failed, GainsError, Signal};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -103,7 +102,8 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
         let certified = certified(path)?;
         let folder = out.map_or_else(|| gains::default_folder(path), Path::to_path_buf);
         output::create_dir(&folder)?;
-        let mut text = format!("{}\n{}", path.display(), figures(&certified));
+        let document = gains::json_document(&certified);
+        let mut text = format!("{}\n{}", path.display(), figures(&document));
         for file in gains::artifacts(&certified, &folder) {
             output::write(&file.path, &file.contents)?;
             wrote(&mut text, &file.path);
@@ -113,8 +113,7 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
                      certificate only\n";
         }
         output::print(&text)?;
-        let judged = judge(&certified.certificate, &certified.design.minimum);
-        summaries.push(json!({ "design": path, "name": certified.design.name.as_str(), "figures": judged }));
+        summaries.push(json!({ "design": path, "name": document["name"], "figures": document["figures"] }));
     }
     if let Some(path) = json {
         output::write_json(path, &summaries)?;
@@ -123,14 +122,17 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
 }
 
 /// Every figure that a design can ask for, beside what this one asks.
-fn figures(certified: &Certified) -> String {
+fn figures(document: &Value) -> String {
     let mut text = String::new();
-    for judged in judge(&certified.certificate, &certified.design.minimum).iter().skip(1) {
-        let asked = judged.asked.map_or(String::new(), |asked| format!("at least {}", judged.quantity.told(asked)));
-        let found = judged.quantity.told(judged.found);
-        let _ = writeln!(text, "  {:<46} {found:>16}  {asked}", judged.figure);
+    for figure in document["figures"].as_array().into_iter().flatten() {
+        let unit = figure["unit"].as_str().unwrap_or_default();
+        let told = |value: f64| format!("{value} {unit}").trim_end().to_owned();
+        let found = figure["found"].as_f64().map_or_else(|| "unlimited".to_owned(), told);
+        let asked = figure["asked"].as_f64().map_or_else(String::new, |asked| format!("  at least {}", told(asked)));
+        let name = figure["figure"].as_str().unwrap_or_default();
+        let _ = writeln!(text, "  {name:<50} {found:>16}{asked}");
     }
-    text.lines().map(|line| format!("{}\n", line.trim_end())).collect()
+    text
 }
 
 fn check(paths: &[PathBuf], json: Option<&Path>) -> Result<(), Failure> {
@@ -204,9 +206,8 @@ fn show(path: &Path, json: Option<&Path>) -> Result<(), Failure> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let (text, document) = match extension.as_str() {
         "toml" => {
-            let certified = certified(path)?;
-            let document: Value = serde_json::from_str(&gains::json_text(&certified)).map_err(Failure::input)?;
-            (format!("{}\n{}", of_document(&document), figures(&certified)), document)
+            let document = gains::json_document(&certified(path)?);
+            (of_document(&document), document)
         }
         "json" => {
             let document: Value = serde_json::from_slice(&read(path)?)
@@ -215,7 +216,7 @@ fn show(path: &Path, json: Option<&Path>) -> Result<(), Failure> {
                 let reason = "not made by `quatrack gains design`: certificate_sha256 is missing";
                 return Err(Failure::input(format!("{}: {reason}", path.display())));
             }
-            (format!("{}\n{}", of_document(&document), of_certificate(&document)), document)
+            (of_document(&document), document)
         }
         "bin" => {
             let table = GainTable::from_bytes(&read(path)?)
@@ -263,37 +264,7 @@ fn of_document(document: &Value) -> String {
         .flatten()
         .map(|row| row.as_array().into_iter().flatten().filter_map(Value::as_f64).collect())
         .collect();
-    out + &matrix(&names(&gain["rows"]), &names(&gain["columns"]), &entries)
-}
-
-/// Margins and limits of a certificate that was written.
-fn of_certificate(document: &Value) -> String {
-    let certificate = &document["certificate"];
-    let sampled = &certificate["sampled"];
-    let number = |value: &Value, unit: f64| value.as_f64().map_or("unlimited".into(), |x| format!("{:.6}", x * unit));
-    let mut out = format!("  {:<46} {:>16}\n", "spectral radius at the rate", number(&sampled["spectral_radius"], 1.0));
-    let degrees = 1_f64.to_degrees();
-    let mut disk = |name: &str, disk: &Value| {
-        let _ = writeln!(out, "  {:<46} {:>16}", format!("gain margin of {name}"), number(&disk["gain_max"], 1.0));
-        let _ =
-            writeln!(out, "  {:<46} {:>16}", format!("phase margin of {name}, deg"), number(&disk["phase_rad"], degrees));
-    };
-    for channel in sampled["margins"]["each"].as_array().into_iter().flatten() {
-        disk(channel["channel"].as_str().unwrap_or_default(), &channel["balanced"]);
-    }
-    disk("all channels at once", &sampled["margins"]["all"]["balanced"]);
-    for (key, name) in [
-        ("delay", "largest delay"),
-        ("lag", "largest motor lag"),
-        ("motors_in_rate_loop", "largest motor lag inside the rate loop"),
-    ] {
-        for limit in certificate[key].as_array().into_iter().flatten() {
-            let channels = limit["channels"].as_str().unwrap_or_default();
-            let value = number(&limit["stable_to_s"], 1e3);
-            let _ = writeln!(out, "  {:<46} {value:>16}", format!("{name} of {channels}, ms"));
-        }
-    }
-    out
+    out + &matrix(&names(&gain["rows"]), &names(&gain["columns"]), &entries) + "\n" + &figures(document)
 }
 
 /// What a binary table says.
@@ -317,10 +288,11 @@ fn of_table(table: &GainTable) -> String {
         head.design_hash,
         certificate.hash,
     );
-    let (rows, columns) = table.kind().dimensions();
-    let (rows, columns) = (usize::from(rows), usize::from(columns));
-    let names = |count: usize| (0..count).map(|i| i.to_string()).collect::<Vec<_>>();
-    let entries: Vec<Vec<f64>> = entries(table).chunks(columns).map(|row| row.iter().map(|k| f64::from(*k)).collect()).collect();
+    let (rows, columns) = gains::signals(table.kind());
+    let names = |signals: &[Signal]| signals.iter().map(|signal| signal.name.to_owned()).collect::<Vec<_>>();
+    let entries = entries(table);
+    let entries: Vec<Vec<f64>> =
+        entries.chunks(columns.len()).map(|row| row.iter().map(|k| f64::from(*k)).collect()).collect();
     out += &matrix(&names(rows), &names(columns), &entries);
     let _ = write!(
         out,

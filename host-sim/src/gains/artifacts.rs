@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::certified::Certified;
 use super::significant::{rounded, without_dust};
+use crate::certify::{Judged, judge};
 
 /// A file to be written or compared.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +20,9 @@ pub struct Artifact {
     /// What stands in it.
     pub contents: Vec<u8>,
 }
+
+/// Keys of the document whose numbers are figures of the certificate.
+pub(super) const FIGURES: [&str; 2] = ["figures", "certificate"];
 
 /// The folder beside a design that its files are written to.
 pub fn default_folder(design: &Path) -> PathBuf {
@@ -31,7 +35,7 @@ pub fn artifacts(certified: &Certified, folder: &Path) -> Vec<Artifact> {
         path: folder.join(format!("{}.{extension}", certified.design.name)),
         contents,
     };
-    let mut files = vec![file("json", json_text(certified).into_bytes())];
+    let mut files = vec![file("json", format!("{:#}\n", json_document(certified)).into_bytes())];
     if let Some(bytes) = certified.to_bytes() {
         files.push(file("rs", rust_source(certified).into_bytes()));
         files.push(file("bin", bytes));
@@ -40,7 +44,7 @@ pub fn artifacts(certified: &Certified, folder: &Path) -> Vec<Artifact> {
 }
 
 /// The document with every figure in full.
-pub fn document(certified: &Certified) -> Value {
+pub(super) fn document(certified: &Certified) -> Value {
     let Certified { design, designed, .. } = certified;
     let past: Vec<Value> = designed.past_command_gains.iter().map(by_rows).collect();
     json!({
@@ -55,22 +59,32 @@ pub fn document(certified: &Certified) -> Value {
             "past_command_gains": past,
             "relative_residual_of_p_below": residual_bound(designed.relative_residual),
         },
+        "figures": figures(certified),
         "certificate": without_dust(json!(certified.certificate)),
         "statement": certified.statement,
         "certificate_sha256": certified.statement.hash().to_string(),
     })
 }
 
-/// The document as it is written: figures of the certificate to six digits.
-pub fn json_text(certified: &Certified) -> String {
+/// Every figure that a design can ask for, in the units that it asks in, beside what this one asks. No limit is null.
+fn figures(certified: &Certified) -> Value {
+    let judged = judge(&certified.certificate, &certified.design.minimum).into_iter();
+    let figure = |Judged { figure, quantity, found, asked }: Judged| {
+        let (found, unit) = quantity.in_unit(found);
+        json!({ "figure": figure, "unit": unit, "found": found, "asked": asked.map(|asked| quantity.in_unit(asked).0) })
+    };
+    judged.map(figure).collect()
+}
+
+/// The document as it is written: figures to six digits.
+pub fn json_document(certified: &Certified) -> Value {
     let mut document = document(certified);
-    if let Some(certificate) = document.get_mut("certificate") {
-        *certificate = rounded(certificate.take());
+    for key in FIGURES {
+        if let Some(figures) = document.get_mut(key) {
+            *figures = rounded(figures.take());
+        }
     }
-    // A value with text for keys is written without fail.
-    let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
-    text.push('\n');
-    text
+    document
 }
 
 /// The table as a Rust constant with the name of the design.

@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::artifacts::{artifacts, default_folder, document};
+use super::GainsError;
+use super::artifacts::{FIGURES, artifacts, default_folder, document};
 use super::certified::Certified;
 use super::design::Design;
 use super::significant::{SAME_GAIN, is_same_figure};
-use super::GainsError;
 use crate::design::codegen;
 
 /// A decimal of an f64 is read to one rounding.
@@ -160,7 +160,7 @@ fn difference(path: &str, committed: &Value, computed: &Value, rule: Rule) -> Op
             }
             there.iter().find_map(|(key, computed)| {
                 let rule = match key.as_str() {
-                    "certificate" => Rule::Figure,
+                    key if FIGURES.contains(&key) => Rule::Figure,
                     "gain" => Rule::Relative(SAME_GAIN),
                     _ => rule,
                 };

@@ -8,7 +8,7 @@ use quatrack::{Limits, Rate};
 use serde::Serialize;
 
 use super::GainsError;
-use super::file::{self, DesignFile, Linearisation, LimitsEntry, MethodName, MinimumEntry, Weights};
+use super::file::{self, DesignFile, LimitsEntry, Linearisation, MethodName, MinimumEntry, Weights};
 use crate::certify::Minimum;
 use crate::design::synthesis::{EquilibriumWeights, FlatWeights};
 use crate::vehicle::Vehicle;
@@ -146,12 +146,9 @@ impl Design {
 
 fn vehicle(written: &str, folder: &Path) -> Result<Vehicle, GainsError> {
     let refused = |reason: String| GainsError::Vehicle { vehicle: written.to_owned(), reason };
-    let vehicle = if written.ends_with(".toml") {
-        Vehicle::from_file(&folder.join(written))
-    } else {
-        Vehicle::by_name(written)
-    }
-    .map_err(|error| refused(error.to_string()))?;
+    let vehicle =
+        if written.ends_with(".toml") { Vehicle::from_file(&folder.join(written)) } else { Vehicle::by_name(written) }
+            .map_err(|error| refused(error.to_string()))?;
     Name::new(vehicle.name()).map_err(|error| refused(format!("its {error}")))?;
     Ok(vehicle)
 }

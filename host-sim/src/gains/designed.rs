@@ -120,9 +120,7 @@ impl Designed {
                 Ok(Self::sampled(designed, LinearModel::equilibrium(), gains, of_equilibrium(weights)))
             }
             Problem::FlatOutput(Method::Lyapunov { mu_1_s }) => Ok(Self::flat(lyapunov_flat(*mu_1_s)?, None)),
-            Problem::FlatOutput(Method::Lqr { weights }) => {
-                Ok(Self::flat(lqr_flat(weights)?, Some(of_flat(weights))))
-            }
+            Problem::FlatOutput(Method::Lqr { weights }) => Ok(Self::flat(lqr_flat(weights)?, Some(of_flat(weights)))),
             Problem::FlatOutput(Method::SampledLqr { weights, delay_samples }) => {
                 let designed = sampled_flat(weights, &sampling(rate_hz, *delay_samples))?;
                 let gains = Gains::FlatOutput(shaped(&designed.gain).unwrap_or_else(SMatrix::zeros));

@@ -18,10 +18,12 @@ pub enum GainsError {
         reason: String,
     },
     /// Not TOML, a key that is unknown or missing, or a value of another type.
-    #[error("line {line}: {reason}")]
+    #[error("line {line}, `{written}`: {reason}")]
     Syntax {
         /// Line, from 1.
         line: usize,
+        /// What stands in it.
+        written: String,
         /// What the reader says.
         reason: String,
     },

@@ -64,8 +64,7 @@ impl Export {
             entries,
         };
         let (a, b) = (&designed.model.a, &designed.model.b);
-        let mut matrices =
-            vec![matrix("A", states, states, a.clone()), matrix("B", states, inputs, b.clone())];
+        let mut matrices = vec![matrix("A", states, states, a.clone()), matrix("B", states, inputs, b.clone())];
         let mut period_s = None;
         if let Some(weights) = &designed.weights {
             matrices.push(matrix("Q", states, states, weights.q.clone()));

@@ -108,6 +108,7 @@ pub(super) fn read(text: &str) -> Result<DesignFile, GainsError> {
         let start = error.span().map_or(0, |span| span.start);
         let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
         let words: Vec<&str> = error.message().split_whitespace().collect();
-        GainsError::Syntax { line, reason: words.join(" ") }
+        let written = text.lines().nth(line - 1).unwrap_or_default().trim().to_owned();
+        GainsError::Syntax { line, written, reason: words.join(" ") }
     })
 }

@@ -25,12 +25,12 @@ mod names;
 mod significant;
 mod statement;
 
-pub use artifacts::{Artifact, artifacts, default_folder, document, json_text, rust_source};
+pub use artifacts::{Artifact, artifacts, default_folder, json_document, rust_source};
 pub use certified::Certified;
 pub use check::{Checked, Failed, check_design, check_folder, designs};
 pub use design::{Design, Method, Problem};
 pub use designed::{Designed, Gains, LinearModel, Poles, Weights};
 pub use error::GainsError;
 pub use export::{Export, Matrix};
-pub use names::Signal;
+pub use names::{Signal, signals};
 pub use statement::Statement;

@@ -1,5 +1,6 @@
 //! What the rows and columns of the matrices stand for, with their units.
 
+use quatrack::gains::table::TableKind;
 use serde::Serialize;
 
 /// A state or an input.
@@ -70,3 +71,11 @@ pub(super) const FLAT_INPUTS: [Signal; 7] = [
     signal("jz", "m/s^3"),
     signal("q3_rate", "1/s"),
 ];
+
+/// What the rows and the columns of a table stand for.
+pub fn signals(kind: TableKind) -> (&'static [Signal], &'static [Signal]) {
+    match kind {
+        TableKind::Equilibrium => (&EQUILIBRIUM_INPUTS, &EQUILIBRIUM_STATES),
+        TableKind::FlatOutput => (&FLAT_INPUTS, &FLAT_STATES),
+    }
+}
