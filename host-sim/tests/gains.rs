@@ -97,7 +97,8 @@ fn a_changed_file_is_named_with_its_first_difference() {
     fs::remove_file(&json).unwrap();
     // The whole folder: everything that is wrong, and what no design gives.
     fs::write(made.join("older.bin"), bytes).unwrap();
-    let named = ["mine.json: cannot be read", "mine.rs: line ", "mine.bin: byte 200 is", "older.bin: no design gives it"];
+    let named =
+        ["mine.json: cannot be read", "mine.rs: line ", "mine.bin: byte 200 is", "older.bin: no design gives it"];
     assert_refused(&quatrack(&["gains", "check", dir.to_str().unwrap()]), 1, &named);
 }
 
@@ -186,4 +187,28 @@ fn exports_name_every_row_and_column() {
     assert_eq!(export["matrices"]["K"]["rows"][3], serde_json::json!({ "name": "jx", "unit": "m/s^3" }));
     assert_refused(&quatrack(&["export", "--format", "json", "--design", "pid"]), 2, &["pid", "lqr-e"]);
     assert_refused(&quatrack(&["export", "--design", "lqr-e"]), 2, &["--format"]);
+}
+
+#[test]
+fn the_page_on_own_designs_prints_what_the_command_does() {
+    let page = fs::read_to_string(Path::new(GAINS).join("../docs/own-gains.md")).unwrap();
+    let block = |after: &str, fence: &str| {
+        let from = page.find(after).unwrap();
+        let start = from + page[from..].find(fence).unwrap() + fence.len();
+        page[start..start + page[start..].find("```").unwrap()].to_owned()
+    };
+    let toml = block("## 1.", "```toml\n");
+    let dir = folder("page");
+    let path = dir.join("my-lqr.toml");
+    fs::write(&path, &toml).unwrap();
+    let printed = stdout(&quatrack(&["gains", "design", path.to_str().unwrap()]));
+    let shown = block("## 2.", "```text\n");
+    let figures: Vec<&str> = shown.lines().filter(|line| line.starts_with("  ")).collect();
+    assert_eq!(figures.len(), 4);
+    for line in figures {
+        assert!(printed.contains(line), "{line} is not in\n{printed}");
+    }
+    fs::write(&path, toml.replace("motor_lag_ms = 40.0", "motor_lag_ms = 126.0")).unwrap();
+    let refused = block("Had it asked", "```text\nquatrack: gains/my-lqr.toml: ");
+    assert_refused(&quatrack(&["gains", "design", path.to_str().unwrap()]), 1, &[refused.trim()]);
 }
