@@ -169,25 +169,25 @@ fn positive(key: &str, value: f64) -> Result<(), GainsError> {
 fn problem(file: &DesignFile) -> Result<Problem, GainsError> {
     let lyapunov = file.method == MethodName::Lyapunov;
     if let (Some(mu), false) = (file.mu_1_s, lyapunov) {
-        return Err(misplaced("mu_1_s", mu, file.method));
+        return Err(misplaced("mu_1_s", &mu, &file.method));
     }
     if let (Some(delay), false) = (file.delay_samples, file.method == MethodName::SampledLqr) {
-        return Err(misplaced("delay_samples", delay, file.method));
+        return Err(misplaced("delay_samples", &delay, &file.method));
     }
     if lyapunov {
-        let mu_1_s = file.mu_1_s.ok_or_else(|| missing("mu_1_s", file.method, "mu_1_s = 2.0"))?;
+        let mu_1_s = file.mu_1_s.ok_or_else(|| missing("mu_1_s", &file.method, "mu_1_s = 2.0"))?;
         positive("mu_1_s", mu_1_s)?;
         if file.weights.is_some() {
-            return Err(misplaced("[weights]", "...", file.method));
+            return Err(misplaced("[weights]", &"...", &file.method));
         }
         return Ok(match file.linearisation {
             Linearisation::Equilibrium => Problem::Equilibrium(Method::Lyapunov { mu_1_s }),
             Linearisation::FlatOutput => Problem::FlatOutput(Method::Lyapunov { mu_1_s }),
         });
     }
-    let weights = file.weights.as_ref().ok_or_else(|| missing("[weights]", file.method, "[weights]"))?;
+    let weights = file.weights.as_ref().ok_or_else(|| missing("[weights]", &file.method, "[weights]"))?;
     if let (Some(weight), false) = (weights.position_integral, file.method == MethodName::Lqi) {
-        return Err(misplaced("weights.position_integral", format!("{weight:?}"), file.method));
+        return Err(misplaced("weights.position_integral", &format!("{weight:?}"), &file.method));
     }
     let delay_samples = file.delay_samples.unwrap_or(0);
     check(
@@ -215,11 +215,11 @@ fn method<W>(file: &DesignFile, weights: W, delay_samples: usize) -> Result<Meth
     }
 }
 
-fn misplaced(key: &str, value: impl ToString, with: impl ToString) -> GainsError {
+fn misplaced(key: &str, value: &dyn ToString, with: &dyn ToString) -> GainsError {
     GainsError::Misplaced { key: key.to_owned(), value: value.to_string(), with: with.to_string() }
 }
 
-fn missing(key: &str, with: impl ToString, example: &'static str) -> GainsError {
+fn missing(key: &str, with: &dyn ToString, example: &'static str) -> GainsError {
     GainsError::Missing { key: key.to_owned(), with: with.to_string(), example }
 }
 
@@ -254,17 +254,17 @@ fn flat_weights(weights: &Weights) -> Result<FlatWeights, GainsError> {
 }
 
 fn absent(key: &str, value: Option<impl std::fmt::Debug>, here: Linearisation) -> Result<(), GainsError> {
-    value.map_or(Ok(()), |value| Err(misplaced(&format!("weights.{key}"), format!("{value:?}"), here)))
+    value.map_or(Ok(()), |value| Err(misplaced(&format!("weights.{key}"), &format!("{value:?}"), &here)))
 }
 
 fn triple(key: &str, value: Option<[f64; 3]>, here: Linearisation) -> Result<[f64; 3], GainsError> {
-    let value = value.ok_or_else(|| missing(&format!("weights.{key}"), here, "three numbers, [x, y, z]"))?;
+    let value = value.ok_or_else(|| missing(&format!("weights.{key}"), &here, "three numbers, [x, y, z]"))?;
     value.iter().try_for_each(|entry| weight(key, *entry))?;
     Ok(value)
 }
 
 fn single(key: &str, value: Option<f64>, here: Linearisation) -> Result<f64, GainsError> {
-    let value = value.ok_or_else(|| missing(&format!("weights.{key}"), here, "a number"))?;
+    let value = value.ok_or_else(|| missing(&format!("weights.{key}"), &here, "a number"))?;
     weight(key, value)?;
     Ok(value)
 }

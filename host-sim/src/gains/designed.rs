@@ -69,9 +69,9 @@ pub enum Poles {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Gains {
     /// 4 x 9.
-    Equilibrium(SMatrix<f64, 4, 9>),
+    Equilibrium(Box<SMatrix<f64, 4, 9>>),
     /// 7 x 10.
-    FlatOutput(SMatrix<f64, 7, 10>),
+    FlatOutput(Box<SMatrix<f64, 7, 10>>),
 }
 
 impl Gains {
@@ -116,14 +116,14 @@ impl Designed {
             }
             Problem::Equilibrium(Method::SampledLqr { weights, delay_samples }) => {
                 let designed = sampled_equilibrium(weights, &sampling(rate_hz, *delay_samples))?;
-                let gains = Gains::Equilibrium(shaped(&designed.gain).unwrap_or_else(SMatrix::zeros));
+                let gains = Gains::Equilibrium(Box::new(of_shape(&designed.gain)));
                 Ok(Self::sampled(designed, LinearModel::equilibrium(), gains, of_equilibrium(weights)))
             }
             Problem::FlatOutput(Method::Lyapunov { mu_1_s }) => Ok(Self::flat(lyapunov_flat(*mu_1_s)?, None)),
             Problem::FlatOutput(Method::Lqr { weights }) => Ok(Self::flat(lqr_flat(weights)?, Some(of_flat(weights)))),
             Problem::FlatOutput(Method::SampledLqr { weights, delay_samples }) => {
                 let designed = sampled_flat(weights, &sampling(rate_hz, *delay_samples))?;
-                let gains = Gains::FlatOutput(shaped(&designed.gain).unwrap_or_else(SMatrix::zeros));
+                let gains = Gains::FlatOutput(Box::new(of_shape(&designed.gain)));
                 Ok(Self::sampled(designed, LinearModel::flat_chain(), gains, of_flat(weights)))
             }
         }
@@ -144,7 +144,7 @@ impl Designed {
         Self {
             model: LinearModel::equilibrium(),
             weights,
-            gains: Gains::Equilibrium(design.gain),
+            gains: Gains::Equilibrium(Box::new(design.gain)),
             past_command_gains: Vec::new(),
             p: DMatrix::from_column_slice(9, 9, design.p.as_slice()),
             poles: Poles::Continuous(design.poles),
@@ -156,7 +156,7 @@ impl Designed {
         Self {
             model: LinearModel::flat_chain(),
             weights,
-            gains: Gains::FlatOutput(design.gain),
+            gains: Gains::FlatOutput(Box::new(design.gain)),
             past_command_gains: Vec::new(),
             p: DMatrix::from_column_slice(10, 10, design.p.as_slice()),
             poles: Poles::Continuous(design.poles),
@@ -201,4 +201,9 @@ fn of_equilibrium(weights: &EquilibriumWeights) -> Weights {
 
 fn of_flat(weights: &FlatWeights) -> Weights {
     Weights { q: diagonal(&weights.state), r: diagonal(&weights.input) }
+}
+
+/// A gain of the shape that its solver gives.
+fn of_shape<const M: usize, const N: usize>(gain: &DMatrix<f64>) -> SMatrix<f64, M, N> {
+    shaped(gain).unwrap_or_else(SMatrix::zeros)
 }
