@@ -1,6 +1,6 @@
 // lqr-e for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design f026623a14bbfd48f75caf37d954ce5e29749af81b27b05e82de0b31d5cdcebb
-// Certificate fc705af3eee7bb4c543d136d97917c3d61178ff90b47ecfd0c7ae24e29136b1c
+// Design efff0642daf0fbe800a06c9dbb2e0be75b7519321f6fb85d48c8e3dfbbccf23f
+// Certificate e1bf3844f8aa09cf0cc134418fae3cc9ed82094cc70a463cc854aa095395ae39
 
 /// (LQR-E), equation (21): the paper's weights at hover.
 #[rustfmt::skip]

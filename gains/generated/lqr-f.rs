@@ -1,6 +1,6 @@
 // lqr-f for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design bd9b7318475aae028dc4219e41384bd29e2fe0248cbd32e1f9de60266c482b05
-// Certificate 9731ce6d565604fe23b2525afd3442ed55184b82e62ed117276345326d8d642e
+// Design 417e07b902c5c2e9ae7fe433eb910c2511f2c2079bc98a4b0d4c41c66f6d690f
+// Certificate 7dde7a0eed3b01a854b52f50d164b6af51950420fc77d41a9f2428acbb8c1996
 
 /// (LQR-F), equation (20): the paper's weights on the flat chain.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // lyap-e for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 2266f2cb5e02c4da32afecafaa087d771e04f52e7a3afb060ca466d8146b5719
-// Certificate 1c99aa863c0be550733e6d090908ccd55dd65aba746b6b8db473f361798501ac
+// Design 0c1ab3c0feda6d5b685d3816c166d70cd17d19d5b89b1eebf69df5370e2ac83d
+// Certificate d0a597b8415f544cb782e97da65ae8c3284f1e0ec969ae2bbba45e8c927344f9
 
 /// (LYAP-E), equation (17): every pole of the hover model at real part -2 1/s.
 #[rustfmt::skip]

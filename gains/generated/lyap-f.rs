@@ -1,6 +1,6 @@
 // lyap-f for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 212e04680409e3dc1a112cbace39d99bec27d66057f62fc9afdd4bddd9228348
-// Certificate 8c922c9dd2d59705d15fc60043236d075799880906bf64e92e113f9edd2da6a8
+// Design 2bcdc709ddefaf64f5c328c1d8b5b2f15a46d4080b0ad8ced9b0a0251770fd1a
+// Certificate b254ae9189499321489ce323cda4fbae2c8a1a7d9b8d5f1632846a114c9e0c5c
 
 /// (LYAP-F), equation (15): every pole of the flat chain at real part -2 1/s.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // sampled-lqr-e-100hz for crazyflie-2.1 at 100 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 7941a3b09a09f3d0f6ac8d50d3eb27656d8f002e9ca8721441805004fdaaf49d
-// Certificate b5ddc833a3a0ef67ba891ef0b190afb870c835c0d9413abe056350fbb63c7045
+// Design e925be29062337e88cd3ed1959482d311bcffa5d8fe626cc987bf69db3cb0434
+// Certificate 894acd3849a1ab8563c19b70159c409fd41658b320aff9f3feabb23363a82d49
 
 /// The paper's weights at hover, under commands held for 10 ms.
 #[rustfmt::skip]

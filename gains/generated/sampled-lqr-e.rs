@@ -1,6 +1,6 @@
 // sampled-lqr-e for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design a6674cba188f3b51f8a220e4731a575f58b5ea4d92e98146bac3a60c2eed3d84
-// Certificate 5ec294f278d1992083e6793207672dc9be1ad77f43d93867a46990dfb59cc348
+// Design 2eabdb5dc49b3d9cc5280c0fe8b4953b50a7c52439e4de07e23ae677c2e5ab08
+// Certificate 74d342c5e3573d1b8ad72d8f0a8356b4270cf1529962bd1947063b48a3242b29
 
 /// The paper's weights at hover, under commands held for 2 ms.
 #[rustfmt::skip]

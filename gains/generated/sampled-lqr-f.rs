@@ -1,6 +1,6 @@
 // sampled-lqr-f for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design eb3d3b29f3c9a9b514ae3b99f6bb4a688bff34636a91ac6f7299bafed885d6c1
-// Certificate 88a4081f31dafba99559d55590281cf02119edd57d54b3a8fdacd9d7a0bb492d
+// Design 0bb68458cba2848253807882ce36b1675b66d4e8f83faf5d7f866eea4dffe01b
+// Certificate e74ef7acdbd0ea293cda58b000c6f257673bd8264c11748d6c60eb707036778e
 
 /// The paper's weights on the flat chain, under commands held for 2 ms.
 #[rustfmt::skip]

@@ -6,7 +6,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Rate};
+use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlightLaw, Limits, Rate};
 use quatrack_sim::design::codegen::rounded;
 use quatrack_sim::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
 use quatrack_sim::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
@@ -267,13 +267,13 @@ fn fly_core(
             FlatOutput { gain: &flat_gain, feed_forward }.into()
         }
     };
-    fly_law(args, law, trajectory, rate, limits)
+    fly_law(args, law.into(), trajectory, rate, limits)
 }
 
 /// Flies a law of the core.
 fn fly_law(
     args: &Args,
-    law: AnyLaw<'_>,
+    law: FlightLaw<'_>,
     trajectory: &PiecewisePolynomial,
     rate: Rate,
     limits: Limits,

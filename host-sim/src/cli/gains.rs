@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use quatrack::gains::table::{GainTable, Rows};
+use quatrack::gains::table::GainTable;
 use quatrack_sim::gains::{self, Certified, Checked, Design, Failed, GainsError, Signal};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -244,7 +244,7 @@ fn of_document(document: &Value) -> String {
         text(&design["vehicle_id"]),
         design["control_rate_hz"],
         text(&design["linearisation"]),
-        design["method"].as_object().and_then(|method| method.keys().next().cloned()).unwrap_or_default(),
+        text(&design["method"]),
     );
     let _ = writeln!(
         out,
@@ -290,9 +290,9 @@ fn of_table(table: &GainTable) -> String {
     );
     let (rows, columns) = gains::signals(table.kind());
     let names = |signals: &[Signal]| signals.iter().map(|signal| signal.name.to_owned()).collect::<Vec<_>>();
-    let entries = entries(table);
+    let gain = table.rows();
     let entries: Vec<Vec<f64>> =
-        entries.chunks(columns.len()).map(|row| row.iter().map(|k| f64::from(*k)).collect()).collect();
+        gain.entries().chunks(columns.len()).map(|row| row.iter().map(|k| f64::from(*k)).collect()).collect();
     out += &matrix(&names(rows), &names(columns), &entries);
     let _ = write!(
         out,
@@ -314,18 +314,11 @@ fn of_table(table: &GainTable) -> String {
     out
 }
 
-fn entries(table: &GainTable) -> Vec<f32> {
-    match table.rows() {
-        Rows::Equilibrium(rows) => rows.as_flattened().to_vec(),
-        Rows::FlatOutput(rows) => rows.as_flattened().to_vec(),
-    }
-}
-
 fn table_json(table: &GainTable) -> Value {
     let (head, certificate) = (table.head(), &table.head().certificate);
     let rates = head.limits.body_rates_max_rad_s();
     let columns = usize::from(table.kind().dimensions().1);
-    let k: Vec<Vec<f32>> = entries(table).chunks(columns).map(<[f32]>::to_vec).collect();
+    let k: Vec<Vec<f32>> = table.rows().entries().chunks(columns).map(<[f32]>::to_vec).collect();
     json!({
         "name": head.name.as_str(),
         "kind": table.kind().to_string(),

@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use nalgebra::DMatrix;
-use quatrack::gains::table::Rows;
 use serde_json::{Value, json};
 
 use super::certified::Certified;
+use super::designed::Gains;
 use super::significant::{rounded, without_dust};
 use crate::certify::{Judged, judge};
 
@@ -90,9 +90,10 @@ pub fn json_document(certified: &Certified) -> Value {
 /// The table as a Rust constant with the name of the design.
 pub fn rust_source(certified: &Certified) -> String {
     let design = &certified.design;
-    let (kind, rows): (&str, Vec<Vec<f32>>) = match certified.designed.gains.rows() {
-        Rows::Equilibrium(rows) => ("EquilibriumGain", rows.iter().map(|row| row.to_vec()).collect()),
-        Rows::FlatOutput(rows) => ("FlatOutputGain", rows.iter().map(|row| row.to_vec()).collect()),
+    let kind = match &certified.designed.gains {
+        Gains::Equilibrium(_) => "EquilibriumGain",
+        Gains::FlatOutput(_) => "FlatOutputGain",
+        Gains::Integral(_) => "IntegralGain",
     };
     let mut text = format!(
         "// {} for {} at {} Hz: made by `quatrack gains design` and not edited by hand.\n\
@@ -112,7 +113,7 @@ pub fn rust_source(certified: &Certified) -> String {
         "#[rustfmt::skip]\npub static {}: quatrack::law::{kind} = quatrack::law::{kind}::table([\n",
         constant_name(design.name.as_str())
     );
-    for row in rows {
+    for row in certified.designed.gains.by_rows() {
         let _ = writeln!(text, "    {row:?},");
     }
     text.push_str("]);\n");

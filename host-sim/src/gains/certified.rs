@@ -31,8 +31,9 @@ pub struct Certified {
 pub(super) struct Essence<'a> {
     vehicle: String,
     vehicle_id: String,
-    #[serde(flatten)]
-    problem: &'a Problem,
+    linearisation: &'static str,
+    method: &'static str,
+    parameters: &'a Problem,
     control_rate_hz: u32,
     rate_loop_gain_1_s: Option<f64>,
     thrust_m_s2: [f32; 2],
@@ -71,10 +72,13 @@ impl Design {
 
     pub(super) fn essence(&self) -> Essence<'_> {
         let rates = self.limits.body_rates_max_rad_s();
+        let (linearisation, method) = self.problem.named();
         Essence {
             vehicle: self.vehicle.name().to_owned(),
             vehicle_id: format!("{:08x}", self.vehicle.id()),
-            problem: &self.problem,
+            linearisation,
+            method,
+            parameters: &self.problem,
             control_rate_hz: self.rate.hz(),
             rate_loop_gain_1_s: self.rate_loop_gain_1_s,
             thrust_m_s2: [self.limits.thrust_min_m_s2(), self.limits.thrust_max_m_s2()],

@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::GainsError;
 use super::file::{self, DesignFile, LimitsEntry, Linearisation, MethodName, MinimumEntry, Weights};
 use crate::certify::Minimum;
+use crate::design::integral::IntegralWeights;
 use crate::design::synthesis::{EquilibriumWeights, FlatWeights};
 use crate::vehicle::Vehicle;
 
@@ -43,17 +44,22 @@ pub struct Design {
 
 /// A linearisation with a method that is defined for it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case", tag = "linearisation", content = "method")]
+#[serde(untagged)]
 pub enum Problem {
     /// The hover model (E-LTI), error `[x y z q1 q2 q3 vx vy vz]`, inputs `[T p q r]`.
     Equilibrium(Method<EquilibriumWeights>),
     /// The flat chain (F-LTI), `[r v a q3]`, inputs `[a j q3']`.
     FlatOutput(Method<FlatWeights>),
+    /// The hover model with the sums of the position error, under held commands.
+    Integral {
+        /// Diagonals of Q and R, and of the integrals.
+        weights: IntegralWeights,
+    },
 }
 
 /// How the gain is computed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(untagged)]
 pub enum Method<W> {
     /// Every pole in continuous time at real part -mu.
     Lyapunov {
@@ -80,6 +86,7 @@ impl Problem {
         match self {
             Self::Equilibrium(method) => ("equilibrium", method.named()),
             Self::FlatOutput(method) => ("flat-output", method.named()),
+            Self::Integral { .. } => ("equilibrium", "lqi"),
         }
     }
 
@@ -197,6 +204,18 @@ fn problem(file: &DesignFile) -> Result<Problem, GainsError> {
         format!("from 0 to {MOST_DELAY_SAMPLES}"),
     )?;
     let delay_samples = delay_samples as usize;
+    if file.method == MethodName::Lqi {
+        if file.linearisation == Linearisation::FlatOutput {
+            return Err(misplaced("method", &"\"lqi\"", &file.linearisation));
+        }
+        let integral = weights
+            .position_integral
+            .ok_or_else(|| missing("weights.position_integral", &file.method, "three numbers, [x, y, z]"))?;
+        integral.iter().try_for_each(|entry| positive("weights.position_integral", *entry))?;
+        return Ok(Problem::Integral {
+            weights: IntegralWeights { equilibrium: equilibrium_weights(weights)?, integral },
+        });
+    }
     Ok(match file.linearisation {
         Linearisation::Equilibrium => Problem::Equilibrium(method(file, equilibrium_weights(weights)?, delay_samples)?),
         Linearisation::FlatOutput => Problem::FlatOutput(method(file, flat_weights(weights)?, delay_samples)?),
@@ -209,8 +228,10 @@ fn method<W>(file: &DesignFile, weights: W, delay_samples: usize) -> Result<Meth
         MethodName::SampledLqr => Ok(Method::SampledLqr { weights, delay_samples }),
         name => Err(GainsError::Value {
             key: "method".into(),
-            value: format!("{name}"),
-            must: "\"lyapunov\", \"lqr\" or \"sampled-lqr\": no law on board flies the others yet".into(),
+            value: name.quoted().into(),
+            must:
+                "\"lyapunov\", \"lqr\", \"sampled-lqr\" or \"lqi\": gains along a trajectory are not designed here yet"
+                    .into(),
         }),
     }
 }

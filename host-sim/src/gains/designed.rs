@@ -6,10 +6,14 @@ use quatrack::gains::table::{Rows, TableKind};
 
 use super::GainsError;
 use super::design::{Design, Method, Problem};
-use super::names::{EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, Signal};
+use super::names::{EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, INTEGRAL_STATES, Signal};
 use crate::certify::{Controller, Plant, Timing};
 use crate::design::codegen::rounded;
-use crate::design::sampled::{SampledDesign, Sampling, equilibrium_pair, sampled_equilibrium, sampled_flat, shaped};
+use crate::design::discretise::{Held, zero_order_hold};
+use crate::design::integral::{integral_pair, sampled_integral_problem, sampled_lqi};
+use crate::design::sampled::{
+    SampledCost, SampledDesign, Sampling, equilibrium_pair, sampled_cost, sampled_equilibrium, sampled_flat, shaped,
+};
 use crate::design::synthesis::{
     EquilibriumDesign, EquilibriumWeights, FlatDesign, FlatWeights, dense_flat_chain, diagonal, lqr_equilibrium,
     lqr_flat, lyapunov_equilibrium, lyapunov_flat,
@@ -32,6 +36,17 @@ pub struct Designed {
     pub poles: Poles,
     /// Relative residual of P.
     pub relative_residual: f64,
+    /// The problem per sample that P and the gain solve, if it is one.
+    pub sampled: Option<SampledProblem>,
+}
+
+/// A pair under held commands and its cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledProblem {
+    /// `x+ = A_d x + B_d u`, and the period.
+    pub held: Held,
+    /// The cost between the samples.
+    pub cost: SampledCost,
 }
 
 /// `x' = A x + B u`.
@@ -72,6 +87,8 @@ pub enum Gains {
     Equilibrium(Box<SMatrix<f64, 4, 9>>),
     /// 7 x 10.
     FlatOutput(Box<SMatrix<f64, 7, 10>>),
+    /// 4 x 12, with the sums of the position error.
+    Integral(Box<SMatrix<f64, 4, 12>>),
 }
 
 impl Gains {
@@ -80,6 +97,7 @@ impl Gains {
         match self {
             Self::Equilibrium(_) => TableKind::Equilibrium,
             Self::FlatOutput(_) => TableKind::FlatOutput,
+            Self::Integral(_) => TableKind::Integral,
         }
     }
 
@@ -88,6 +106,7 @@ impl Gains {
         match self {
             Self::Equilibrium(gain) => DMatrix::from_column_slice(4, 9, gain.as_slice()),
             Self::FlatOutput(gain) => DMatrix::from_column_slice(7, 10, gain.as_slice()),
+            Self::Integral(gain) => DMatrix::from_column_slice(4, 12, gain.as_slice()),
         }
     }
 
@@ -96,7 +115,13 @@ impl Gains {
         match self {
             Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),
             Self::FlatOutput(gain) => Rows::FlatOutput(rounded(gain)),
+            Self::Integral(gain) => Rows::Integral(rounded(gain)),
         }
+    }
+
+    /// The same, each row a list.
+    pub fn by_rows(&self) -> Vec<Vec<f32>> {
+        self.rows().entries().chunks(usize::from(self.kind().dimensions().1)).map(<[f32]>::to_vec).collect()
     }
 }
 
@@ -115,16 +140,31 @@ impl Designed {
                 Ok(Self::equilibrium(lqr_equilibrium(weights)?, Some(of_equilibrium(weights))))
             }
             Problem::Equilibrium(Method::SampledLqr { weights, delay_samples }) => {
-                let designed = sampled_equilibrium(weights, &sampling(rate_hz, *delay_samples))?;
+                let sampling = sampling(rate_hz, *delay_samples);
+                let designed = sampled_equilibrium(weights, &sampling)?;
                 let gains = Gains::Equilibrium(Box::new(of_shape(&designed.gain)));
-                Ok(Self::sampled(designed, LinearModel::equilibrium(), gains, of_equilibrium(weights)))
+                let (model, weights) = (LinearModel::equilibrium(), of_equilibrium(weights));
+                let problem = SampledProblem::new(&model, &weights, sampling.period_s)?;
+                Ok(Self::sampled(designed, model, gains, weights, problem))
+            }
+            Problem::Integral { weights } => {
+                let sampling = sampling(rate_hz, 0);
+                let designed = sampled_lqi(weights, &sampling)?;
+                let gains = Gains::Integral(Box::new(of_shape(&designed.gain)));
+                let (held, cost) = sampled_integral_problem(weights, &sampling)?;
+                let state: Vec<f64> = weights.equilibrium.state.iter().chain(&weights.integral).copied().collect();
+                let weights = Weights { q: diagonal(&state), r: diagonal(&weights.equilibrium.input) };
+                Ok(Self::sampled(designed, LinearModel::integral(), gains, weights, SampledProblem { held, cost }))
             }
             Problem::FlatOutput(Method::Lyapunov { mu_1_s }) => Ok(Self::flat(lyapunov_flat(*mu_1_s)?, None)),
             Problem::FlatOutput(Method::Lqr { weights }) => Ok(Self::flat(lqr_flat(weights)?, Some(of_flat(weights)))),
             Problem::FlatOutput(Method::SampledLqr { weights, delay_samples }) => {
-                let designed = sampled_flat(weights, &sampling(rate_hz, *delay_samples))?;
+                let sampling = sampling(rate_hz, *delay_samples);
+                let designed = sampled_flat(weights, &sampling)?;
                 let gains = Gains::FlatOutput(Box::new(of_shape(&designed.gain)));
-                Ok(Self::sampled(designed, LinearModel::flat_chain(), gains, of_flat(weights)))
+                let (model, weights) = (LinearModel::flat_chain(), of_flat(weights));
+                let problem = SampledProblem::new(&model, &weights, sampling.period_s)?;
+                Ok(Self::sampled(designed, model, gains, weights, problem))
             }
         }
     }
@@ -134,6 +174,7 @@ impl Designed {
         let plant = match &self.gains {
             Gains::Equilibrium(_) => Plant::equilibrium(),
             Gains::FlatOutput(_) => Plant::flat_chain(),
+            Gains::Integral(_) => Plant::equilibrium_with_integral(),
         };
         let past_command_gains = self.past_command_gains.clone();
         let timing = Timing { delay_samples: past_command_gains.len(), ..Timing::at_rate(rate_hz) };
@@ -149,6 +190,7 @@ impl Designed {
             p: DMatrix::from_column_slice(9, 9, design.p.as_slice()),
             poles: Poles::Continuous(design.poles),
             relative_residual: design.relative_residual,
+            sampled: None,
         }
     }
 
@@ -161,10 +203,17 @@ impl Designed {
             p: DMatrix::from_column_slice(10, 10, design.p.as_slice()),
             poles: Poles::Continuous(design.poles),
             relative_residual: design.relative_residual,
+            sampled: None,
         }
     }
 
-    fn sampled(design: SampledDesign, model: LinearModel, gains: Gains, weights: Weights) -> Self {
+    fn sampled(
+        design: SampledDesign,
+        model: LinearModel,
+        gains: Gains,
+        weights: Weights,
+        problem: SampledProblem,
+    ) -> Self {
         Self {
             model,
             weights: Some(weights),
@@ -173,6 +222,7 @@ impl Designed {
             p: design.p,
             poles: Poles::Sampled(design.poles),
             relative_residual: design.relative_residual,
+            sampled: Some(problem),
         }
     }
 }
@@ -184,10 +234,25 @@ impl LinearModel {
         Self { a, b, states: &EQUILIBRIUM_STATES, inputs: &EQUILIBRIUM_INPUTS }
     }
 
+    /// Hover with the integrals of the position error.
+    pub fn integral() -> Self {
+        let (a, b) = integral_pair();
+        Self { a, b, states: &INTEGRAL_STATES, inputs: &EQUILIBRIUM_INPUTS }
+    }
+
     /// The flat chain.
     pub fn flat_chain() -> Self {
         let (a, b) = dense_flat_chain();
         Self { a, b, states: &FLAT_STATES, inputs: &FLAT_INPUTS }
+    }
+}
+
+impl SampledProblem {
+    fn new(model: &LinearModel, weights: &Weights, period_s: f64) -> Result<Self, GainsError> {
+        Ok(Self {
+            held: zero_order_hold(&model.a, &model.b, period_s)?,
+            cost: sampled_cost(&model.a, &model.b, &weights.q, &weights.r, period_s)?,
+        })
     }
 }
 

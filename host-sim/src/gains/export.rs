@@ -11,11 +11,9 @@ use serde_json::{Map, Value, json};
 use super::GainsError;
 use super::artifacts::by_rows;
 use super::design::Design;
-use super::designed::{Designed, Gains, Poles};
+use super::designed::{Designed, Gains, Poles, SampledProblem};
 use super::names::{MODEL_STATES, Signal};
 use crate::analysis::staircase;
-use crate::design::discretise::zero_order_hold;
-use crate::design::sampled::sampled_cost;
 use crate::model::linear::linearise;
 use crate::model::{hover_input, hover_state};
 
@@ -37,7 +35,7 @@ pub struct Matrix {
 pub struct Export {
     /// Name of the design.
     pub name: String,
-    /// How the gain was computed: `lyapunov`, `lqr`, `sampled-lqr`.
+    /// How the gain was computed: `lyapunov`, `lqr`, `sampled-lqr`, `lqi`.
     pub method: &'static str,
     /// mu of a Lyapunov design, 1/s.
     pub mu_1_s: Option<f64>,
@@ -69,24 +67,21 @@ impl Export {
         if let Some(weights) = &designed.weights {
             matrices.push(matrix("Q", states, states, weights.q.clone()));
             matrices.push(matrix("R", inputs, inputs, weights.r.clone()));
-            if matches!(designed.poles, Poles::Sampled(_)) {
-                let h = 1.0 / f64::from(design.rate.hz());
-                period_s = Some(h);
-                let held = zero_order_hold(a, b, h)?;
-                let cost = sampled_cost(a, b, &weights.q, &weights.r, h)?;
-                matrices.push(matrix("A_d", states, states, held.a));
-                matrices.push(matrix("B_d", states, inputs, held.b));
-                matrices.push(matrix("Q_d", states, states, cost.q));
-                matrices.push(matrix("S_d", states, inputs, cost.s));
-                matrices.push(matrix("R_d", inputs, inputs, cost.r));
-            }
+        }
+        if let Some(SampledProblem { held, cost }) = designed.sampled {
+            period_s = Some(held.period_s);
+            matrices.push(matrix("A_d", states, states, held.a));
+            matrices.push(matrix("B_d", states, inputs, held.b));
+            matrices.push(matrix("Q_d", states, states, cost.q));
+            matrices.push(matrix("S_d", states, inputs, cost.s));
+            matrices.push(matrix("R_d", inputs, inputs, cost.r));
         }
         matrices.push(matrix("K", inputs, states, designed.gains.dense()));
         for (number, past) in (1..).zip(&designed.past_command_gains) {
             matrices.push(matrix(&format!("K_past_{number}"), inputs, inputs, past.clone()));
         }
         matrices.push(matrix("P", states, states, designed.p.clone()));
-        if matches!(designed.gains, Gains::Equilibrium(_)) {
+        if !matches!(designed.gains, Gains::FlatOutput(_)) {
             matrices.extend(hover_staircase(inputs)?);
         }
         Ok(Self {

@@ -91,15 +91,22 @@ impl std::fmt::Display for Linearisation {
     }
 }
 
+impl MethodName {
+    /// As it is written.
+    pub(super) fn quoted(self) -> &'static str {
+        match self {
+            Self::Lyapunov => "\"lyapunov\"",
+            Self::Lqr => "\"lqr\"",
+            Self::SampledLqr => "\"sampled-lqr\"",
+            Self::Lqi => "\"lqi\"",
+            Self::Along => "\"along\"",
+        }
+    }
+}
+
 impl std::fmt::Display for MethodName {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Lyapunov => "method = \"lyapunov\"",
-            Self::Lqr => "method = \"lqr\"",
-            Self::SampledLqr => "method = \"sampled-lqr\"",
-            Self::Lqi => "method = \"lqi\"",
-            Self::Along => "method = \"along\"",
-        })
+        write!(f, "method = {}", self.quoted())
     }
 }
 

@@ -29,7 +29,7 @@ pub use artifacts::{Artifact, artifacts, default_folder, json_document, rust_sou
 pub use certified::Certified;
 pub use check::{Checked, Failed, check_design, check_folder, designs};
 pub use design::{Design, Method, Problem};
-pub use designed::{Designed, Gains, LinearModel, Poles, Weights};
+pub use designed::{Designed, Gains, LinearModel, Poles, SampledProblem, Weights};
 pub use error::GainsError;
 pub use export::{Export, Matrix};
 pub use names::{Signal, signals};

@@ -43,6 +43,22 @@ pub(super) const EQUILIBRIUM_STATES: [Signal; 9] = [
     signal("vz", "m/s"),
 ];
 
+/// Errors of the law with integral action.
+pub(super) const INTEGRAL_STATES: [Signal; 12] = [
+    signal("x", "m"),
+    signal("y", "m"),
+    signal("z", "m"),
+    signal("q1", "1"),
+    signal("q2", "1"),
+    signal("q3", "1"),
+    signal("vx", "m/s"),
+    signal("vy", "m/s"),
+    signal("vz", "m/s"),
+    signal("ix", "m s"),
+    signal("iy", "m s"),
+    signal("iz", "m s"),
+];
+
 /// Inputs of the model (1).
 pub(super) const EQUILIBRIUM_INPUTS: [Signal; 4] =
     [signal("T", "m/s^2"), signal("p", "rad/s"), signal("q", "rad/s"), signal("r", "rad/s")];
@@ -75,7 +91,8 @@ pub(super) const FLAT_INPUTS: [Signal; 7] = [
 /// What the rows and the columns of a table stand for.
 pub fn signals(kind: TableKind) -> (&'static [Signal], &'static [Signal]) {
     match kind {
-        TableKind::Equilibrium => (&EQUILIBRIUM_INPUTS, &EQUILIBRIUM_STATES),
+        TableKind::Integral => (&EQUILIBRIUM_INPUTS, &INTEGRAL_STATES),
+        TableKind::Equilibrium | TableKind::AlongTrajectory => (&EQUILIBRIUM_INPUTS, &EQUILIBRIUM_STATES),
         TableKind::FlatOutput => (&FLAT_INPUTS, &FLAT_STATES),
     }
 }

@@ -5,7 +5,7 @@
 //! to four digits: figures that are round numbers by design (a phase of 60 degrees, a delay of one sample) do not stand
 //! on the edge of a digit any more.
 
-use quatrack::gains::table::{self, Hash, Margins, Rows};
+use quatrack::gains::table::{self, Hash, Margins};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
@@ -61,7 +61,7 @@ impl Statement {
             design_sha256: design_sha256.to_string(),
             control_rate_hz: design.rate.hz(),
             delay_samples: certificate.delay_samples,
-            gain_f32: entries(&designed.gains.rows()),
+            gain_f32: designed.gains.by_rows(),
             one_channel: stated(one_channel.0, one_channel.1),
             all_channels: stated(all.gain_max.unwrap_or(f64::INFINITY), all.phase_rad),
             delay_max_s: safe(least(certificate.delay.iter())),
@@ -113,14 +113,6 @@ fn safe(figure: f64) -> f64 {
     let exponent = below.log10().floor() as i32 - 3;
     // Read from its decimal, so that it is the f64 next to it and no product's.
     format!("{}e{exponent}", (below / 10_f64.powi(exponent)).floor()).parse().unwrap_or(0.0)
-}
-
-/// Entries of a table, by rows.
-fn entries(rows: &Rows) -> Vec<Vec<f32>> {
-    match rows {
-        Rows::Equilibrium(rows) => rows.iter().map(|row| row.to_vec()).collect(),
-        Rows::FlatOutput(rows) => rows.iter().map(|row| row.to_vec()).collect(),
-    }
 }
 
 #[cfg(test)]
