@@ -50,7 +50,7 @@ fn what_is_committed_is_what_the_designs_give() {
     assert_done(&quatrack(&["gains", "check", GAINS, "--json", json.to_str().unwrap()]));
     let checked: serde_json::Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
     let files: Vec<&str> = checked.as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
-    for name in ["lyap-e", "lyap-f", "lqr-e", "lqr-f", "sampled-lqr-e", "sampled-lqr-f"] {
+    for name in ["lyap-e", "lyap-f", "lqr-e", "lqr-f", "sampled-lqr-e", "sampled-lqr-f", "lqi-e"] {
         for extension in ["json", "rs", "bin"] {
             let file = format!("generated/{name}.{extension}");
             assert!(files.iter().any(|checked| checked.ends_with(&file)), "{file} is not among {files:?}");

@@ -8,6 +8,7 @@ use quatrack_sim::gains::{Design, Gains, GainsError, Method, Problem};
 const LQR_E: &str = include_str!("../../gains/lqr-e.toml");
 const LQR_F: &str = include_str!("../../gains/lqr-f.toml");
 const LYAP_F: &str = include_str!("../../gains/lyap-f.toml");
+const LQI_E: &str = include_str!("../../gains/lqi-e.toml");
 const SAMPLED: &str = include_str!("../../gains/sampled-lqr-e.toml");
 
 fn read(text: &str) -> Result<Design, GainsError> {
@@ -65,6 +66,9 @@ fn what_cannot_be_used_is_named_with_its_value_and_the_remedy() {
             "\"sampled-lqr\"\ndelay_samples = 21",
             &["delay_samples = 21: must be from 0 to 20"],
         ),
+        (LQR_E, "\"lqr\"", "\"lqi\"", &["weights.position_integral is missing; method = \"lqi\" needs it"]),
+        (LQR_F, "\"lqr\"", "\"lqi\"", &["method = \"lqi\" does not belong to linearisation = \"flat-output\""]),
+        (LQI_E, "\"lqi\"", "\"lqr\"", &["weights.position_integral = [50.0, 50.0, 50.0] does not belong"]),
         (LQR_E, "= 20.0", "= 0.0", &["rate_loop_gain_1_s = 0"]),
         (LQR_E, "gain_factor_all = 2.0", "gain_factor_all = 0.9", &["minimum.gain_factor_all = 0.9: must be above 1"]),
         (LQR_E, "phase_all_deg = 40.0", "phase_all_deg = 200.0", &["minimum.phase_all_deg = 200"]),

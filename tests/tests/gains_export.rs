@@ -59,15 +59,21 @@ fn continuous_designs_solve_their_equations() {
 
 #[test]
 fn sampled_designs_solve_theirs() {
-    let e = export("sampled", include_str!("../../gains/sampled-lqr-e-100hz.toml"));
-    let [a, b, q, s, r, k, p] = ["A_d", "B_d", "Q_d", "S_d", "R_d", "K", "P"].map(|name| matrix(&e, name));
-    let middle = &r + b.transpose() * &p * &b;
-    let driven = b.transpose() * &p * &a + s.transpose();
-    let gain = middle.clone().try_inverse().unwrap() * &driven;
-    assert_small(&(&gain - &k), k.norm(), "K");
-    let residual = a.transpose() * &p * &a - &p + &q - gain.transpose() * &middle * &gain;
-    assert_small(&residual, 2.0 * p.norm(), "discrete Riccati equation");
-    assert_eq!((e["period_s"].as_f64(), &e["poles"]["unit"]), (Some(0.01), &"per sample".into()));
+    let plain = include_str!("../../gains/sampled-lqr-e-100hz.toml");
+    let with_integral = include_str!("../../gains/lqi-e.toml");
+    for (text, states, period_s) in [(plain, 9, 0.01), (with_integral, 12, 0.002)] {
+        let e = export("sampled", text);
+        let [a, b, q, s, r, k, p] = ["A_d", "B_d", "Q_d", "S_d", "R_d", "K", "P"].map(|name| matrix(&e, name));
+        assert_eq!(k.shape(), (4, states));
+        let middle = &r + b.transpose() * &p * &b;
+        let driven = b.transpose() * &p * &a + s.transpose();
+        let gain = middle.clone().try_inverse().unwrap() * &driven;
+        // The rounding of P, of the size of 1e4 times K.
+        assert!((&gain - &k).norm() <= 1e-10 * k.norm(), "K: {:e}", (&gain - &k).norm() / k.norm());
+        let residual = a.transpose() * &p * &a - &p + &q - gain.transpose() * &middle * &gain;
+        assert_small(&residual, 2.0 * p.norm(), "discrete Riccati equation");
+        assert_eq!((e["period_s"].as_f64(), &e["poles"]["unit"]), (Some(period_s), &"per sample".into()));
+    }
 }
 
 #[test]

@@ -25,6 +25,7 @@ generated! {
     lyap_f "lyap-f"
     lqr_e "lqr-e"
     lqr_f "lqr-f"
+    lqi_e "lqi-e"
     sampled_lqr_e "sampled-lqr-e"
     sampled_lqr_e_100hz "sampled-lqr-e-100hz"
     sampled_lqr_f "sampled-lqr-f"
@@ -49,6 +50,7 @@ fn rust_and_binary_tables_hold_the_same_gains_and_the_papers_are_those_of_the_im
     is_equilibrium("lqr-e", &lqr_e::LQR_E);
     is_equilibrium("sampled-lqr-e", &sampled_lqr_e::SAMPLED_LQR_E);
     is_equilibrium("sampled-lqr-e-100hz", &sampled_lqr_e_100hz::SAMPLED_LQR_E_100HZ);
+    assert_eq!(file("lqi-e").0.rows(), Rows::Integral(lqi_e::LQI_E.rows()));
     is_flat_output("lyap-f", &lyap_f::LYAP_F);
     is_flat_output("lqr-f", &lqr_f::LQR_F);
     is_flat_output("sampled-lqr-f", &sampled_lqr_f::SAMPLED_LQR_F);
@@ -66,7 +68,11 @@ fn the_board_accepts_every_table_for_its_vehicle_and_rate_alone() {
         let rate = Rate::from_hz(if name.ends_with("100hz") { 100 } else { 500 }).unwrap();
         let table = AcceptedTable::from_bytes(bytes, &vehicle, rate).unwrap();
         assert_eq!(table.head().name.as_str(), *name);
-        let kind = if name.contains("-f") { TableKind::FlatOutput } else { TableKind::Equilibrium };
+        let kind = match *name {
+            "lqi-e" => TableKind::Integral,
+            name if name.ends_with("-f") => TableKind::FlatOutput,
+            _ => TableKind::Equilibrium,
+        };
         assert_eq!(table.kind(), kind, "{name}");
         let limits: Limits = described.limits().unwrap();
         assert_eq!(table.limits(), limits, "{name}");
