@@ -4,6 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use quatrack::Trajectory;
+use quatrack::gains::table::{GainTable, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable};
+use quatrack_sim::flight::core_loop;
+use quatrack_sim::trajectory::file::{self, TrajectoryFile};
+
 const GAINS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../gains");
 
 fn quatrack(arguments: &[&str]) -> Output {
@@ -174,6 +179,44 @@ fn a_table_flies_as_the_design_that_it_was_made_of() {
     fs::write(&damaged, bytes).unwrap();
     let damaged = damaged.to_str().unwrap();
     assert_refused(&quatrack(&["fly", "--trajectory", "mild", "--gains", damaged]), 2, &[damaged, "checksum"]);
+}
+
+#[test]
+fn gains_along_a_trajectory_fly_that_one_alone() {
+    let dir = folder("along");
+    // A second of rest at the origin, and another one a metre off.
+    let coefficients = |constant: &str| format!("1.0,{constant}{}\n", ",0".repeat(31));
+    let header: Vec<String> = ["x", "y", "z", "yaw"]
+        .iter()
+        .flat_map(|coordinate| (0..8).map(move |power| format!("{coordinate}^{power}")))
+        .collect();
+    let trajectory = |name: &str, constant: &str| {
+        let path = dir.join(name);
+        fs::write(&path, format!("duration,{}\n{}", header.join(","), coefficients(constant))).unwrap();
+        path
+    };
+    let (here, there) = (trajectory("here.csv", "0"), trajectory("there.csv", "1"));
+    let flown = file::read(&here).unwrap();
+    let TrajectoryFile::Pieces(pieces) = flown else { panic!("pieces") };
+    let pieces = core_loop::pieces(&pieces);
+    let lqr_e = fs::read(format!("{GAINS}/generated/lqr-e.bin")).unwrap();
+    let head = *GainTable::from_bytes(&lqr_e).unwrap().head();
+    let gain = *quatrack::gains::paper::LQR_E.gain().rows();
+    let rows = ScheduleRows {
+        trajectory: Trajectory::new(&pieces).unwrap().checksum(),
+        steps_per_knot: 500,
+        gains: &[gain, gain],
+    };
+    let mut buffer = vec![0; SCHEDULE_BYTES_MAX];
+    let table = dir.join("along.bin");
+    fs::write(&table, ScheduleTable::write(&mut buffer, &head, &rows).unwrap().bytes()).unwrap();
+    let fly = |trajectory: &Path| {
+        quatrack(&["fly", "--gains", table.to_str().unwrap(), "--trajectory", trajectory.to_str().unwrap()])
+    };
+    let output = fly(&here);
+    assert_done(&output);
+    assert!(stdout(&output).contains("largest position error    0.000000 m"), "{}", stdout(&output));
+    assert_refused(&fly(&there), 2, &["along.bin: its gains are for another trajectory", "there.csv"]);
 }
 
 #[test]
