@@ -297,7 +297,7 @@ impl<'a> ActuatorAware<'a> {
             forces: [f1 - r1, f2 - r2, f3 - r3, f4 - r4],
             integral: heading.to_heading_frame(memory.integral_m_s),
         });
-        let [u1, u2, u3, u4] = reference.commands_n(self.lag.lag_s());
+        let [u1, u2, u3, u4] = reference.commands_n(self.lag.lag_s() + 0.5 * self.lag.period_s());
         let asked = [u1 + k1, u2 + k2, u3 + k3, u4 + k4];
         let (commands, limited) = saturate_each(&asked, self.force_min_n, self.force_max_n)?;
         memory.forces_n = self.lag.next(&memory.forces_n, &commands);

@@ -12,6 +12,10 @@ pub mod core_loop;
 pub mod law;
 pub mod log;
 pub mod metrics;
+pub mod motor_loop;
+pub mod noise;
 pub mod reference;
+pub mod rigid_loop;
+pub mod robustness;
 
 pub use crate::integrator;
