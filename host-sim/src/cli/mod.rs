@@ -8,6 +8,8 @@ mod output;
 mod pil;
 mod plan;
 mod reproduce;
+mod robustness;
+mod vehicle;
 
 use std::process::ExitCode;
 
@@ -48,6 +50,7 @@ enum Command {
     Pil(pil::Args),
     Plan(plan::Args),
     Reproduce(reproduce::Args),
+    Robustness(robustness::Args),
 }
 
 /// Reads the arguments, runs the command, prints what went wrong in one line.
@@ -63,6 +66,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Pil(args) => pil::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Reproduce(args) => reproduce::run(args),
+        Command::Robustness(args) => robustness::run(args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

@@ -16,6 +16,7 @@ pub mod core_loop;
 pub mod law;
 pub mod log;
 
+pub mod manoeuvres;
 pub mod metrics;
 pub mod motor_laws;
 pub mod motor_loop;

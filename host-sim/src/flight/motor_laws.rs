@@ -6,6 +6,7 @@ use quatrack::airframe::AirframeError;
 use quatrack::gain::GainError;
 use quatrack::law::ActuatorAwareGain;
 use quatrack::motor_lag::MotorLagError;
+use quatrack::motor_tracker::ByBodyRates;
 use quatrack::{
     ActuatorAware, Airframe, BodyRateLoop, Equilibrium, MotorLag, MotorLaw, MotorTracker, ReferenceError, Tracker,
 };
@@ -55,7 +56,6 @@ pub enum FlightError {
 pub struct AwareTable {
     gain: ActuatorAwareGain,
     airframe: Airframe,
-    lag: MotorLag,
     /// Over the region that it was asked for.
     pub certificate: RegionCertificate,
 }
@@ -82,7 +82,6 @@ impl AwareTable {
         Ok(Self {
             gain: ActuatorAwareGain::new(rows)?,
             airframe: motor_loop::airframe(vehicle, lag_s)?,
-            lag: motor_loop::motor_lag(lag_s)?,
             certificate: certify_region(vehicle, &design.gain_in_parts, lag_s, PERIOD_S, region)?,
         })
     }
@@ -98,28 +97,42 @@ impl AwareTable {
     }
 
     /// The law on its craft.
-    pub fn tracker(&self) -> MotorTracker<'_> {
-        let law = ActuatorAware::new(&self.gain, &self.airframe, self.lag);
-        MotorTracker::new(MotorLaw::ActuatorAware(law), &self.airframe)
+    ///
+    /// # Errors
+    /// [`FlightError::Lag`] for a lag below two control periods.
+    pub fn craft_law(&self) -> Result<CraftLaw<'_>, FlightError> {
+        let law = ActuatorAware::new(&self.gain, &self.airframe, motor_loop::RATE)?;
+        let tracker = MotorTracker::new(MotorLaw::ActuatorAware(law), &self.airframe);
+        Ok(CraftLaw { tracker, airframe: self.airframe })
     }
 }
 
-/// A law of the paper on a vehicle's motors, through the core's body-rate loop and mixer.
-///
-/// # Errors
-/// [`FlightError`] where the core refuses vehicle or lag.
-pub fn paper_tracker<'a>(
-    vehicle: &Vehicle,
-    law: Equilibrium<'a>,
-    lag_s: f64,
-) -> Result<MotorTracker<'a>, FlightError> {
-    let airframe = motor_loop::airframe(vehicle, lag_s)?;
-    let law = MotorLaw::BodyRates {
-        tracker: Tracker::new(law, vehicle.limits()?),
-        body_rates: BodyRateLoop::behind_lag(&airframe),
-        lag: motor_loop::motor_lag(lag_s)?,
-    };
-    Ok(MotorTracker::new(law, &airframe))
+/// A law on a craft as the core takes it.
+#[derive(Clone, Copy, Debug)]
+pub struct CraftLaw<'a> {
+    tracker: MotorTracker<'a>,
+    airframe: Airframe,
+}
+
+impl<'a> CraftLaw<'a> {
+    /// A law of the paper on a vehicle's motors, through the core's body-rate loop and mixer.
+    ///
+    /// # Errors
+    /// [`FlightError`] where the core refuses vehicle or lag.
+    pub fn by_body_rates(vehicle: &Vehicle, law: Equilibrium<'a>, lag_s: f64) -> Result<Self, FlightError> {
+        let airframe = motor_loop::airframe(vehicle, lag_s)?;
+        let law = ByBodyRates {
+            tracker: Tracker::new(law, vehicle.limits()?),
+            body_rates: BodyRateLoop::behind_lag(&airframe),
+            lag: MotorLag::new(lag_s as f32, motor_loop::RATE)?,
+        };
+        Ok(Self { tracker: MotorTracker::new(MotorLaw::BodyRates(law), &airframe), airframe })
+    }
+
+    /// The craft as the core takes it.
+    pub fn airframe(&self) -> &Airframe {
+        &self.airframe
+    }
 }
 
 /// The motor lag that a gain of the paper stands at hover, s, behind the rate loop that the core would run for motors of
@@ -129,7 +142,7 @@ pub fn paper_tracker<'a>(
 /// [`CertifyError`] for a loop that is unstable without any lag.
 pub fn paper_law_limit_s(gain: &SMatrix<f64, 4, 9>, lag_s: f64) -> Result<f64, CertifyError> {
     let controller = Controller::memoryless(DMatrix::from_column_slice(4, 9, gain.as_slice()));
-    let timing = Timing::at_rate(motor_loop::RATE_HZ);
+    let timing = Timing::at_rate(motor_loop::RATE.hz());
     // The bandwidth of `BodyRateLoop::behind_lag`.
     let found = certify(&Plant::equilibrium(), &controller, &timing, Some(0.5 / lag_s))?;
     // All channels at once stand last.
@@ -138,13 +151,13 @@ pub fn paper_law_limit_s(gain: &SMatrix<f64, 4, 9>, lag_s: f64) -> Result<f64, C
 
 /// Flies `course` with a law from a state, the motors at the thrusts of that state.
 pub fn fly(
-    tracker: MotorTracker<'_>,
+    law: &CraftLaw<'_>,
     craft: &Craft,
     start: &RigidState,
     course: &dyn Course,
     conditions: &Conditions,
 ) -> RigidFlight {
-    let mut control = MotorLoop::new(tracker, &start.thrusts_n);
+    let mut control = MotorLoop::new(law.tracker, &law.airframe, &start.thrusts_n);
     fly_rigid(
         craft,
         start,

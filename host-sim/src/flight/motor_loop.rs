@@ -4,9 +4,8 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 use quatrack::airframe::{AirframeError, AirframeFigures};
-use quatrack::motor_lag::MotorLagError;
 use quatrack::{
-    ActuatorMemory, Airframe, FifthOrderSample, FlatSample, MotorLag, MotorReference, MotorTracker, Rate,
+    ActuatorMemory, Airframe, FifthOrderSample, FlatSample, MotorReference, MotorTracker, Rate,
     ReferenceError, State,
 };
 
@@ -15,8 +14,8 @@ use crate::plant::RigidState;
 use crate::trajectory::fifth_order::FifthOrder;
 use crate::vehicle::Vehicle;
 
-/// Control rate of these flights, Hz.
-pub const RATE_HZ: u32 = 500;
+/// Control rate of these flights: 500 Hz.
+pub const RATE: Rate = Rate::from_hz(500).expect("in range");
 /// Control steps in 10 ms at that rate.
 pub const STEPS_A_SAMPLE: u32 = 5;
 /// Control period at that rate, s.
@@ -30,13 +29,13 @@ fn wide(v: &Vector3<f32>) -> Vector3<f64> {
     v.map(f64::from)
 }
 
-/// A vehicle as the core takes it, with motors of some lag. Off-diagonal inertia is left out.
+/// A vehicle as the core takes it at [`RATE`], with motors of some lag. Off-diagonal inertia is left out.
 ///
 /// # Errors
 /// [`AirframeError`] for figures beyond the core's range.
 pub fn airframe(vehicle: &Vehicle, motor_lag_s: f64) -> Result<Airframe, AirframeError> {
     let (inertia, motors) = (vehicle.inertia_kg_m2(), vehicle.motors());
-    Airframe::new(AirframeFigures {
+    let airframe = Airframe::new(AirframeFigures {
         mass_kg: vehicle.mass_kg() as f32,
         inertia_kg_m2: [inertia.m11, inertia.m22, inertia.m33].map(|value| value as f32),
         lever_arm_m: motors.half_arm_m() as f32,
@@ -44,15 +43,8 @@ pub fn airframe(vehicle: &Vehicle, motor_lag_s: f64) -> Result<Airframe, Airfram
         force_min_n: motors.thrust_min_n as f32,
         force_max_n: motors.thrust_max_n as f32,
         motor_lag_s: motor_lag_s as f32,
-    })
-}
-
-/// A lag at [`RATE_HZ`], as the core takes it.
-///
-/// # Errors
-/// [`MotorLagError`] for a lag below two periods.
-pub fn motor_lag(lag_s: f64) -> Result<MotorLag, MotorLagError> {
-    MotorLag::new(lag_s as f32, const { Rate::from_hz(RATE_HZ).expect("not zero") })
+    })?;
+    Ok(airframe.commanded_at(RATE))
 }
 
 /// A point of a course as the core takes it.
@@ -95,14 +87,15 @@ pub fn state_on(point: &FifthOrder, airframe: &Airframe) -> Result<RigidState, R
 /// A tracker with its memory.
 pub struct MotorLoop<'a> {
     tracker: MotorTracker<'a>,
+    airframe: Airframe,
     memory: ActuatorMemory,
 }
 
 impl<'a> MotorLoop<'a> {
     /// A loop whose motors start with the given thrusts, N; nothing where one of them is not finite.
-    pub fn new(tracker: MotorTracker<'a>, thrusts_n: &Vector4<f64>) -> Option<Self> {
+    pub fn new(tracker: MotorTracker<'a>, airframe: &Airframe, thrusts_n: &Vector4<f64>) -> Option<Self> {
         let memory = ActuatorMemory::new(std::array::from_fn(|i| thrusts_n[i] as f32))?;
-        Some(Self { tracker, memory })
+        Some(Self { tracker, airframe: *airframe, memory })
     }
 
     /// One control step towards a point of a course.
@@ -111,7 +104,7 @@ impl<'a> MotorLoop<'a> {
     /// The core's own words, where it gives no command.
     pub fn step(&mut self, measured: &RigidState, point: &FifthOrder) -> Result<MotorCommand, String> {
         let reference =
-            MotorReference::from_flat(&sample(point), self.tracker.airframe()).map_err(|e| e.to_string())?;
+            MotorReference::from_flat(&sample(point), &self.airframe).map_err(|e| e.to_string())?;
         let q = measured.attitude.quaternion();
         let [w, x, y, z] = [q.w, q.i, q.j, q.k].map(|value| value as f32);
         let state = State {
@@ -119,10 +112,8 @@ impl<'a> MotorLoop<'a> {
             attitude: quatrack::Quaternion::new(w, x, y, z),
             velocity_m_s: vector(&measured.velocity_m_s),
         };
-        let step = self
-            .tracker
-            .step(&mut self.memory, &state, &vector(&measured.body_rates_rad_s), &reference)
-            .map_err(|error| error.to_string())?;
+        let state = quatrack::RigidState { state, body_rates_rad_s: vector(&measured.body_rates_rad_s) };
+        let step = self.tracker.step(&mut self.memory, &state, &reference).map_err(|error| error.to_string())?;
         Ok(MotorCommand { forces_n: Vector4::from(step.forces_n.map(f64::from)), limited: step.limited.any() })
     }
 }

@@ -177,7 +177,7 @@ fn row(
         delay_s: case.delay_s,
         noise: case.noise,
     };
-    let flight = motor_laws::fly(table.tracker(), &craft, &start, &course, &conditions);
+    let flight = motor_laws::fly(&table.craft_law()?, &craft, &start, &course, &conditions);
     Ok(Row {
         law,
         case: case.name,

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::polynomial::{Coordinate, PiecewisePolynomial};
+use super::polynomial::{Coordinate, Piece, PiecewisePolynomial};
 
 /// A flat output and its derivatives at one time, world frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,6 +75,45 @@ impl Course for Rest {
 
     fn at(&self, _t_s: f64) -> FifthOrder {
         FifthOrder::at_rest(self.position_m, self.heading_rad)
+    }
+}
+
+/// From rest to rest along a straight line, without a jump up to the jerk: `35 s^4 - 84 s^5 + 70 s^6 - 20 s^7` of the
+/// way, heading 0; then rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RestToRest {
+    from_m: Vector3<f64>,
+    way_m: Vector3<f64>,
+    moving_s: f64,
+    duration_s: f64,
+}
+
+impl RestToRest {
+    /// From one place to another in `moving_s`, which is positive; the whole takes `duration_s`.
+    pub fn new(from_m: Vector3<f64>, to_m: Vector3<f64>, moving_s: f64, duration_s: f64) -> Self {
+        Self { from_m, way_m: to_m - from_m, moving_s, duration_s }
+    }
+}
+
+impl Course for RestToRest {
+    fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    fn at(&self, t_s: f64) -> FifthOrder {
+        if t_s >= self.moving_s {
+            return FifthOrder::at_rest(self.from_m + self.way_m, 0.0);
+        }
+        let piece = Piece {
+            duration_s: self.moving_s,
+            coefficients: [[0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0]; 4],
+        };
+        let share = t_s / self.moving_s;
+        let mut position = [0, 1, 2, 3, 4, 5].map(|k| {
+            self.way_m * (piece.derivative(Coordinate::X, k, share) / self.moving_s.powi(k as i32))
+        });
+        position[0] += self.from_m;
+        FifthOrder { position, heading: [0.0; 4] }
     }
 }
 
