@@ -17,6 +17,7 @@ use core::fmt;
 
 use crate::clock::Rate;
 use crate::flatness::GRAVITY_M_S2;
+use crate::motor_lag::MotorLag;
 
 /// What is measured of a craft; checked by [`Airframe::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -199,6 +200,12 @@ impl Airframe {
     /// and references made for it are ahead by as much.
     pub const fn commanded_at(&self, rate: Rate) -> Self {
         Self { lead_s: self.figures.motor_lag_s + 0.5 / rate.hz() as f32, ..*self }
+    }
+
+    /// Both, for a lag that is known to be one.
+    pub(crate) const fn reckoning_with(&self, lag: &MotorLag) -> Self {
+        let figures = AirframeFigures { motor_lag_s: lag.lag_s(), ..self.figures };
+        Self { figures, lead_s: lag.lag_s() + 0.5 * lag.period_s(), ..*self }
     }
 
     const fn constant(figures: AirframeFigures) -> Self {
