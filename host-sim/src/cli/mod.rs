@@ -1,7 +1,9 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
 mod analyze;
+mod export;
 mod fly;
+mod gains;
 mod limits;
 mod measure;
 mod output;
@@ -45,7 +47,9 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Analyze(analyze::Args),
+    Export(export::Args),
     Fly(fly::Args),
+    Gains(gains::Args),
     Measure(measure::Args),
     Pil(pil::Args),
     Plan(plan::Args),
@@ -61,7 +65,9 @@ pub(crate) fn main() -> ExitCode {
     };
     let outcome: Result<(), Failure> = match &arguments.command {
         Command::Analyze(args) => analyze::run(args),
+        Command::Export(args) => export::run(args),
         Command::Fly(args) => fly::run(args),
+        Command::Gains(args) => gains::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Pil(args) => pil::run(args),
         Command::Plan(args) => plan::run(args),
