@@ -5,12 +5,15 @@ mod export;
 mod fly;
 mod gains;
 mod limits;
+mod manoeuvres;
 mod measure;
 mod output;
 mod pil;
 mod plan;
 mod refit;
 mod reproduce;
+mod robustness;
+mod vehicle;
 
 use std::process::ExitCode;
 
@@ -49,11 +52,13 @@ enum Command {
     Export(export::Args),
     Fly(fly::Args),
     Gains(gains::Args),
+    Manoeuvres(manoeuvres::Args),
     Measure(measure::Args),
     Pil(pil::Args),
     Plan(plan::Args),
     Refit(refit::Args),
     Reproduce(reproduce::Args),
+    Robustness(robustness::Args),
 }
 
 /// Reads the arguments, runs the command, prints what went wrong in one line.
@@ -67,11 +72,13 @@ pub(crate) fn main() -> ExitCode {
         Command::Export(args) => export::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Gains(args) => gains::run(args),
+        Command::Manoeuvres(args) => manoeuvres::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Pil(args) => pil::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Refit(args) => refit::run(args),
         Command::Reproduce(args) => reproduce::run(args),
+        Command::Robustness(args) => robustness::run(args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
