@@ -14,8 +14,7 @@ mod app {
     use quatrack::link::{FRAME_BYTES, FromBoard, LoopStatistics};
     use quatrack_firmware::board::crazyflie_2_1 as board;
     use quatrack_firmware::counter::Counter;
-    use quatrack_firmware::flight::Flight;
-    use quatrack_firmware::playback::Store;
+    use quatrack_firmware::flight::{Flight, Store};
     use quatrack_firmware::session::{Session, Shared as SharedFlight, Uploads, Vitals};
     use quatrack_firmware::timing::Timing;
     use quatrack_firmware::transport::Line as _;

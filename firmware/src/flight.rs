@@ -1,13 +1,14 @@
 //! The flight: states, orders and ticks in; gated commands and answers out. What the control interrupt owns.
 
 use quatrack::command::LimitsError;
-use quatrack::gains::paper;
-use quatrack::link::{CommandOut, LawChoice, LimitsSetting, NoCommand, StateIn, Table};
+use quatrack::gains::table::AcceptedTable;
+use quatrack::link::{CommandOut, GainStore, LawChoice, LimitsSetting, NoCommand, StateIn};
 use quatrack::supervisor::{ArmError, Conditions, Config, Fault, Mode, StepReport, Supervisor, Verdict};
-use quatrack::{Command, Equilibrium, Limits, Rate, State, Tick, Tracker};
+use quatrack::{Command, Limited, Limits, Rate, State, Step, Tick};
 
 use crate::control::{self, Clock, CommandSink, StateSource};
-use crate::playback::{Playback, Store};
+use crate::laws::{FADE_STEPS, Laws, Refused};
+use crate::playback::{self, Playback};
 
 /// Ticks of the loop a second.
 pub const TICK_RATE_HZ: u32 = 1000;
@@ -70,12 +71,28 @@ impl Clock for StepClock {
     }
 }
 
+/// What is uploaded, too large for the stack on which everything begins; all zeros, so that a static costs no flash.
+pub struct Store {
+    trajectories: playback::Store,
+    gains: GainStore,
+}
+
+impl Store {
+    /// Nothing.
+    pub const fn new() -> Self {
+        Self { trajectories: playback::Store::new(), gains: GainStore::unassigned() }
+    }
+}
+
+impl Default for Store {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 /// Everything between the link and the motors.
 pub struct Flight {
-    law: LawChoice,
-    limits: LimitsSetting,
-    checked_limits: Limits,
-    tracker: Tracker<'static>,
+    laws: Laws,
     arrived: Option<Arrived>,
     heard_at: Option<Tick>,
     /// What is followed.
@@ -99,27 +116,28 @@ impl Flight {
     #[cold]
     pub fn new(store: &'static mut Store, fault: Option<Fault>) -> Self {
         let checked_limits = LIMITS.check().unwrap_or(Limits::NONE);
-        let mut flight = Self {
-            law: LawChoice::new(Table::LqrE),
-            limits: LIMITS,
-            checked_limits,
-            tracker: Tracker::new(Equilibrium::new(&paper::LQR_E), checked_limits),
+        // Nobody reads it: no answer is new.
+        let nothing = Step { command: Command::ZERO, limited: Limited::NOTHING };
+        let mut supervisor = Supervisor::new();
+        let step = StepReport::NoReference;
+        let at_start = Conditions { link_silence_ticks: None, state_age_ticks: None, step, overrun: false, fault };
+        supervisor.tick(&CONFIG, &at_start);
+        Self {
+            laws: Laws::new(&mut store.gains, checked_limits, step_rate(DECIMATION)),
             arrived: None,
             heard_at: None,
-            playback: Playback::new(store),
+            playback: Playback::new(&mut store.trajectories),
             config: CONFIG,
-            supervisor: Supervisor::new(),
+            supervisor,
             decimation: DECIMATION,
             last_report: StepReport::NoReference,
             fault,
             motors: Motors { command: Command::ZERO },
-            answer: CommandOut { tick: 0, state_tick: 0, result: Err(NoCommand::NoReference) },
+            answer: CommandOut { tick: 0, state_tick: 0, result: Ok(nothing) },
             is_answer_new: false,
             steps: 0,
             steps_failed: 0,
-        };
-        flight.supervise(0, StepReport::NoReference, false);
-        flight
+        }
     }
 
     /// Takes the word that a frame was accepted.
@@ -147,27 +165,55 @@ impl Flight {
         self.decimation
     }
 
-    /// Sets the ticks for one step.
+    /// Sets the ticks for one step. Gain tables for another rate are dropped.
     pub fn set_decimation(&mut self, decimation: u32) {
         self.decimation = decimation;
+        self.laws.set_rate(step_rate(decimation));
     }
 
     /// The law in force.
     pub fn law(&self) -> LawChoice {
-        self.law
+        self.laws.choice()
     }
 
-    /// Chooses a law; whether its table is on board.
+    /// Chooses a law, from the next step on; in flight over [`FADE_STEPS`].
+    ///
+    /// # Errors
+    /// As [`Laws::select`].
     #[cold]
-    pub fn select(&mut self, law: LawChoice) -> bool {
-        let Some(built_in) = law.built_in() else { return false };
-        (self.law, self.tracker) = (law, Tracker::new(built_in, self.checked_limits));
-        true
+    pub fn select(&mut self, law: LawChoice) -> Result<(), Refused> {
+        self.laws.select(law, self.fade_steps())
+    }
+
+    /// The rate of the steps that gain tables must be certified at, if there are any for it. In lock-step the states are
+    /// taken to come at the rate of [`DECIMATION`].
+    pub fn table_rate(&self) -> Option<Rate> {
+        self.laws.rate()
+    }
+
+    /// Puts an accepted gain table to use, from the next step on; in flight over [`FADE_STEPS`] where it takes the place
+    /// of the one that is flown.
+    ///
+    /// # Errors
+    /// As [`Laws::load`].
+    #[cold]
+    pub fn load(&mut self, table: &AcceptedTable) -> Result<(), Refused> {
+        self.laws.load(table, self.fade_steps())
+    }
+
+    /// On the ground there is nothing to jump.
+    fn fade_steps(&self) -> u16 {
+        if self.mode().motors_allowed() { FADE_STEPS } else { 0 }
     }
 
     /// The limits in force.
     pub fn limits(&self) -> LimitsSetting {
-        self.limits
+        let limits = self.laws.limits();
+        LimitsSetting {
+            thrust_min_m_s2: limits.thrust_min_m_s2(),
+            thrust_max_m_s2: limits.thrust_max_m_s2(),
+            body_rates_max_rad_s: limits.body_rates_max_rad_s().into(),
+        }
     }
 
     /// Sets the limits.
@@ -176,8 +222,7 @@ impl Flight {
     /// As [`Limits::new`]; the ones in force stay.
     #[cold]
     pub fn set_limits(&mut self, limits: LimitsSetting) -> Result<(), LimitsError> {
-        (self.checked_limits, self.limits) = (limits.check()?, limits);
-        self.select(self.law);
+        self.laws.set_limits(limits.check()?);
         Ok(())
     }
 
@@ -188,6 +233,10 @@ impl Flight {
     #[cold]
     pub fn arm(&mut self, now: Tick) -> Result<(), ArmError> {
         self.last_report = StepReport::NoReference;
+        // Asked again in flight, nothing changes.
+        if !self.mode().motors_allowed() {
+            self.laws.settle();
+        }
         self.supervisor.arm(&self.config, age(self.heard_at, now))
     }
 
@@ -233,7 +282,7 @@ impl Flight {
         let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
         self.answer.result = if self.supervisor.mode().motors_allowed() {
             let clock = StepClock(if self.is_lock_step() { state_tick } else { now });
-            control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &self.tracker)
+            control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &mut self.laws)
         } else {
             Err(NoCommand::Mode(self.supervisor.mode()))
         };
@@ -282,6 +331,12 @@ impl Flight {
         };
         self.supervisor.tick(&self.config, &conditions)
     }
+}
+
+/// The rate of the steps at so many ticks each, if it is a whole number of Hz.
+fn step_rate(decimation: u32) -> Option<Rate> {
+    let ticks = if decimation == LOCK_STEP { DECIMATION } else { decimation };
+    if TICK_RATE_HZ.is_multiple_of(ticks) { Rate::from_hz(TICK_RATE_HZ.checked_div(ticks)?) } else { None }
 }
 
 /// Ticks since something happened.

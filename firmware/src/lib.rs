@@ -10,6 +10,7 @@
 //!   tick                      what the timer's interrupts run
 //!   session                   frames in, orders to the flight, frames out
 //!     flight                  states, orders, ticks in; gated commands out
+//!       laws                  which law is flown: built in, or of a loaded table
 //!       playback, stored      what is followed; the trajectories in flash
 //!         control, timing     the step against traits; overruns, jitter, the longest step
 //! ```
@@ -20,6 +21,7 @@
 
 pub mod control;
 pub mod flight;
+pub mod laws;
 pub mod playback;
 pub mod session;
 pub mod stored;

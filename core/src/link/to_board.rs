@@ -109,6 +109,8 @@ pub enum ParameterId {
     OverrunsTolerated,
     /// [`Parameter::TelemetryPeriodTicks`].
     TelemetryPeriodTicks,
+    /// [`Parameter::UploadsRefused`].
+    UploadsRefused,
 }
 
 /// A parameter and its value.
@@ -127,6 +129,8 @@ pub enum Parameter {
     OverrunsTolerated(u32),
     /// Ticks between two telemetry messages; 0 sends none.
     TelemetryPeriodTicks(Tick),
+    /// Commits since start-up that did not put an upload to use. Cannot be set.
+    UploadsRefused(u32),
 }
 
 impl Parameter {
@@ -139,6 +143,7 @@ impl Parameter {
             Self::LinkSilenceMaxTicks(_) => ParameterId::LinkSilenceMaxTicks,
             Self::OverrunsTolerated(_) => ParameterId::OverrunsTolerated,
             Self::TelemetryPeriodTicks(_) => ParameterId::TelemetryPeriodTicks,
+            Self::UploadsRefused(_) => ParameterId::UploadsRefused,
         }
     }
 }

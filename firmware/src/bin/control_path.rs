@@ -3,7 +3,7 @@
 //!
 //! Holds what the control interrupt runs (`tick`, `flight`, `playback`, `control`, `timing`, the supervisor), the four
 //! laws with their tables, the check and the evaluation of trajectories, and the start-up code; neither stored
-//! trajectories nor drivers nor the link. It is linked, never run.
+//! trajectories nor drivers nor the link, and so nothing that puts an upload to use. It is linked, never run.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -14,8 +14,7 @@ mod image {
     use quatrack::link::{LawChoice, LimitsSetting, StateIn};
     use quatrack::{FlatSample, Piece, Player, Trajectory};
     use quatrack_firmware::counter::Counter;
-    use quatrack_firmware::flight::{CONFIG, Flight, TICK_RATE};
-    use quatrack_firmware::playback::Store;
+    use quatrack_firmware::flight::{CONFIG, Flight, Store, TICK_RATE};
     use quatrack_firmware::tick;
     use quatrack_firmware::timing::Timing;
     use stm32f4::stm32f405::Peripherals;

@@ -64,6 +64,7 @@ fn parameter() -> impl Strategy<Value = Parameter> {
         any::<u32>().prop_map(Parameter::LinkSilenceMaxTicks),
         any::<u32>().prop_map(Parameter::OverrunsTolerated),
         any::<u32>().prop_map(Parameter::TelemetryPeriodTicks),
+        any::<u32>().prop_map(Parameter::UploadsRefused),
     ]
 }
 
@@ -203,6 +204,8 @@ fn refusal() -> impl Strategy<Value = Refusal> {
             Refusal::Unsupported,
             Refusal::NotWhileArmed,
             Refusal::ReadOnly,
+            Refusal::NoTable,
+            Refusal::LawChanging,
             Refusal::OutOfRange,
             Refusal::NoTrajectory,
             Refusal::Arm(ArmError::LinkSilent),

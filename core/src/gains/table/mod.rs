@@ -322,7 +322,7 @@ impl TableKind {
     }
 
     /// Its number in the bytes.
-    const fn number(self) -> u8 {
+    pub const fn number(self) -> u8 {
         match self {
             Self::Equilibrium => 1,
             Self::FlatOutput => 2,
