@@ -133,11 +133,11 @@ fn recover(vehicle: &Vehicle, craft: &Craft, table: &AwareTable) -> Result<Rigid
     ))
 }
 
-/// 0.2 s of a force to the left, half a second after the start.
+/// 0.4 s of a force to the left, half a second after the start.
 fn shove(vehicle: &Vehicle) -> Shove {
-    const ACCELERATION_M_S2: f64 = 12.5;
+    const ACCELERATION_M_S2: f64 = 7.0;
     let force_n = Vector3::new(0.0, vehicle.mass_kg() * ACCELERATION_M_S2, 0.0);
-    Shove { from_s: 0.5, to_s: 0.7, force_n }
+    Shove { from_s: 0.5, to_s: 0.9, force_n }
 }
 
 /// What a flight came to.
