@@ -11,7 +11,7 @@ use super::motor_loop::{PERIOD_S, STEPS_A_SAMPLE};
 use super::rigid_loop::{Conditions, RigidFlight, fly_rigid};
 use crate::model::GRAVITY_M_S2;
 use crate::plant::{Craft, Ground, RigidState, Shove};
-use crate::trajectory::fifth_order::{Braking, Course, FifthOrder, Rest, RestToRest};
+use crate::trajectory::fifth_order::{Braking, Course, FifthOrder, Jump, Rest, RestToRest};
 use crate::vehicle::Vehicle;
 
 /// Height at which manoeuvres in the air begin, m.
@@ -88,7 +88,10 @@ impl Manoeuvre {
                 (RigidState::at_rest(standing_m, 0.0), Box::new(RestToRest::new(standing_m, aloft_m, 2.0, 4.0)))
             }
             Self::Landing => (hovering, Box::new(RestToRest::new(aloft_m, standing_m, 2.5, 3.5))),
-            Self::Step => (hovering, Box::new(rest(aloft_m + Vector3::x(), 5.0))),
+            Self::Step => {
+                let to_m = aloft_m + Vector3::x();
+                (hovering, Box::new(Jump { from_m: aloft_m, to_m, at_s: 0.5, duration_s: 5.5 }))
+            }
             Self::Shove => {
                 let aside = RigidState { position_m: aloft_m + 0.5 * Vector3::y(), ..hovering };
                 (aside, Box::new(rest(aloft_m, 5.0)))
