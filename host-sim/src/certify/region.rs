@@ -147,7 +147,7 @@ pub fn certify_region(
         points += 1;
         // Points that differ in what a chain does not feel are equal: the first of them counts, on every processor. A NaN is as
         // bad as it gets.
-        if worst.is_none_or(|(_, held)| !(radius <= held * (1.0 + SAME))) {
+        if worst.is_none_or(|(_, held)| radius.is_nan() || radius > held * (1.0 + SAME)) {
             worst = Some((variation, radius));
         }
     }
