@@ -80,10 +80,13 @@ impl Design {
         };
         let table = match (&designed.gains, &self.problem) {
             _ if !designed.past_command_gains.is_empty() => None,
-            (Gains::ActuatorAware(gain), Problem::ActuatorAware { motor_lag_s, .. }) => {
-                Some(ActuatorTable::new(head, *motor_lag_s as f32, &rounded(gain)).map(|table| Table::Actuator(Box::new(table))))
+            (Gains::ActuatorAware(gain), Problem::ActuatorAware { motor_lag_s, .. }) => Some(
+                ActuatorTable::new(head, *motor_lag_s as f32, &rounded(gain))
+                    .map(|table| Table::Actuator(Box::new(table))),
+            ),
+            (gains, _) => {
+                gains.rows().map(|rows| GainTable::new(head, &rows).map(|table| Table::Gains(Box::new(table))))
             }
-            (gains, _) => gains.rows().map(|rows| GainTable::new(head, &rows).map(Table::Gains)),
         };
         let table = table.transpose().map_err(GainsError::Table)?;
         Ok(Certified { design: self.clone(), design_hash, designed, certificate, region, statement, table })

@@ -8,7 +8,7 @@ use quatrack::gains::table::{
 #[derive(Debug, Clone, PartialEq)]
 pub enum Table {
     /// For the laws of thrust and body rates.
-    Gains(GainTable),
+    Gains(Box<GainTable>),
     /// For the law of motor forces.
     Actuator(Box<ActuatorTable>),
 }
@@ -20,7 +20,7 @@ impl Table {
     /// [`TableError`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, TableError> {
         match ActuatorTable::from_bytes(bytes) {
-            Err(TableError::OtherKind { .. }) => GainTable::from_bytes(bytes).map(Self::Gains),
+            Err(TableError::OtherKind { .. }) => GainTable::from_bytes(bytes).map(|table| Self::Gains(Box::new(table))),
             read => read.map(|table| Self::Actuator(Box::new(table))),
         }
     }
