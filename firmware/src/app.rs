@@ -60,7 +60,7 @@ mod app {
             timing: Timing::new(board.clocks.counts_per_tick),
             counter: board.counter,
         };
-        defmt::info!("core {=u32} Hz, TIM2 {=u32} counts a tick", board.clocks.core_hz, board.clocks.counts_per_tick);
+        defmt::info!("core {=u32} Hz, TIM5 {=u32} counts a tick", board.clocks.core_hz, board.clocks.counts_per_tick);
         let receiver = Receiver::new(producer, &DROPPED_BYTES);
         (shared, Local { receiver, session: Session::new(context.local.uploads, fault), line })
     }

@@ -19,6 +19,7 @@
 #![warn(clippy::unwrap_used, clippy::expect_used)]
 
 pub mod control;
+pub mod drivers;
 pub mod flight;
 pub mod playback;
 pub mod session;

@@ -32,7 +32,7 @@ mod image {
     /// Every order there is, with values that the compiler does not know.
     fn control(store: &'static mut Store) -> Option<()> {
         let peripherals = Peripherals::take()?;
-        let counter = Counter::start(peripherals.TIM2, &peripherals.RCC);
+        let counter = Counter::start(peripherals.TIM5, &peripherals.RCC);
         let timing = Timing::new(black_box(1));
         let mut flight = Flight::new(store, black_box(None));
         loop {

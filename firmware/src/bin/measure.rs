@@ -40,7 +40,7 @@ mod image {
 
     fn run(store: &'static mut Store) -> Option<()> {
         let peripherals = Peripherals::take()?;
-        let counter = Counter::start(peripherals.TIM2, &peripherals.RCC);
+        let counter = Counter::start(peripherals.TIM5, &peripherals.RCC);
         let mut states = File::open(c"states.bin", Mode::Read)?;
         let mut counts = File::open(c"counts.bin", Mode::Write)?;
         let overhead = overhead(counter);
