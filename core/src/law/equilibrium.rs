@@ -1,5 +1,7 @@
 //! (LYAP-E) and (LQR-E): `u = u_e - K (x - x_r)`, the gain designed on the model linearised at hover.
 
+use core::hint::cold_path;
+
 use nalgebra::Vector3;
 
 use super::{ControlLaw, FeedForward, difference};
@@ -139,6 +141,7 @@ impl<'a> Equilibrium<'a> {
                 [r.x, r.y, r.z, q.x, q.y, q.z, v.x, v.y, v.z]
             }
             ErrorForm::Paper => {
+                cold_path();
                 let q = state.attitude().in_hemisphere_of(target.attitude);
                 let (dx, dy, dz) = (q.x - target.attitude.x, q.y - target.attitude.y, q.z - target.attitude.z);
                 [r.x, r.y, r.z, dx, dy, dz, v.x, v.y, v.z]
