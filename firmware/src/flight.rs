@@ -1,13 +1,21 @@
-//! The flight: states, orders and ticks in; gated commands and answers out. What the control interrupt owns.
+//! The flight: states, orders and ticks in; gated commands, motor forces and answers out. What the control interrupt owns.
 
 use quatrack::command::LimitsError;
 use quatrack::gains::paper;
-use quatrack::link::{CommandOut, LawChoice, LimitsSetting, NoCommand, StateIn, Table};
+use quatrack::link::{
+    CommandOut, ForcesOut, FromBoard, LawChoice, LimitsSetting, NoCommand, RigidStateIn, StateIn, Table,
+};
+use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{ArmError, Conditions, Config, Fault, Mode, StepReport, Supervisor, Verdict};
-use quatrack::{Command, Equilibrium, Limits, Rate, State, Tick, Tracker};
+use quatrack::{Command, Equilibrium, Limits, MotorForces, Rate, RigidState, State, Tick, Tracker};
 
 use crate::control::{self, Clock, CommandSink, StateSource};
+use crate::craft::BodyRates;
+use crate::drivers::battery::CellVoltage;
+use crate::motor_control::{MotorControl, STOPPED};
 use crate::playback::{Playback, Store};
+
+mod motors;
 
 /// Ticks of the loop a second.
 pub const TICK_RATE_HZ: u32 = 1000;
@@ -31,12 +39,18 @@ pub const CONFIG: Config = Config { state_age_max_ticks: 50, link_silence_max_ti
 const LIMITS: LimitsSetting =
     LimitsSetting { thrust_min_m_s2: 1.768, thrust_max_m_s2: 16.55, body_rates_max_rad_s: [20.0, 20.0, 10.0] };
 
-/// The command as the motors get it. There are none yet: kept for who asks.
-struct Motors {
+/// What passes: the command of a law that gives one, and the forces of the motors where body rates are known.
+struct Passed {
     command: Command,
+    forces_n: MotorForces,
 }
 
-impl CommandSink for Motors {
+impl Passed {
+    /// Motors off.
+    const NOTHING: Self = Self { command: Command::ZERO, forces_n: STOPPED };
+}
+
+impl CommandSink for Passed {
     #[inline]
     fn put(&mut self, command: &Command) {
         self.command = *command;
@@ -46,8 +60,16 @@ impl CommandSink for Motors {
 /// The newest state and when it came.
 struct Arrived {
     state: StateIn,
+    body_rates_rad_s: Option<Vector3<f32>>,
     at: Tick,
     answered: bool,
+}
+
+impl Arrived {
+    #[inline]
+    fn has_body_rates(&self) -> bool {
+        self.body_rates_rad_s.is_some()
+    }
 }
 
 /// The newest state, for the step.
@@ -82,13 +104,20 @@ pub struct Flight {
     pub playback: Playback,
     /// The bounds of a flight.
     pub config: Config,
+    /// What the motors' duties are reckoned with.
+    pub battery: CellVoltage,
+    /// What carries the law to the motors.
+    pub motors: MotorControl,
     supervisor: Supervisor,
     decimation: u32,
     last_report: StepReport,
     fault: Option<Fault>,
-    motors: Motors,
+    passed: Passed,
     /// The last step and its result, kept in place: it is as large as a command may be.
     answer: CommandOut,
+    /// The same for the motors, and whether it is that which answers.
+    forces: ForcesOut,
+    answers_forces: bool,
     is_answer_new: bool,
     steps: u32,
     steps_failed: u32,
@@ -112,8 +141,12 @@ impl Flight {
             decimation: DECIMATION,
             last_report: StepReport::NoReference,
             fault,
-            motors: Motors { command: Command::ZERO },
+            battery: CellVoltage::NOMINAL,
+            motors: MotorControl::new(),
+            passed: Passed::NOTHING,
             answer: CommandOut { tick: 0, state_tick: 0, result: Err(NoCommand::NoReference) },
+            forces: ForcesOut { tick: 0, state_tick: 0, result: Err(NoCommand::NoReference) },
+            answers_forces: false,
             is_answer_new: false,
             steps: 0,
             steps_failed: 0,
@@ -129,7 +162,14 @@ impl Flight {
 
     /// Takes a state. In lock-step it is to be stepped on at once.
     pub fn accept(&mut self, state: StateIn, now: Tick) {
-        self.arrived = Some(Arrived { state, at: now, answered: false });
+        self.arrived = Some(Arrived { state, body_rates_rad_s: None, at: now, answered: false });
+    }
+
+    /// The same with body rates.
+    pub fn accept_rigid(&mut self, state: RigidStateIn, now: Tick) {
+        let RigidStateIn { tick, state: RigidState { state, body_rates_rad_s } } = state;
+        let state = StateIn { tick, state };
+        self.arrived = Some(Arrived { state, body_rates_rad_s: Some(body_rates_rad_s), at: now, answered: false });
     }
 
     /// Whether a state waits for its step.
@@ -147,9 +187,13 @@ impl Flight {
         self.decimation
     }
 
-    /// Sets the ticks for one step.
-    pub fn set_decimation(&mut self, decimation: u32) {
-        self.decimation = decimation;
+    /// Sets the ticks for one step; whether the law in force can be flown so: the actuator-aware one has its own rate.
+    pub fn set_decimation(&mut self, decimation: u32) -> bool {
+        let fits = self.law.table != Table::ActuatorAware || is_design_rate(decimation);
+        if fits {
+            self.decimation = decimation;
+        }
+        fits
     }
 
     /// The law in force.
@@ -160,8 +204,12 @@ impl Flight {
     /// Chooses a law; whether its table is on board.
     #[cold]
     pub fn select(&mut self, law: LawChoice) -> bool {
-        let Some(built_in) = law.built_in() else { return false };
-        (self.law, self.tracker) = (law, Tracker::new(built_in, self.checked_limits));
+        match law.built_in() {
+            Some(built_in) => self.tracker = Tracker::new(built_in, self.checked_limits),
+            None if law.table == Table::ActuatorAware && is_design_rate(self.decimation) => {}
+            None => return false,
+        }
+        self.law = law;
         true
     }
 
@@ -188,13 +236,16 @@ impl Flight {
     #[cold]
     pub fn arm(&mut self, now: Tick) -> Result<(), ArmError> {
         self.last_report = StepReport::NoReference;
+        if !self.supervisor.mode().motors_allowed() {
+            self.motors.begin();
+        }
         self.supervisor.arm(&self.config, age(self.heard_at, now))
     }
 
     /// Takes a disarm request.
     pub fn disarm(&mut self) {
         self.supervisor.disarm();
-        self.motors.put(&Command::ZERO);
+        self.passed = Passed::NOTHING;
     }
 
     /// The supervisor's mode.
@@ -202,15 +253,42 @@ impl Flight {
         self.supervisor.mode()
     }
 
-    /// What the motors are told.
+    /// The command that passes; zero under a law that gives none.
     pub fn command(&self) -> &Command {
-        &self.motors.command
+        &self.passed.command
+    }
+
+    /// The motor forces that pass, N.
+    pub fn forces_n(&self) -> &MotorForces {
+        &self.passed.forces_n
+    }
+
+    /// Those that motors are to be driven to: none in lock-step, where it is not this craft that flies.
+    #[inline]
+    pub fn driven_forces_n(&self) -> &MotorForces {
+        if self.is_lock_step() { &STOPPED } else { &self.passed.forces_n }
+    }
+
+    /// Whether the next step is to be given the craft's own body rates.
+    #[inline]
+    pub fn takes_body_rates(&self) -> bool {
+        !self.is_lock_step() && self.supervisor.mode().motors_allowed()
     }
 
     /// The answer to the last state, once.
+    pub fn take_message(&mut self) -> Option<FromBoard> {
+        let is_new = core::mem::take(&mut self.is_answer_new);
+        is_new.then(
+            || {
+                if self.answers_forces { FromBoard::Forces(self.forces) } else { FromBoard::Command(self.answer) }
+            },
+        )
+    }
+
+    /// The same, if it is a command.
     pub fn take_answer(&mut self) -> Option<CommandOut> {
         let is_new = core::mem::take(&mut self.is_answer_new);
-        is_new.then_some(self.answer)
+        (is_new && !self.answers_forces).then_some(self.answer)
     }
 
     /// Steps taken, and those without a command.
@@ -223,29 +301,40 @@ impl Flight {
     pub fn fail(&mut self, fault: Fault, now: Tick) {
         self.fault = Some(fault);
         self.supervise(now, StepReport::Failed, false);
-        self.motors.put(&Command::ZERO);
+        self.passed = Passed::NOTHING;
     }
 
     /// One control step at a tick of the board: step, supervise, gate, and answer the state if it is new.
     #[inline]
-    pub fn step(&mut self, now: Tick, overrun: bool) {
+    pub fn step(&mut self, now: Tick, overrun: bool, rates: BodyRates) {
         self.steps = self.steps.wrapping_add(1);
         let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
-        self.answer.result = if self.supervisor.mode().motors_allowed() {
-            let clock = StepClock(if self.is_lock_step() { state_tick } else { now });
-            control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &self.tracker)
-        } else {
+        let clock = StepClock(if self.is_lock_step() { state_tick } else { now });
+        let is_allowed = self.supervisor.mode().motors_allowed();
+        let is_straight = self.law.table == Table::ActuatorAware;
+        self.answer.result = if !is_allowed {
             Err(NoCommand::Mode(self.supervisor.mode()))
+        } else if is_straight {
+            Err(if self.arrived.is_some() { NoCommand::NoBodyRates } else { NoCommand::NoReference })
+        } else {
+            control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &self.tracker)
         };
-        let report = match &self.answer.result {
-            Ok(_) => StepReport::Command,
-            Err(NoCommand::NoReference | NoCommand::Mode(_)) => StepReport::NoReference,
-            Err(NoCommand::Reference(_) | NoCommand::Step(_)) => StepReport::Failed,
+        self.answers_forces = false;
+        let has_rates = rates != BodyRates::NoGyroscope || self.arrived.as_ref().is_some_and(Arrived::has_body_rates);
+        if is_allowed && has_rates {
+            self.step_motors(&clock, rates);
+            (self.forces.tick, self.forces.state_tick) = (now, state_tick);
+        }
+        let report = match self.outcome() {
+            None => StepReport::Command,
+            Some(NoCommand::NoReference | NoCommand::Mode(_)) => StepReport::NoReference,
+            Some(NoCommand::Reference(_) | NoCommand::Step(_) | NoCommand::NoBodyRates) => StepReport::Failed,
         };
         let verdict = self.supervise(now, report, overrun);
-        match &self.answer.result {
-            Ok(step) if verdict.mode.command_passes() => self.motors.put(&step.command),
-            _ => self.stand_still(verdict.mode),
+        if verdict.mode.command_passes() && report == StepReport::Command {
+            self.pass();
+        } else {
+            self.stand_still(verdict.mode);
         }
         (self.answer.tick, self.answer.state_tick) = (now, state_tick);
         if let Some(arrived) = &mut self.arrived {
@@ -254,19 +343,40 @@ impl Flight {
         }
     }
 
+    /// Why the step has nothing to pass, if so.
+    #[inline]
+    fn outcome(&self) -> Option<&NoCommand> {
+        if self.answers_forces { self.forces.result.as_ref().err() } else { self.answer.result.as_ref().err() }
+    }
+
+    #[inline]
+    fn pass(&mut self) {
+        match &self.answer.result {
+            Ok(step) => self.passed.put(&step.command),
+            Err(_) => self.passed.put(&Command::ZERO),
+        }
+        self.passed.forces_n = match &self.forces.result {
+            Ok(step) if self.answers_forces => step.forces_n,
+            _ => STOPPED,
+        };
+    }
+
     #[cold]
     fn stand_still(&mut self, mode: Mode) {
         if self.answer.result.is_ok() {
             self.answer.result = Err(NoCommand::Mode(mode));
         }
+        if self.forces.result.is_ok() {
+            self.forces.result = Err(NoCommand::Mode(mode));
+        }
         self.steps_failed = self.steps_failed.wrapping_add(1);
-        self.motors.put(&Command::ZERO);
+        self.passed = Passed::NOTHING;
     }
 
     /// A tick without a step: looks at the ages, and stops the motors where they are too high.
     pub fn watch(&mut self, now: Tick, overrun: bool) {
         if !self.supervise(now, self.last_report, overrun).mode.command_passes() {
-            self.motors.put(&Command::ZERO);
+            self.passed = Passed::NOTHING;
         }
     }
 
@@ -282,6 +392,12 @@ impl Flight {
         };
         self.supervisor.tick(&self.config, &conditions)
     }
+}
+
+/// Whether the actuator-aware table is made for the rate: its own, or that of the states, which it is flown at in
+/// lock-step.
+const fn is_design_rate(decimation: u32) -> bool {
+    decimation == DECIMATION || decimation == LOCK_STEP
 }
 
 /// Ticks since something happened.

@@ -8,6 +8,7 @@ use quatrack::link::{
     TrajectoryCommand, TrajectoryId, Version,
 };
 
+use crate::drivers::battery::CellVoltage;
 use crate::flight::{Flight, TICK_RATE_HZ};
 use crate::stored;
 
@@ -85,6 +86,10 @@ impl Session {
                     flight.playback.follow(sample);
                     flight.accept(state, now);
                 });
+                None
+            }
+            ToBoard::RigidState(state) => {
+                flight.with(|flight| flight.accept_rigid(state, now));
                 None
             }
             ToBoard::TelemetryRequest => Some(self.telemetry(flight, vitals)),
@@ -199,18 +204,20 @@ impl Session {
             ParameterId::LinkSilenceMaxTicks => Parameter::LinkSilenceMaxTicks(flight.config.link_silence_max_ticks),
             ParameterId::OverrunsTolerated => Parameter::OverrunsTolerated(flight.config.overruns_tolerated),
             ParameterId::TelemetryPeriodTicks => Parameter::TelemetryPeriodTicks(self.telemetry_period_ticks),
+            ParameterId::BatteryVoltage => Parameter::BatteryVoltage(flight.battery.volts()),
+            ParameterId::BodyRateBandwidth => Parameter::BodyRateBandwidth(flight.motors.bandwidth_rad_s()),
         })
     }
 
     fn set(&mut self, parameter: Parameter, flight: &mut impl Shared, vitals: &impl Vitals) -> Result<(), Refusal> {
-        if !matches!(parameter, Parameter::TelemetryPeriodTicks(_)) {
+        if !matches!(parameter, Parameter::TelemetryPeriodTicks(_) | Parameter::BatteryVoltage(_)) {
             disarmed(flight)?;
         }
         let within = |value: u32, max: u32| if value <= max { Ok(value) } else { Err(Refusal::OutOfRange) };
         match parameter {
             Parameter::Decimation(ticks) => {
                 let decimation = within(ticks, DECIMATION_MAX)?;
-                flight.with(|flight| flight.set_decimation(decimation));
+                flight.with(|flight| flight.set_decimation(decimation)).then_some(()).ok_or(Refusal::OutOfRange)?;
                 vitals.set_decimation(decimation);
             }
             Parameter::Limits(limits) => {
@@ -228,6 +235,14 @@ impl Session {
                 flight.with(|flight| flight.config.overruns_tolerated = count);
             }
             Parameter::TelemetryPeriodTicks(ticks) => self.telemetry_period_ticks = ticks,
+            Parameter::BatteryVoltage(voltage_v) => {
+                let battery = CellVoltage::new(voltage_v).map_err(|_| Refusal::OutOfRange)?;
+                flight.with(|flight| flight.battery = battery);
+            }
+            Parameter::BodyRateBandwidth(bandwidth_rad_s) => {
+                let set = flight.with(|flight| flight.motors.set_bandwidth(bandwidth_rad_s));
+                set.map_err(|_| Refusal::OutOfRange)?;
+            }
         }
         Ok(())
     }

@@ -14,6 +14,7 @@ mod image {
     use quatrack::link::{LawChoice, LimitsSetting, StateIn};
     use quatrack::{FlatSample, Piece, Player, Trajectory};
     use quatrack_firmware::counter::Counter;
+    use quatrack_firmware::craft::NoCraft;
     use quatrack_firmware::flight::{CONFIG, Flight, TICK_RATE};
     use quatrack_firmware::playback::Store;
     use quatrack_firmware::tick;
@@ -52,11 +53,11 @@ mod image {
                 9 => _ = flight.arm(now),
                 10 => flight.disarm(),
                 11 => flight.hear(now),
-                12 => flight.set_decimation(black_box(0)),
+                12 => _ = flight.set_decimation(black_box(0)),
                 13 => flight.config = black_box(CONFIG),
                 14 => _ = black_box(flight.take_answer()),
                 15 => _ = black_box(timing.on_timer(counter.now())),
-                _ => tick::control(&mut flight, &timing, counter),
+                _ => tick::control(&mut flight, &timing, counter, &mut NoCraft),
             }
             black_box(flight.command());
         }

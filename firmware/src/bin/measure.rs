@@ -29,6 +29,7 @@ mod image {
         Step, Tick, Tracker, Trajectory,
     };
     use quatrack_firmware::counter::Counter;
+    use quatrack_firmware::craft::NoCraft;
     use quatrack_firmware::flight::{DECIMATION as TICKS_PER_STEP, Flight, TICK_RATE};
     use quatrack_firmware::playback::Store;
     use quatrack_firmware::semihosting::{File, Mode, exit};
@@ -282,7 +283,7 @@ mod image {
     /// What the control interrupt runs.
     #[inline(never)]
     fn control(flight: &mut Flight, timing: &Timing, counter: Counter) {
-        tick::control(flight, timing, counter);
+        tick::control(flight, timing, counter, &mut NoCraft);
     }
 
     /// On-board reference: polynomial to jerk, and the flat map.

@@ -206,6 +206,17 @@ impl<I: I2c> Gyro<I> {
     }
 }
 
+impl<E> GyroError<E> {
+    /// In a word, for a log.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Bus(_) => "nothing answers on the bus",
+            Self::ChipId { .. } => "another chip answers",
+            Self::Setting { .. } => "a setting does not stick",
+        }
+    }
+}
+
 impl<E: fmt::Debug> fmt::Display for GyroError<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {

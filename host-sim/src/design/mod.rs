@@ -25,6 +25,7 @@ mod hamiltonian;
 pub mod integral;
 mod lyapunov;
 mod lyapunov_operator;
+pub mod motor_tables;
 mod newton;
 mod riccati;
 pub mod sampled;
