@@ -95,6 +95,8 @@ impl Clock for StepClock {
 /// Everything between the link and the motors.
 pub struct Flight {
     law: LawChoice,
+    /// The actuator-aware law is flown, not the one above.
+    is_straight: bool,
     limits: LimitsSetting,
     checked_limits: Limits,
     tracker: Tracker<'static>,
@@ -130,6 +132,7 @@ impl Flight {
         let checked_limits = LIMITS.check().unwrap_or(Limits::NONE);
         let mut flight = Self {
             law: LawChoice::new(Table::LqrE),
+            is_straight: false,
             limits: LIMITS,
             checked_limits,
             tracker: Tracker::new(Equilibrium::new(&paper::LQR_E), checked_limits),
@@ -189,7 +192,7 @@ impl Flight {
 
     /// Sets the ticks for one step; whether the law in force can be flown so: the actuator-aware one has its own rate.
     pub fn set_decimation(&mut self, decimation: u32) -> bool {
-        let fits = self.law.table != Table::ActuatorAware || is_design_rate(decimation);
+        let fits = !self.is_straight || is_design_rate(decimation);
         if fits {
             self.decimation = decimation;
         }
@@ -198,18 +201,18 @@ impl Flight {
 
     /// The law in force.
     pub fn law(&self) -> LawChoice {
-        self.law
+        if self.is_straight { LawChoice::new(Table::ActuatorAware) } else { self.law }
     }
 
     /// Chooses a law; whether its table is on board.
     #[cold]
     pub fn select(&mut self, law: LawChoice) -> bool {
-        match law.built_in() {
-            Some(built_in) => self.tracker = Tracker::new(built_in, self.checked_limits),
-            None if law.table == Table::ActuatorAware && is_design_rate(self.decimation) => {}
-            None => return false,
+        if law.table == Table::ActuatorAware {
+            self.is_straight |= is_design_rate(self.decimation);
+            return self.is_straight;
         }
-        self.law = law;
+        let Some(built_in) = law.built_in() else { return false };
+        (self.law, self.tracker, self.is_straight) = (law, Tracker::new(built_in, self.checked_limits), false);
         true
     }
 
@@ -225,7 +228,9 @@ impl Flight {
     #[cold]
     pub fn set_limits(&mut self, limits: LimitsSetting) -> Result<(), LimitsError> {
         (self.checked_limits, self.limits) = (limits.check()?, limits);
-        self.select(self.law);
+        if let Some(built_in) = self.law.built_in() {
+            self.tracker = Tracker::new(built_in, self.checked_limits);
+        }
         Ok(())
     }
 
@@ -311,10 +316,9 @@ impl Flight {
         let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
         let clock = StepClock(if self.is_lock_step() { state_tick } else { now });
         let is_allowed = self.supervisor.mode().motors_allowed();
-        let is_straight = self.law.table == Table::ActuatorAware;
         self.answer.result = if !is_allowed {
             Err(NoCommand::Mode(self.supervisor.mode()))
-        } else if is_straight {
+        } else if self.is_straight {
             Err(if self.arrived.is_some() { NoCommand::NoBodyRates } else { NoCommand::NoReference })
         } else {
             control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &self.tracker)

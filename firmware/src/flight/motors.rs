@@ -1,7 +1,7 @@
 //! A step down to the motors: body rates, and the law's command or the newest state, in; motor forces out.
 
 use quatrack::RigidState;
-use quatrack::link::{NoCommand, Table};
+use quatrack::link::NoCommand;
 
 use super::{Flight, StepClock};
 use crate::control::{Clock as _, ReferenceSource as _};
@@ -23,7 +23,7 @@ impl Flight {
         self.forces.result = match (&self.arrived, rates) {
             (None, _) => Err(NoCommand::NoReference),
             (_, None) => Err(NoCommand::NoBodyRates),
-            (Some(_), Some(rates)) if self.law.table != Table::ActuatorAware => {
+            (Some(_), Some(rates)) if !self.is_straight => {
                 self.answer.result.and_then(|step| self.motors.carry(&step, &rates).map_err(NoCommand::Step))
             }
             (Some(_), _) if !self.playback.is_there() => Err(NoCommand::NoReference),
