@@ -325,7 +325,7 @@ impl Flight {
         };
         self.answers_forces = false;
         let has_rates = rates != BodyRates::NoGyroscope || self.arrived.as_ref().is_some_and(Arrived::has_body_rates);
-        if is_allowed && has_rates {
+        if has_rates {
             self.step_motors(&clock, rates);
             (self.forces.tick, self.forces.state_tick) = (now, state_tick);
         }

@@ -20,7 +20,9 @@ impl Flight {
             BodyRates::Failed => None,
         };
         self.answers_forces = true;
+        let mode = self.supervisor.mode();
         self.forces.result = match (&self.arrived, rates) {
+            _ if !mode.motors_allowed() => Err(NoCommand::Mode(mode)),
             (None, _) => Err(NoCommand::NoReference),
             (_, None) => Err(NoCommand::NoBodyRates),
             (Some(_), Some(rates)) if !self.is_straight => {

@@ -4,5 +4,6 @@ mod counts;
 mod emulated;
 mod failures;
 mod hard_fault;
+mod motors;
 mod support;
 mod two_ways;
