@@ -102,6 +102,6 @@ impl<L: ControlLaw> Limiting<L> {
 /// Why there is no command. The reference has been checked when it was made.
 #[cold]
 #[inline(never)]
-fn refuse(state: &State) -> Result<Step, StepError> {
+pub(crate) fn refuse(state: &State) -> Result<Step, StepError> {
     Err(state.fault().map_or(StepError::Singular, StepError::State))
 }

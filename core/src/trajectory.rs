@@ -8,6 +8,7 @@ use core::fmt;
 use nalgebra::Vector3;
 
 use crate::airframe::Airframe;
+use crate::checksum::Crc32c;
 use crate::clock::{Rate, Tick, TickClock};
 use crate::error::ReferenceError;
 use crate::motor_reference::{FifthOrderSample, MotorReference};
@@ -164,6 +165,20 @@ impl<'a> Trajectory<'a> {
     /// Length in time, ns.
     pub fn duration_ns(&self) -> u64 {
         self.summary.duration_ns
+    }
+
+    /// CRC-32C of the pieces, one after the other: duration in ns (`u64`), then the coefficients of x, y, z and heading
+    /// (`f32`, ascending powers), lowest byte first. It tells one trajectory from another: gains over time name theirs by
+    /// it. Goes over every byte: once a flight, not once a step.
+    #[cold]
+    pub fn checksum(&self) -> u32 {
+        let mut crc = Crc32c::new();
+        for piece in core::iter::once(self.first).chain(self.following) {
+            piece.duration_ns.to_le_bytes().into_iter().for_each(|byte| crc.update(byte));
+            let coefficients = [&piece.x, &piece.y, &piece.z, &piece.heading].into_iter().flatten();
+            coefficients.flat_map(|c| c.to_le_bytes()).for_each(|byte| crc.update(byte));
+        }
+        crc.value()
     }
 
     /// What the check found.
@@ -374,6 +389,16 @@ pub struct Player<'a> {
     piece: &'a Piece,
     following: &'a [Piece],
     start_ns: u64,
+}
+
+/// Where on which trajectory a step is, for laws whose gains belong to one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Progress {
+    /// [`Trajectory::checksum`].
+    pub trajectory: u32,
+    /// Ticks of the player since its start.
+    pub tick: Tick,
 }
 
 /// Where a player is, without its trajectory: for who cannot keep a trajectory borrowed between two steps.

@@ -17,8 +17,7 @@ mod app {
     use quatrack_firmware::board::pwm::Channel;
     use quatrack_firmware::counter::Counter;
     use quatrack_firmware::craft::BoardCraft;
-    use quatrack_firmware::flight::Flight;
-    use quatrack_firmware::playback::Store;
+    use quatrack_firmware::flight::{Flight, Store};
     use quatrack_firmware::session::{Session, Shared as SharedFlight, Uploads, Vitals};
     use quatrack_firmware::timing::Timing;
     use quatrack_firmware::transport::Line as _;

@@ -1,7 +1,9 @@
 //! The control step against four small traits: a clock, a state, a reference in; one command out. No hardware.
 
 use quatrack::link::NoCommand;
-use quatrack::{Command, Reference, ReferenceError, State, Step, Tick, Tracker};
+use quatrack::{Command, Reference, ReferenceError, State, Step, Tick};
+
+use crate::laws::Laws;
 
 /// Which tick it is, on the clock that the reference is played by.
 pub trait Clock {
@@ -42,12 +44,12 @@ pub fn step(
     clock: &impl Clock,
     states: &impl StateSource,
     references: &mut impl ReferenceSource,
-    tracker: &Tracker<'_>,
+    laws: &mut Laws,
 ) -> Result<Step, NoCommand> {
     let Some(state) = states.newest().filter(|_| references.is_there()) else { return Err(NoCommand::NoReference) };
     // Looked at where it lies: to move a reference out costs as many instructions as the product with a gain.
     match &references.at(clock.now()) {
-        Ok(reference) => tracker.step(state, reference).map_err(NoCommand::Step),
+        Ok(reference) => laws.step(state, reference).map_err(NoCommand::Step),
         Err(error) => Err(NoCommand::Reference(*error)),
     }
 }

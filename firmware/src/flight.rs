@@ -1,21 +1,27 @@
 //! The flight: states, orders and ticks in; gated commands, motor forces and answers out. What the control interrupt owns.
 
+#[cfg(not(feature = "motors"))]
+#[path = "flight/commands_only.rs"]
+mod motors;
+#[cfg(feature = "motors")]
+mod motors;
+
 use quatrack::command::LimitsError;
-use quatrack::gains::paper;
+use quatrack::gains::table::AcceptedTable;
 use quatrack::link::{
-    CommandOut, ForcesOut, FromBoard, LawChoice, LimitsSetting, NoCommand, RigidStateIn, StateIn, Table,
+    CommandOut, FromBoard, GainStore, LawChoice, LimitsSetting, NoCommand, RigidStateIn, StateIn, Table,
 };
-use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{ArmError, Conditions, Config, Fault, Mode, StepReport, Supervisor, Verdict};
-use quatrack::{Command, Equilibrium, Limits, MotorForces, Rate, RigidState, State, Tick, Tracker};
+use quatrack::{Command, Limited, Limits, MotorForces, Rate, RigidState, State, Step, Tick};
 
 use crate::control::{self, Clock, CommandSink, StateSource};
 use crate::craft::BodyRates;
-use crate::drivers::battery::CellVoltage;
-use crate::motor_control::{MotorControl, STOPPED};
-use crate::playback::{Playback, Store};
+use crate::laws::{FADE_STEPS, Laws, Refused};
+use crate::motor_control::STOPPED;
+use crate::playback::{self, Playback};
 
-mod motors;
+use self::motors::StepInput;
+pub use self::motors::ToMotors;
 
 /// Ticks of the loop a second.
 pub const TICK_RATE_HZ: u32 = 1000;
@@ -39,15 +45,9 @@ pub const CONFIG: Config = Config { state_age_max_ticks: 50, link_silence_max_ti
 const LIMITS: LimitsSetting =
     LimitsSetting { thrust_min_m_s2: 1.768, thrust_max_m_s2: 16.55, body_rates_max_rad_s: [20.0, 20.0, 10.0] };
 
-/// What passes: the command of a law that gives one, and the forces of the motors where body rates are known.
+/// The command that passes.
 struct Passed {
     command: Command,
-    forces_n: MotorForces,
-}
-
-impl Passed {
-    /// Motors off.
-    const NOTHING: Self = Self { command: Command::ZERO, forces_n: STOPPED };
 }
 
 impl CommandSink for Passed {
@@ -60,16 +60,8 @@ impl CommandSink for Passed {
 /// The newest state and when it came.
 struct Arrived {
     state: StateIn,
-    body_rates_rad_s: Option<Vector3<f32>>,
     at: Tick,
     answered: bool,
-}
-
-impl Arrived {
-    #[inline]
-    fn has_body_rates(&self) -> bool {
-        self.body_rates_rad_s.is_some()
-    }
 }
 
 /// The newest state, for the step.
@@ -92,24 +84,36 @@ impl Clock for StepClock {
     }
 }
 
+/// What is uploaded, too large for the stack on which everything begins; all zeros, so that a static costs no flash.
+pub struct Store {
+    trajectories: playback::Store,
+    gains: GainStore,
+}
+
+impl Store {
+    /// Nothing.
+    pub const fn new() -> Self {
+        Self { trajectories: playback::Store::new(), gains: GainStore::unassigned() }
+    }
+}
+
+impl Default for Store {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 /// Everything between the link and the motors.
 pub struct Flight {
-    law: LawChoice,
-    /// The actuator-aware law is flown, not the one above.
-    is_straight: bool,
-    limits: LimitsSetting,
-    checked_limits: Limits,
-    tracker: Tracker<'static>,
+    laws: Laws,
     arrived: Option<Arrived>,
     heard_at: Option<Tick>,
     /// What is followed.
     pub playback: Playback,
     /// The bounds of a flight.
     pub config: Config,
-    /// What the motors' duties are reckoned with.
-    pub battery: CellVoltage,
     /// What carries the law to the motors.
-    pub motors: MotorControl,
+    pub motors: ToMotors,
     supervisor: Supervisor,
     decimation: u32,
     last_report: StepReport,
@@ -117,9 +121,6 @@ pub struct Flight {
     passed: Passed,
     /// The last step and its result, kept in place: it is as large as a command may be.
     answer: CommandOut,
-    /// The same for the motors, and whether it is that which answers.
-    forces: ForcesOut,
-    answers_forces: bool,
     is_answer_new: bool,
     steps: u32,
     steps_failed: u32,
@@ -130,32 +131,29 @@ impl Flight {
     #[cold]
     pub fn new(store: &'static mut Store, fault: Option<Fault>) -> Self {
         let checked_limits = LIMITS.check().unwrap_or(Limits::NONE);
-        let mut flight = Self {
-            law: LawChoice::new(Table::LqrE),
-            is_straight: false,
-            limits: LIMITS,
-            checked_limits,
-            tracker: Tracker::new(Equilibrium::new(&paper::LQR_E), checked_limits),
+        // Nobody reads it: no answer is new.
+        let nothing = Step { command: Command::ZERO, limited: Limited::NOTHING };
+        let mut supervisor = Supervisor::new();
+        let step = StepReport::NoReference;
+        let at_start = Conditions { link_silence_ticks: None, state_age_ticks: None, step, overrun: false, fault };
+        supervisor.tick(&CONFIG, &at_start);
+        Self {
+            laws: Laws::new(&mut store.gains, checked_limits, step_rate(DECIMATION)),
             arrived: None,
             heard_at: None,
-            playback: Playback::new(store),
+            playback: Playback::new(&mut store.trajectories),
             config: CONFIG,
-            supervisor: Supervisor::new(),
+            supervisor,
             decimation: DECIMATION,
             last_report: StepReport::NoReference,
             fault,
-            battery: CellVoltage::NOMINAL,
-            motors: MotorControl::new(),
-            passed: Passed::NOTHING,
-            answer: CommandOut { tick: 0, state_tick: 0, result: Err(NoCommand::NoReference) },
-            forces: ForcesOut { tick: 0, state_tick: 0, result: Err(NoCommand::NoReference) },
-            answers_forces: false,
+            motors: ToMotors::new(),
+            passed: Passed { command: Command::ZERO },
+            answer: CommandOut { tick: 0, state_tick: 0, result: Ok(nothing) },
             is_answer_new: false,
             steps: 0,
             steps_failed: 0,
-        };
-        flight.supervise(0, StepReport::NoReference, false);
-        flight
+        }
     }
 
     /// Takes the word that a frame was accepted.
@@ -165,14 +163,15 @@ impl Flight {
 
     /// Takes a state. In lock-step it is to be stepped on at once.
     pub fn accept(&mut self, state: StateIn, now: Tick) {
-        self.arrived = Some(Arrived { state, body_rates_rad_s: None, at: now, answered: false });
+        self.motors.accept(None);
+        self.arrived = Some(Arrived { state, at: now, answered: false });
     }
 
     /// The same with body rates.
     pub fn accept_rigid(&mut self, state: RigidStateIn, now: Tick) {
         let RigidStateIn { tick, state: RigidState { state, body_rates_rad_s } } = state;
-        let state = StateIn { tick, state };
-        self.arrived = Some(Arrived { state, body_rates_rad_s: Some(body_rates_rad_s), at: now, answered: false });
+        self.accept(StateIn { tick, state }, now);
+        self.motors.accept(Some(body_rates_rad_s));
     }
 
     /// Whether a state waits for its step.
@@ -190,35 +189,70 @@ impl Flight {
         self.decimation
     }
 
-    /// Sets the ticks for one step; whether the law in force can be flown so: the actuator-aware one has its own rate.
-    pub fn set_decimation(&mut self, decimation: u32) -> bool {
-        let fits = !self.is_straight || is_design_rate(decimation);
-        if fits {
-            self.decimation = decimation;
+    /// Sets the ticks for one step. Gain tables for another rate are dropped, the actuator-aware one too.
+    pub fn set_decimation(&mut self, decimation: u32) {
+        self.decimation = decimation;
+        self.laws.set_rate(step_rate(decimation));
+        if !self.is_actuator_aware_rate() {
+            self.motors.follow_commands();
         }
-        fits
+    }
+
+    /// Whether the steps come at the rate that the actuator-aware table is made for.
+    fn is_actuator_aware_rate(&self) -> bool {
+        step_rate(self.decimation) == step_rate(DECIMATION)
     }
 
     /// The law in force.
     pub fn law(&self) -> LawChoice {
-        if self.is_straight { LawChoice::new(Table::ActuatorAware) } else { self.law }
+        if self.motors.is_straight() { LawChoice::new(Table::ActuatorAware) } else { self.laws.choice() }
     }
 
-    /// Chooses a law; whether its table is on board.
+    /// Chooses a law, from the next step on; in flight over [`FADE_STEPS`], but to and from the actuator-aware one at once:
+    /// the motors' lag takes the edge off.
+    ///
+    /// # Errors
+    /// As [`Laws::select`].
     #[cold]
-    pub fn select(&mut self, law: LawChoice) -> bool {
+    pub fn select(&mut self, law: LawChoice) -> Result<(), Refused> {
         if law.table == Table::ActuatorAware {
-            self.is_straight |= is_design_rate(self.decimation);
-            return self.is_straight;
+            let is_its_rate = self.is_actuator_aware_rate();
+            return if self.motors.go_straight(is_its_rate) { Ok(()) } else { Err(Refused::NoTable) };
         }
-        let Some(built_in) = law.built_in() else { return false };
-        (self.law, self.tracker, self.is_straight) = (law, Tracker::new(built_in, self.checked_limits), false);
-        true
+        self.laws.select(law, self.fade_steps())?;
+        self.motors.follow_commands();
+        Ok(())
+    }
+
+    /// The rate of the steps that gain tables must be certified at, if there are any for it. In lock-step the states are
+    /// taken to come at the rate of [`DECIMATION`].
+    pub fn table_rate(&self) -> Option<Rate> {
+        self.laws.rate()
+    }
+
+    /// Puts an accepted gain table to use, from the next step on; in flight over [`FADE_STEPS`] where it takes the place
+    /// of the one that is flown.
+    ///
+    /// # Errors
+    /// As [`Laws::load`].
+    #[cold]
+    pub fn load(&mut self, table: &AcceptedTable) -> Result<(), Refused> {
+        self.laws.load(table, self.fade_steps())
+    }
+
+    /// On the ground there is nothing to jump, and nothing to fade out of what is not flown.
+    fn fade_steps(&self) -> u16 {
+        if self.mode().motors_allowed() && !self.motors.is_straight() { FADE_STEPS } else { 0 }
     }
 
     /// The limits in force.
     pub fn limits(&self) -> LimitsSetting {
-        self.limits
+        let limits = self.laws.limits();
+        LimitsSetting {
+            thrust_min_m_s2: limits.thrust_min_m_s2(),
+            thrust_max_m_s2: limits.thrust_max_m_s2(),
+            body_rates_max_rad_s: limits.body_rates_max_rad_s().into(),
+        }
     }
 
     /// Sets the limits.
@@ -227,10 +261,7 @@ impl Flight {
     /// As [`Limits::new`]; the ones in force stay.
     #[cold]
     pub fn set_limits(&mut self, limits: LimitsSetting) -> Result<(), LimitsError> {
-        (self.checked_limits, self.limits) = (limits.check()?, limits);
-        if let Some(built_in) = self.law.built_in() {
-            self.tracker = Tracker::new(built_in, self.checked_limits);
-        }
+        self.laws.set_limits(limits.check()?);
         Ok(())
     }
 
@@ -241,7 +272,8 @@ impl Flight {
     #[cold]
     pub fn arm(&mut self, now: Tick) -> Result<(), ArmError> {
         self.last_report = StepReport::NoReference;
-        if !self.supervisor.mode().motors_allowed() {
+        self.laws.settle();
+        if !self.mode().motors_allowed() {
             self.motors.begin();
         }
         self.supervisor.arm(&self.config, age(self.heard_at, now))
@@ -250,7 +282,7 @@ impl Flight {
     /// Takes a disarm request.
     pub fn disarm(&mut self) {
         self.supervisor.disarm();
-        self.passed = Passed::NOTHING;
+        self.stop();
     }
 
     /// The supervisor's mode.
@@ -265,13 +297,13 @@ impl Flight {
 
     /// The motor forces that pass, N.
     pub fn forces_n(&self) -> &MotorForces {
-        &self.passed.forces_n
+        self.motors.forces_n()
     }
 
     /// Those that motors are to be driven to: none in lock-step, where it is not this craft that flies.
     #[inline]
     pub fn driven_forces_n(&self) -> &MotorForces {
-        if self.is_lock_step() { &STOPPED } else { &self.passed.forces_n }
+        if self.is_lock_step() { &STOPPED } else { self.motors.forces_n() }
     }
 
     /// Whether the next step is to be given the craft's own body rates.
@@ -283,17 +315,13 @@ impl Flight {
     /// The answer to the last state, once.
     pub fn take_message(&mut self) -> Option<FromBoard> {
         let is_new = core::mem::take(&mut self.is_answer_new);
-        is_new.then(
-            || {
-                if self.answers_forces { FromBoard::Forces(self.forces) } else { FromBoard::Command(self.answer) }
-            },
-        )
+        is_new.then(|| self.motors.message().unwrap_or(FromBoard::Command(self.answer)))
     }
 
     /// The same, if it is a command.
     pub fn take_answer(&mut self) -> Option<CommandOut> {
         let is_new = core::mem::take(&mut self.is_answer_new);
-        (is_new && !self.answers_forces).then_some(self.answer)
+        (is_new && self.motors.message().is_none()).then_some(self.answer)
     }
 
     /// Steps taken, and those without a command.
@@ -306,7 +334,7 @@ impl Flight {
     pub fn fail(&mut self, fault: Fault, now: Tick) {
         self.fault = Some(fault);
         self.supervise(now, StepReport::Failed, false);
-        self.passed = Passed::NOTHING;
+        self.stop();
     }
 
     /// One control step at a tick of the board: step, supervise, gate, and answer the state if it is new.
@@ -315,28 +343,32 @@ impl Flight {
         self.steps = self.steps.wrapping_add(1);
         let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
         let clock = StepClock(if self.is_lock_step() { state_tick } else { now });
-        let is_allowed = self.supervisor.mode().motors_allowed();
-        self.answer.result = if !is_allowed {
+        self.answer.result = if !self.supervisor.mode().motors_allowed() {
             Err(NoCommand::Mode(self.supervisor.mode()))
-        } else if self.is_straight {
+        } else if self.motors.is_straight() {
             Err(if self.arrived.is_some() { NoCommand::NoBodyRates } else { NoCommand::NoReference })
         } else {
-            control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &self.tracker)
+            control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &mut self.laws)
         };
-        self.answers_forces = false;
-        let has_rates = rates != BodyRates::NoGyroscope || self.arrived.as_ref().is_some_and(Arrived::has_body_rates);
-        if has_rates {
-            self.step_motors(&clock, rates);
-            (self.forces.tick, self.forces.state_tick) = (now, state_tick);
-        }
-        let report = match self.outcome() {
+        let input = StepInput {
+            now,
+            state_tick,
+            reference_tick: clock.now(),
+            mode: self.supervisor.mode(),
+            rates,
+            state: self.arrived.as_ref().map(|arrived| &arrived.state.state),
+            command: &self.answer.result,
+        };
+        self.motors.step(&input, &mut self.playback);
+        let report = match self.motors.refusal(&self.answer.result) {
             None => StepReport::Command,
             Some(NoCommand::NoReference | NoCommand::Mode(_)) => StepReport::NoReference,
             Some(NoCommand::Reference(_) | NoCommand::Step(_) | NoCommand::NoBodyRates) => StepReport::Failed,
         };
         let verdict = self.supervise(now, report, overrun);
-        if verdict.mode.command_passes() && report == StepReport::Command {
-            self.pass();
+        if report == StepReport::Command && verdict.mode.command_passes() {
+            self.passed.put(self.answer.result.as_ref().map_or(&Command::ZERO, |step| &step.command));
+            self.motors.pass();
         } else {
             self.stand_still(verdict.mode);
         }
@@ -347,40 +379,27 @@ impl Flight {
         }
     }
 
-    /// Why the step has nothing to pass, if so.
-    #[inline]
-    fn outcome(&self) -> Option<&NoCommand> {
-        if self.answers_forces { self.forces.result.as_ref().err() } else { self.answer.result.as_ref().err() }
-    }
-
-    #[inline]
-    fn pass(&mut self) {
-        match &self.answer.result {
-            Ok(step) => self.passed.put(&step.command),
-            Err(_) => self.passed.put(&Command::ZERO),
-        }
-        self.passed.forces_n = match &self.forces.result {
-            Ok(step) if self.answers_forces => step.forces_n,
-            _ => STOPPED,
-        };
-    }
-
     #[cold]
     fn stand_still(&mut self, mode: Mode) {
         if self.answer.result.is_ok() {
             self.answer.result = Err(NoCommand::Mode(mode));
         }
-        if self.forces.result.is_ok() {
-            self.forces.result = Err(NoCommand::Mode(mode));
-        }
+        self.motors.withdraw(mode);
         self.steps_failed = self.steps_failed.wrapping_add(1);
-        self.passed = Passed::NOTHING;
+        self.stop();
+    }
+
+    /// Nothing passes.
+    #[inline]
+    fn stop(&mut self) {
+        self.passed.put(&Command::ZERO);
+        self.motors.stop();
     }
 
     /// A tick without a step: looks at the ages, and stops the motors where they are too high.
     pub fn watch(&mut self, now: Tick, overrun: bool) {
         if !self.supervise(now, self.last_report, overrun).mode.command_passes() {
-            self.passed = Passed::NOTHING;
+            self.stop();
         }
     }
 
@@ -398,10 +417,10 @@ impl Flight {
     }
 }
 
-/// Whether the actuator-aware table is made for the rate: its own, or that of the states, which it is flown at in
-/// lock-step.
-const fn is_design_rate(decimation: u32) -> bool {
-    decimation == DECIMATION || decimation == LOCK_STEP
+/// The rate of the steps at so many ticks each, if it is a whole number of Hz.
+fn step_rate(decimation: u32) -> Option<Rate> {
+    let ticks = if decimation == LOCK_STEP { DECIMATION } else { decimation };
+    if TICK_RATE_HZ.is_multiple_of(ticks) { Rate::from_hz(TICK_RATE_HZ.checked_div(ticks)?) } else { None }
 }
 
 /// Ticks since something happened.

@@ -10,6 +10,7 @@
 //!   tick                      what the timer's interrupts run
 //!   session                   frames in, orders to the flight, frames out
 //!     flight                  states, orders, ticks in; gated commands and motor forces out
+//!       laws                  which law is flown: built in, or of a loaded table
 //!       playback, stored      what is followed; the trajectories in flash
 //!         motor_control       laws carried to the motors
 //!         control, timing     the step against traits; overruns, jitter, the longest step
@@ -25,8 +26,10 @@ pub mod control;
 pub mod craft;
 pub mod drivers;
 pub mod flight;
+pub mod laws;
 pub mod motor_control;
 pub mod playback;
+#[cfg(feature = "motors")]
 pub mod session;
 pub mod stored;
 pub mod timing;

@@ -2,14 +2,16 @@
 
 use heapless::Vec;
 use quatrack::Tick;
+use quatrack::gains::table::{AcceptedTable, LoadError, TableError};
 use quatrack::link::{
     BlobError, BlobKind, BlobReceiver, Decoder, Encoder, FRAME_BYTES, FaultReport, FromBoard, Identity, LoopStatistics,
     Parameter, ParameterId, Received, Refusal, TRAJECTORY_BLOB_BYTES, TRAJECTORY_PIECES, Telemetry, ToBoard,
-    TrajectoryCommand, TrajectoryId, Version,
+    TrajectoryCommand, TrajectoryId, UploadBegin, Version,
 };
 
 use crate::drivers::battery::CellVoltage;
 use crate::flight::{Flight, TICK_RATE_HZ};
+use crate::laws::{Refused, VEHICLE};
 use crate::stored;
 
 /// Identifies what computes commands: a checksum of its sources, by the build script.
@@ -47,6 +49,10 @@ pub struct Session {
     uploads: &'static mut Uploads,
     telemetry_period_ticks: Tick,
     telemetry_at: Tick,
+    /// Commits that did not put an upload to use.
+    uploads_refused: u32,
+    /// The gain table put to use last: a commit may come twice, where its answer is lost.
+    committed: Option<UploadBegin>,
     /// The fault that made the board restart, or was found since.
     fault: Option<FaultReport>,
     fault_told: bool,
@@ -64,6 +70,8 @@ impl Session {
             uploads,
             telemetry_period_ticks: 0,
             telemetry_at: 0,
+            uploads_refused: 0,
+            committed: None,
             fault,
             fault_told: false,
         }
@@ -165,17 +173,12 @@ impl Session {
         now: Tick,
     ) -> Result<Option<FromBoard>, Refusal> {
         match received.message {
-            ToBoard::SelectLaw(law) => {
-                flight.with(|flight| flight.select(law)).then_some(None).ok_or(Refusal::Unsupported)
-            }
+            ToBoard::SelectLaw(law) => flight.with(|flight| flight.select(law)).map(|()| None).map_err(Refusal::from),
             ToBoard::Trajectory(command) => trajectory(command, flight).map(|()| None),
             ToBoard::Arm => flight.with(|flight| flight.arm(now)).map(|()| None).map_err(Refusal::Arm),
             ToBoard::Disarm => {
                 flight.with(Flight::disarm);
                 Ok(None)
-            }
-            ToBoard::UploadBegin(begin) if begin.kind != BlobKind::Trajectory => {
-                Err(Refusal::Blob(BlobError::Kind(begin.kind)))
             }
             ToBoard::UploadBegin(begin) => {
                 self.uploads.begin(&begin).map(|progress| Some(FromBoard::Upload(progress))).map_err(Refusal::Upload)
@@ -187,12 +190,37 @@ impl Session {
                 self.uploads.progress().map(|progress| Some(FromBoard::Upload(progress))).map_err(Refusal::Upload)
             }
             ToBoard::UploadCommit { id } => {
-                // Checking pieces takes longer than a tick, and must not change what is being flown.
-                disarmed(flight)?;
-                let (_, blob) = self.uploads.finish(id).map_err(Refusal::Upload)?;
-                flight.with(|flight| flight.playback.store().commit(blob)).map(|()| None).map_err(Refusal::Blob)
+                let committed = self.commit(id, flight);
+                if committed.is_err() {
+                    self.uploads_refused = self.uploads_refused.saturating_add(1);
+                }
+                committed.map(|()| None)
             }
             _ => Err(Refusal::Unsupported),
+        }
+    }
+
+    /// Checks the uploaded blob and puts it to use.
+    fn commit(&mut self, id: u32, flight: &mut impl Shared) -> Result<(), Refusal> {
+        let (begin, blob) = self.uploads.finish(id).map_err(Refusal::Upload)?;
+        if self.committed == Some(begin) {
+            return Ok(());
+        }
+        match begin.kind {
+            BlobKind::Trajectory => {
+                // Checking pieces takes longer than a tick, and must not change what is being flown.
+                disarmed(flight)?;
+                flight.with(|flight| flight.playback.store().commit(blob)).map_err(Refusal::Blob)
+            }
+            BlobKind::GainTable => {
+                // Read while the loop goes on; it waits only for the copy.
+                let rate = flight.with(|flight| flight.table_rate()).ok_or(Refusal::NoTable)?;
+                let table =
+                    AcceptedTable::from_bytes(blob, &VEHICLE, rate).map_err(|error| Refusal::Blob(error.into()))?;
+                flight.with(|flight| flight.load(&table)).map_err(Refusal::from)?;
+                self.committed = Some(begin);
+                Ok(())
+            }
         }
     }
 
@@ -204,7 +232,8 @@ impl Session {
             ParameterId::LinkSilenceMaxTicks => Parameter::LinkSilenceMaxTicks(flight.config.link_silence_max_ticks),
             ParameterId::OverrunsTolerated => Parameter::OverrunsTolerated(flight.config.overruns_tolerated),
             ParameterId::TelemetryPeriodTicks => Parameter::TelemetryPeriodTicks(self.telemetry_period_ticks),
-            ParameterId::BatteryVoltage => Parameter::BatteryVoltage(flight.battery.volts()),
+            ParameterId::UploadsRefused => Parameter::UploadsRefused(self.uploads_refused),
+            ParameterId::BatteryVoltage => Parameter::BatteryVoltage(flight.motors.battery().volts()),
             ParameterId::BodyRateBandwidth => Parameter::BodyRateBandwidth(flight.motors.bandwidth_rad_s()),
         })
     }
@@ -217,7 +246,8 @@ impl Session {
         match parameter {
             Parameter::Decimation(ticks) => {
                 let decimation = within(ticks, DECIMATION_MAX)?;
-                flight.with(|flight| flight.set_decimation(decimation)).then_some(()).ok_or(Refusal::OutOfRange)?;
+                flight.with(|flight| flight.set_decimation(decimation));
+                self.committed = None;
                 vitals.set_decimation(decimation);
             }
             Parameter::Limits(limits) => {
@@ -235,9 +265,10 @@ impl Session {
                 flight.with(|flight| flight.config.overruns_tolerated = count);
             }
             Parameter::TelemetryPeriodTicks(ticks) => self.telemetry_period_ticks = ticks,
+            Parameter::UploadsRefused(_) => return Err(Refusal::ReadOnly),
             Parameter::BatteryVoltage(voltage_v) => {
                 let battery = CellVoltage::new(voltage_v).map_err(|_| Refusal::OutOfRange)?;
-                flight.with(|flight| flight.battery = battery);
+                flight.with(|flight| flight.motors.set_battery(battery));
             }
             Parameter::BodyRateBandwidth(bandwidth_rad_s) => {
                 let set = flight.with(|flight| flight.motors.set_bandwidth(bandwidth_rad_s));
@@ -251,6 +282,18 @@ impl Session {
         let (mode, (steps, steps_failed)) = flight.with(|flight| (flight.mode(), flight.steps()));
         let statistics = LoopStatistics { steps, steps_failed, ..vitals.statistics() };
         FromBoard::Telemetry(Telemetry { tick: vitals.now(), mode, statistics, link: *self.decoder.counters() })
+    }
+}
+
+impl From<Refused> for Refusal {
+    fn from(refused: Refused) -> Self {
+        let not_flown = |error: LoadError| Self::Blob(BlobError::GainTable(error));
+        match refused {
+            Refused::NoTable => Self::NoTable,
+            Refused::Busy => Self::LawChanging,
+            Refused::Kind(kind) => not_flown(TableError::Kind { found: kind.number() }.into()),
+            Refused::Accept(error) => not_flown(error.into()),
+        }
     }
 }
 

@@ -25,6 +25,6 @@ pub fn control(flight: &mut Flight, timing: &Timing, counter: Counter, craft: &m
     } else {
         flight.watch(now, overran);
     }
-    craft.drive(flight.driven_forces_n(), flight.battery);
+    craft.drive(flight.driven_forces_n(), flight.motors.battery());
     timing.on_end(begun, counter.now(), due);
 }

@@ -20,7 +20,7 @@ fn board(fault: Option<Fault>) -> Flight {
 /// A flight in the air at a tick.
 fn flying(now: Tick) -> Flight {
     let mut flight = board(None);
-    assert!(flight.select(LawChoice::new(Table::LqrE)));
+    flight.select(LawChoice::new(Table::LqrE)).expect("it is in flash");
     flight.playback.start(stored::player(TrajectoryId::Mild).expect("it is in flash"));
     flight.hear(now);
     flight.arm(now).expect("the link has just been heard");

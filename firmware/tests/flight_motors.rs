@@ -19,6 +19,7 @@ use quatrack_firmware::drivers::bmi088::{Address, Bandwidth, Gyro, Range};
 use quatrack_firmware::drivers::motors::Motors;
 use quatrack_firmware::drivers::thrust_curve::ThrustCurve;
 use quatrack_firmware::flight::{CONFIG, Flight, LOCK_STEP};
+use quatrack_firmware::laws::Refused;
 use quatrack_firmware::motor_control::AIRFRAME;
 use quatrack_firmware::stored;
 
@@ -34,7 +35,7 @@ fn state(step: u16) -> RigidState {
 
 fn board(table: Table) -> Flight {
     let mut flight = Flight::new(Box::leak(Box::default()), None);
-    assert!(flight.select(LawChoice::new(table)));
+    flight.select(LawChoice::new(table)).expect("it is in flash");
     assert_eq!(flight.law().table, table);
     flight.playback.start(stored::player(TrajectoryId::Mild).expect("it is in flash"));
     flight
@@ -111,7 +112,7 @@ fn forces_are_the_cores_to_the_bit() {
 fn a_law_that_takes_over_in_flight_knows_the_motors() {
     let mut flight = flying(Table::LqrE, 0);
     let first = *flight.forces_n();
-    assert!(flight.select(LawChoice::new(Table::ActuatorAware)));
+    flight.select(LawChoice::new(Table::ActuatorAware)).expect("it is in flash");
     flight.step(2, false, BodyRates::NoGyroscope);
     // As the core has it: the forces that the lag gives after one step of the first law, from motors at rest.
     let lag = MotorLag::new(AIRFRAME.figures().motor_lag_s, Rate::from_hz(500).unwrap()).unwrap();
@@ -229,7 +230,7 @@ fn the_gyroscope_counts_before_what_came_with_the_state() {
 #[test]
 fn in_lock_step_with_a_simulation_the_motors_stay_off() {
     let mut flight = board(Table::ActuatorAware);
-    assert!(flight.set_decimation(LOCK_STEP));
+    flight.set_decimation(LOCK_STEP);
     flight.hear(0);
     flight.arm(0).unwrap();
     flight.accept_rigid(RigidStateIn { tick: 0, state: state(0) }, 0);
@@ -243,11 +244,13 @@ fn in_lock_step_with_a_simulation_the_motors_stay_off() {
 #[test]
 fn the_actuator_aware_table_is_flown_at_its_rate_alone() {
     let mut flight = board(Table::ActuatorAware);
-    assert!(!flight.set_decimation(1), "1 kHz");
-    assert_eq!(flight.decimation(), 2);
-    assert!(flight.select(LawChoice::new(Table::LqrE)) && flight.set_decimation(1));
-    assert!(!flight.select(LawChoice::new(Table::ActuatorAware)));
-    assert_eq!(flight.law().table, Table::LqrE);
+    flight.set_decimation(LOCK_STEP);
+    assert_eq!(flight.law().table, Table::ActuatorAware, "states are taken to come at its rate");
+    flight.set_decimation(1);
+    assert_eq!(flight.law().table, Table::LqrE, "dropped at 1 kHz, as loaded tables are");
+    assert_eq!(flight.select(LawChoice::new(Table::ActuatorAware)), Err(Refused::NoTable));
+    flight.set_decimation(2);
+    assert_eq!(flight.select(LawChoice::new(Table::ActuatorAware)), Ok(()));
 }
 
 #[test]

@@ -130,24 +130,29 @@ impl<'a> Equilibrium<'a> {
     }
 
     fn error(&self, state: &Measured<'_>, reference: &Reference) -> [f32; 9] {
-        let target = &reference.state;
-        let r = difference(state.position_m(), &target.position_m);
-        let v = difference(state.velocity_m_s(), &target.velocity_m_s);
         match self.error_form {
-            ErrorForm::HeadingFrame => {
-                let r = reference.heading.to_heading_frame(r);
-                let v = reference.heading.to_heading_frame(v);
-                let q = state.attitude_from(target.attitude);
-                [r.x, r.y, r.z, q.x, q.y, q.z, v.x, v.y, v.z]
-            }
+            ErrorForm::HeadingFrame => heading_frame_error(state, reference),
             ErrorForm::Paper => {
                 cold_path();
+                let target = &reference.state;
+                let r = difference(state.position_m(), &target.position_m);
+                let v = difference(state.velocity_m_s(), &target.velocity_m_s);
                 let q = state.attitude().in_hemisphere_of(target.attitude);
                 let (dx, dy, dz) = (q.x - target.attitude.x, q.y - target.attitude.y, q.z - target.attitude.z);
                 [r.x, r.y, r.z, dx, dy, dz, v.x, v.y, v.z]
             }
         }
     }
+}
+
+/// The error `[x y z q1 q2 q3 vx vy vz]` of [`ErrorForm::HeadingFrame`].
+#[inline(always)]
+pub(super) fn heading_frame_error(state: &Measured<'_>, reference: &Reference) -> [f32; 9] {
+    let target = &reference.state;
+    let r = reference.heading.to_heading_frame(difference(state.position_m(), &target.position_m));
+    let v = reference.heading.to_heading_frame(difference(state.velocity_m_s(), &target.velocity_m_s));
+    let q = state.attitude_from(target.attitude);
+    [r.x, r.y, r.z, q.x, q.y, q.z, v.x, v.y, v.z]
 }
 
 impl ControlLaw for Equilibrium<'_> {

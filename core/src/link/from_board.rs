@@ -192,6 +192,10 @@ pub enum Refusal {
     Upload(UploadError),
     /// See the error.
     Blob(BlobError),
+    /// No gain table has been loaded in this place, or none can be for the rate of the steps.
+    NoTable,
+    /// One law is still giving way to another, or the table that an upload would replace is being flown.
+    LawChanging,
 }
 
 impl fmt::Display for Refusal {
@@ -206,6 +210,8 @@ impl fmt::Display for Refusal {
             Self::Limits(error) => error.fmt(f),
             Self::Upload(error) => error.fmt(f),
             Self::Blob(error) => error.fmt(f),
+            Self::NoTable => f.write_str("board: no such gain table; upload and commit one for this rate first"),
+            Self::LawChanging => f.write_str("board: the law is changing; ask again when it has, or disarm first"),
         }
     }
 }

@@ -4,46 +4,56 @@
 //! sees the old one or the new one. Where reading takes longer than a period, it is done outside the step's lock:
 //!
 //! ```
-//! use quatrack::gains::table::{AcceptedTable, LoadError};
+//! use quatrack::Rate;
+//! use quatrack::gains::table::{AcceptedTable, LoadError, Vehicle};
 //! use quatrack::link::GainStore;
 //!
 //! /// In the task of the link. Only the last line keeps the control loop waiting.
-//! fn commit(store: &mut GainStore, blob: &[u8]) -> Result<(), LoadError> {
-//!     let (vehicle, rate) = (*store.vehicle(), store.rate());
-//!     let table = AcceptedTable::from_bytes(blob, &vehicle, rate)?;
+//! fn commit(store: &mut GainStore, blob: &[u8], vehicle: &Vehicle, rate: Rate) -> Result<(), LoadError> {
+//!     let table = AcceptedTable::from_bytes(blob, vehicle, rate)?;
 //!     Ok(store.activate(&table)?)
 //! }
 //! ```
 
+use heapless::Vec;
+
 use super::law_choice::{LawChoice, Table};
 use super::trajectory_store::BlobError;
 use crate::clock::Rate;
-use crate::gains::table::{AcceptError, AcceptedTable, LoadError, Vehicle};
-use crate::law::AnyLaw;
+use crate::gains::table::{AcceptError, AcceptedTable, GainTable, LoadError, TableHead, Vehicle};
+use crate::law::{AnyLaw, FlightLaw};
 
 /// Two slots: the table in use, and the one before it, which makes room for the next.
 #[derive(Clone, Debug)]
 pub struct GainStore {
-    vehicle: Vehicle,
-    rate: Rate,
-    slots: [Option<AcceptedTable>; 2],
+    board: Option<(Vehicle, Rate)>,
+    slots: [Slot; 2],
     second_in_use: bool,
 }
+
+/// Of one or none. Not an option of one: an empty slot is all zero bytes, and a static one then takes no flash.
+type Slot = Vec<AcceptedTable, 1>;
 
 impl GainStore {
     /// Both slots empty, for tables of this vehicle at this rate of control steps.
     pub const fn new(vehicle: Vehicle, rate: Rate) -> Self {
-        Self { vehicle, rate, slots: [None; 2], second_in_use: false }
+        Self { board: Some((vehicle, rate)), slots: [const { Vec::new() }; 2], second_in_use: false }
     }
 
-    /// Whose tables are taken.
-    pub const fn vehicle(&self) -> &Vehicle {
-        &self.vehicle
+    /// Takes no table before it is assigned; all zeros.
+    pub const fn unassigned() -> Self {
+        Self { board: None, slots: [const { Vec::new() }; 2], second_in_use: false }
     }
 
-    /// The rate of control steps that tables must be certified at.
-    pub const fn rate(&self) -> Rate {
-        self.rate
+    /// Takes tables of this vehicle at this rate from now on, or none at all. What was loaded before is dropped.
+    pub fn assign(&mut self, board: Option<(Vehicle, Rate)>) {
+        self.board = board;
+        self.slots.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Whose tables are taken, and the rate of control steps that they must be certified at.
+    pub const fn board(&self) -> Option<&(Vehicle, Rate)> {
+        self.board.as_ref()
     }
 
     /// Reads and checks a blob, and only then puts it to use.
@@ -51,8 +61,9 @@ impl GainStore {
     /// # Errors
     /// [`LoadError`]; what was in use stays in use, and what was before it stays too.
     pub fn commit(&mut self, blob: &[u8]) -> Result<(), LoadError> {
-        let table = AcceptedTable::from_bytes(blob, &self.vehicle, self.rate)?;
-        self.put_to_use(&table);
+        let table = GainTable::from_bytes(blob)?;
+        let (vehicle, rate) = self.board_for(table.head())?;
+        self.put_to_use(&table.accept_for(vehicle, *rate)?);
         Ok(())
     }
 
@@ -61,7 +72,8 @@ impl GainStore {
     /// # Errors
     /// [`AcceptError`] where it was accepted for another board; nothing changes then.
     pub fn activate(&mut self, table: &AcceptedTable) -> Result<(), AcceptError> {
-        table.head().accept_for(&self.vehicle, self.rate)?;
+        let (vehicle, rate) = self.board_for(table.head())?;
+        table.head().accept_for(vehicle, *rate)?;
         self.put_to_use(table);
         Ok(())
     }
@@ -74,19 +86,19 @@ impl GainStore {
     }
 
     /// The table in use.
-    pub const fn active(&self) -> Option<&AcceptedTable> {
+    pub fn active(&self) -> Option<&AcceptedTable> {
         let [first, second] = &self.slots;
-        if self.second_in_use { second.as_ref() } else { first.as_ref() }
+        if self.second_in_use { second.first() } else { first.first() }
     }
 
     /// The table that was in use before.
-    pub const fn previous(&self) -> Option<&AcceptedTable> {
+    pub fn previous(&self) -> Option<&AcceptedTable> {
         let [first, second] = &self.slots;
-        if self.second_in_use { first.as_ref() } else { second.as_ref() }
+        if self.second_in_use { first.first() } else { second.first() }
     }
 
     /// The loaded table that a choice names: slot 0 is the one in use, slot 1 the one before.
-    pub const fn table(&self, slot: u8) -> Option<&AcceptedTable> {
+    pub fn table(&self, slot: u8) -> Option<&AcceptedTable> {
         match slot {
             0 => self.active(),
             1 => self.previous(),
@@ -94,17 +106,30 @@ impl GainStore {
         }
     }
 
-    /// The chosen law, of a table in the image or of a loaded one.
-    pub fn law(&self, choice: &LawChoice) -> Option<AnyLaw<'_>> {
+    /// The chosen law, of a table in the image or of a loaded one, for [`crate::Controller`].
+    pub fn flight_law(&self, choice: &LawChoice) -> Option<FlightLaw<'_>> {
         match choice.table {
             Table::Loaded(slot) => Some(self.table(slot)?.law(choice.feed_forward, choice.error_form)),
-            _ => choice.built_in(),
+            _ => choice.built_in().map(FlightLaw::Fixed),
         }
+    }
+
+    /// The same for [`crate::Tracker`]: nothing where the law remembers anything.
+    pub fn law(&self, choice: &LawChoice) -> Option<AnyLaw<'_>> {
+        self.flight_law(choice).and_then(FlightLaw::fixed)
+    }
+
+    /// The board, for a table; who is assigned to nobody flies nobody's.
+    fn board_for(&self, table: &TableHead) -> Result<&(Vehicle, Rate), AcceptError> {
+        self.board.as_ref().ok_or(AcceptError::Vehicle { table: table.vehicle })
     }
 
     fn put_to_use(&mut self, table: &AcceptedTable) {
         let [first, second] = &mut self.slots;
-        *(if self.second_in_use { first } else { second }) = Some(*table);
+        let spare = if self.second_in_use { first } else { second };
+        spare.clear();
+        // There is room for one.
+        let _ = spare.push(*table);
         self.second_in_use = !self.second_in_use;
     }
 }

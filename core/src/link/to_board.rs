@@ -123,6 +123,8 @@ pub enum ParameterId {
     OverrunsTolerated,
     /// [`Parameter::TelemetryPeriodTicks`].
     TelemetryPeriodTicks,
+    /// [`Parameter::UploadsRefused`].
+    UploadsRefused,
     /// [`Parameter::BatteryVoltage`].
     BatteryVoltage,
     /// [`Parameter::BodyRateBandwidth`].
@@ -145,6 +147,8 @@ pub enum Parameter {
     OverrunsTolerated(u32),
     /// Ticks between two telemetry messages; 0 sends none.
     TelemetryPeriodTicks(Tick),
+    /// Commits since start-up that did not put an upload to use. Cannot be set.
+    UploadsRefused(u32),
     /// What the motors' duties are reckoned with, V. May be set in flight, as the battery drains.
     BatteryVoltage(f32),
     /// Bandwidth of the loop that follows a law's body rates about body x, y, z, rad/s.
@@ -161,6 +165,7 @@ impl Parameter {
             Self::LinkSilenceMaxTicks(_) => ParameterId::LinkSilenceMaxTicks,
             Self::OverrunsTolerated(_) => ParameterId::OverrunsTolerated,
             Self::TelemetryPeriodTicks(_) => ParameterId::TelemetryPeriodTicks,
+            Self::UploadsRefused(_) => ParameterId::UploadsRefused,
             Self::BatteryVoltage(_) => ParameterId::BatteryVoltage,
             Self::BodyRateBandwidth(_) => ParameterId::BodyRateBandwidth,
         }

@@ -3,7 +3,8 @@
 //!
 //! Holds what the control interrupt runs (`tick`, `flight`, `playback`, `control`, `timing`, the supervisor), the four
 //! laws with their tables, the check and the evaluation of trajectories, and the start-up code; neither stored
-//! trajectories nor drivers nor the link. It is linked, never run.
+//! trajectories nor drivers nor the link, and so nothing that puts an upload to use. With the feature `motors` also what
+//! carries laws to the motors, the actuator-aware one included. It is linked, never run.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -11,12 +12,13 @@ mod image {
     use core::hint::black_box;
 
     use cortex_m_rt::entry;
+    #[cfg(feature = "motors")]
+    use quatrack::link::RigidStateIn;
     use quatrack::link::{LawChoice, LimitsSetting, StateIn};
     use quatrack::{FlatSample, Piece, Player, Trajectory};
     use quatrack_firmware::counter::Counter;
     use quatrack_firmware::craft::NoCraft;
-    use quatrack_firmware::flight::{CONFIG, Flight, TICK_RATE};
-    use quatrack_firmware::playback::Store;
+    use quatrack_firmware::flight::{CONFIG, Flight, Store, TICK_RATE};
     use quatrack_firmware::tick;
     use quatrack_firmware::timing::Timing;
     use stm32f4::stm32f405::Peripherals;
@@ -53,13 +55,17 @@ mod image {
                 9 => _ = flight.arm(now),
                 10 => flight.disarm(),
                 11 => flight.hear(now),
-                12 => _ = flight.set_decimation(black_box(0)),
+                12 => flight.set_decimation(black_box(0)),
                 13 => flight.config = black_box(CONFIG),
                 14 => _ = black_box(flight.take_answer()),
                 15 => _ = black_box(timing.on_timer(counter.now())),
+                #[cfg(feature = "motors")]
+                16 => flight.accept_rigid(black_box::<Option<RigidStateIn>>(None)?, now),
+                #[cfg(feature = "motors")]
+                17 => _ = flight.motors.set_bandwidth(black_box([1.0; 3])),
                 _ => tick::control(&mut flight, &timing, counter, &mut NoCraft),
             }
-            black_box(flight.command());
+            black_box((flight.command(), flight.forces_n()));
         }
     }
 }

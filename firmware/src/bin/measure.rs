@@ -30,8 +30,7 @@ mod image {
     };
     use quatrack_firmware::counter::Counter;
     use quatrack_firmware::craft::NoCraft;
-    use quatrack_firmware::flight::{DECIMATION as TICKS_PER_STEP, Flight, TICK_RATE};
-    use quatrack_firmware::playback::Store;
+    use quatrack_firmware::flight::{DECIMATION as TICKS_PER_STEP, Flight, Store, TICK_RATE};
     use quatrack_firmware::semihosting::{File, Mode, exit};
     use quatrack_firmware::timing::Timing;
     use quatrack_firmware::{stored, tick};
@@ -212,7 +211,7 @@ mod image {
         fn take_off(&mut self, course: &Course, law: LawChoice, limits: LimitsSetting) -> Option<()> {
             self.flight.disarm();
             self.flight.set_limits(limits).ok()?;
-            self.flight.select(law).then_some(())?;
+            self.flight.select(law).ok()?;
             self.flight.playback.start(stored::player(course.id)?);
             self.flight.hear(self.timing.now());
             self.flight.arm(self.timing.now()).ok()

@@ -3,6 +3,7 @@
 mod counts;
 mod emulated;
 mod failures;
+mod gain_tables;
 mod hard_fault;
 mod motors;
 mod support;

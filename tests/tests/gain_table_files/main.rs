@@ -5,4 +5,5 @@ mod flight;
 mod layout;
 mod properties;
 mod refusals;
+mod schedule;
 mod store;

@@ -71,6 +71,7 @@ fn parameter() -> impl Strategy<Value = Parameter> {
         any::<u32>().prop_map(Parameter::LinkSilenceMaxTicks),
         any::<u32>().prop_map(Parameter::OverrunsTolerated),
         any::<u32>().prop_map(Parameter::TelemetryPeriodTicks),
+        any::<u32>().prop_map(Parameter::UploadsRefused),
         float().prop_map(Parameter::BatteryVoltage),
         array::uniform3(float()).prop_map(Parameter::BodyRateBandwidth),
     ]
@@ -222,6 +223,8 @@ fn refusal() -> impl Strategy<Value = Refusal> {
             Refusal::Unsupported,
             Refusal::NotWhileArmed,
             Refusal::ReadOnly,
+            Refusal::NoTable,
+            Refusal::LawChanging,
             Refusal::OutOfRange,
             Refusal::NoTrajectory,
             Refusal::Arm(ArmError::LinkSilent),
