@@ -22,13 +22,17 @@
 //! ```text
 //! link                        frames, uploads (feature `link`)
 //!   crossfade                 from one tracker to another
+//!     motor_tracker           any law, down to four motor forces
 //!     controller              any law, and what it remembers
 //!       tracker, supervisor   one step: normalise, law, saturate; whether its command may pass
-//!     law                     equilibrium (E), flat output (F), integral action, gains along a trajectory
+//!     law                     equilibrium (E), flat output (F), integral action, gains along a trajectory, actuator-aware
 //!       trajectory, gains     pieces played by ticks; tables
+//!         motor_reference     flat output -> motor forces and commands
+//!           body_rate, mixer  command -> wrench -> motor forces
+//!             airframe        mass, inertia, levers, range and lag of the motors
 //!         reference           flat output -> state and input, checked
 //!           flatness          the flat map and its inverse
-//!             state, command, gain, clock
+//!             state, rigid_state, command, gain, motor_lag, clock
 //!               quaternion, error
 //!                 math        square root, sine and cosine; checksum
 //! ```

@@ -5,9 +5,11 @@
 use libfuzzer_sys::fuzz_target;
 use quatrack::checksum::crc32c;
 use quatrack::gains::table::{
-    GainTable, MAGIC, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable, TABLE_BYTES_MAX, TableKind,
+    ACTUATOR_TABLE_BYTES, ActuatorTable, GainTable, MAGIC, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable,
+    TABLE_BYTES_MAX, TableKind,
 };
 use quatrack::nalgebra::Vector3;
+use quatrack::{ActuatorMemory, Airframe, MotorLaw, MotorReference, MotorTracker, RigidState};
 use quatrack::{Controller, ErrorForm, FeedForward, FlightLaw, Limits, Memory, Progress, Reference, State};
 
 /// A sound frame around a payload, so that the search is not for a checksum.
@@ -40,7 +42,7 @@ fn load(bytes: &[u8]) {
 }
 
 fn load_schedule(bytes: &[u8]) {
-    let Ok(table) = ScheduleTable::from_bytes(bytes) else { return };
+    let Ok(table) = ScheduleTable::from_bytes(bytes) else { return load_actuator(bytes) };
     let (head, schedule) = (*table.head(), *table.schedule());
     let gains: Vec<_> = (0..).map_while(|knot| schedule.gain(knot)).collect();
     let (trajectory, steps_per_knot) = (schedule.trajectory(), schedule.steps_per_knot());
@@ -53,6 +55,20 @@ fn load_schedule(bytes: &[u8]) {
         let law = table.law(head.rate, FeedForward::With);
         hover(law, table.limits(), Some(Progress { trajectory, tick }));
     }
+}
+
+fn load_actuator(bytes: &[u8]) {
+    let Ok(table) = ActuatorTable::from_bytes(bytes) else { return };
+    assert_eq!(table.to_bytes(&mut [0; ACTUATOR_TABLE_BYTES]), Some(bytes), "one table has one encoding");
+    let (vehicle, rate) = (table.head().vehicle, table.head().rate);
+    let Ok(table) = table.accept_for(&vehicle, rate) else { panic!("refused by the board that it names") };
+    let airframe = table.airframe(&Airframe::CRAZYFLIE_2_1);
+    let tracker = MotorTracker::new(MotorLaw::ActuatorAware(table.law(&airframe)), &airframe);
+    let at = Vector3::new(0.0, 0.0, 1.0);
+    let Ok(reference) = MotorReference::hover(at, 0.0, &airframe) else { panic!("hover is a reference") };
+    let state = RigidState { state: State::at_rest(at), body_rates_rad_s: Vector3::zeros() };
+    let step = tracker.step(&mut ActuatorMemory::hovering(&airframe), &state, &reference);
+    assert!(step.is_ok_and(|step| step.forces_n == [airframe.hover_force_n(); 4]), "holds a hover");
 }
 
 fuzz_target!(|bytes: &[u8]| {

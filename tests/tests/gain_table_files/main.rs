@@ -1,5 +1,6 @@
 //! Gain tables as files: written, read back, refused, flown, uploaded, swapped.
 
+mod actuator;
 mod fixture;
 mod flight;
 mod layout;

@@ -64,7 +64,7 @@ fn the_frame_is_looked_at_first() {
 
 #[test]
 fn a_payload_of_another_kind_or_size_is_refused() {
-    for found in [0, 5, 6, 255] {
+    for found in [0, 6, 7, 255] {
         assert_eq!(refusal("lqr-e", 8, &[found]), TableError::Kind { found });
     }
     let transposed = TableError::Dimensions { kind: TableKind::Equilibrium, rows: 9, columns: 4 };
@@ -75,6 +75,8 @@ fn a_payload_of_another_kind_or_size_is_refused() {
     assert_eq!(refusal("lqr-e", 8, &[3]), without_integrals);
     let along = TableError::OtherKind { kind: TableKind::AlongTrajectory };
     assert_eq!(refusal("lqr-e", 8, &[4]), along, "loaded by another reader");
+    let without_motors = TableError::Dimensions { kind: TableKind::ActuatorAware, rows: 4, columns: 9 };
+    assert_eq!(refusal("lqr-e", 8, &[5]), without_motors);
     // Sound frames around payloads of other lengths: none, half a head, gains of the other kind.
     let cases = [(1, 0, 183), (1, 100, 183), (1, 451, 327), (1, 314, 327), (2, 315, 463), (3, 315, 375), (3, 364, 375)];
     for (kind, payload, wanted) in cases {

@@ -108,6 +108,11 @@ pub enum TableError {
     },
     /// Gains over time whose knots are no control step apart.
     KnotSpacing,
+    /// The motor lag that a table was designed for is shorter than two control periods, longer than certified, or no number.
+    MotorLag {
+        /// What stands there, s.
+        lag_s: f32,
+    },
     /// What is wrong with the gain at one knot of gains over time.
     Knot {
         /// The knot, from 0.
@@ -210,6 +215,10 @@ impl fmt::Display for TableError {
             Self::Knots { found } => {
                 write!(f, "{found} knots; must be 2 to {}: change their spacing", super::KNOTS_MAX)
             }
+            Self::MotorLag { lag_s } => write!(
+                f,
+                "designed for a motor lag of {lag_s} s; must be from two control periods to the largest that is certified"
+            ),
             Self::KnotSpacing => f.write_str("knots 0 control steps apart; must be at least 1"),
             Self::Knot { knot, fault: KnotFault::Gain(error) } => write!(f, "knot {knot}: {error}; design it again"),
             Self::Knot { knot, fault: KnotFault::Entry { row, column, value } } => {

@@ -6,7 +6,8 @@
 //! second one has a law to fly.
 //!
 //! Gains over time along a trajectory are too many to copy: [`ScheduleTable`] borrows them from their bytes, through the
-//! same two gates. [`TableKind::of`] says which of the two reads a file.
+//! same two gates. [`ActuatorTable`] is for the law that commands motor forces, and has their lag beside its gain.
+//! [`TableKind::of`] says which of the three reads a file.
 //!
 //! ```
 //! use quatrack::gains::table::{GainTable, LoadError, Vehicle};
@@ -21,6 +22,7 @@
 //! ```
 
 mod accepted;
+mod actuator;
 mod certificate;
 mod error;
 mod name;
@@ -28,6 +30,7 @@ mod schedule;
 mod wire;
 
 pub use accepted::AcceptedTable;
+pub use actuator::{ACTUATOR_TABLE_BYTES, AcceptedActuatorTable, ActuatorTable};
 pub use certificate::{Certificate, Figure, Hash, Margins, Vehicle};
 pub use error::{AcceptError, KnotFault, LoadError, TableError};
 pub use name::{Name, NameError};
@@ -54,7 +57,8 @@ pub const THRUST_MAX_M_S2: f32 = 200.0;
 /// Largest body rate limit, rad/s: almost three times what a gyroscope of 2000 degrees a second measures.
 pub const BODY_RATE_MAX_RAD_S: f32 = 100.0;
 
-/// Bytes of the longest [`GainTable`]; gains over time have [`SCHEDULE_BYTES_MAX`].
+/// Bytes of the longest [`GainTable`]; gains over time have [`SCHEDULE_BYTES_MAX`], those of motor forces
+/// [`ACTUATOR_TABLE_BYTES`].
 pub const TABLE_BYTES_MAX: usize = wire::FRAME_BYTES + wire::HEAD_BYTES + TableKind::FlatOutput.gain_bytes();
 
 /// Which law a table is for.
@@ -70,6 +74,8 @@ pub enum TableKind {
     Integral,
     /// [`crate::AlongTrajectory`], 4 by 9 at each knot; read by [`ScheduleTable`].
     AlongTrajectory,
+    /// [`crate::ActuatorAware`], 4 by 19; read by [`ActuatorTable`].
+    ActuatorAware,
 }
 
 /// The entries of a gain, by rows.
@@ -147,8 +153,8 @@ impl GainTable {
         let (head, entries) = payload.split_first_chunk::<{ wire::HEAD_BYTES }>().ok_or(cut)?;
         let mut fields = wire::Reader::new(head, cut);
         let kind = fields.kind()?;
-        // Gains over time have many lengths.
-        if kind != TableKind::AlongTrajectory && entries.len() != kind.gain_bytes() {
+        // Other readers' kinds have fields of their own.
+        if !kind.is_read_elsewhere() && entries.len() != kind.gain_bytes() {
             return Err(wire::wrong_length(bytes, wire::HEAD_BYTES + kind.gain_bytes()));
         }
         let gains = Gains::read(kind, entries)?;
@@ -259,7 +265,7 @@ impl Gains {
                 wire::read_entries(entries, rows.as_flattened_mut());
                 Self::integral(&rows)
             }
-            TableKind::AlongTrajectory => Err(TableError::OtherKind { kind }),
+            TableKind::AlongTrajectory | TableKind::ActuatorAware => Err(TableError::OtherKind { kind }),
         }
     }
 
@@ -322,6 +328,7 @@ impl TableKind {
             Self::FlatOutput => 2,
             Self::Integral => 3,
             Self::AlongTrajectory => 4,
+            Self::ActuatorAware => 5,
         }
     }
 
@@ -331,6 +338,7 @@ impl TableKind {
             2 => Some(Self::FlatOutput),
             3 => Some(Self::Integral),
             4 => Some(Self::AlongTrajectory),
+            5 => Some(Self::ActuatorAware),
             _ => None,
         }
     }
@@ -342,7 +350,13 @@ impl TableKind {
             Self::FlatOutput => (7, 10),
             Self::Integral => (4, 12),
             Self::AlongTrajectory => (4, 9),
+            Self::ActuatorAware => (4, 19),
         }
+    }
+
+    /// Whether it is none of [`GainTable`]'s.
+    const fn is_read_elsewhere(self) -> bool {
+        matches!(self, Self::AlongTrajectory | Self::ActuatorAware)
     }
 
     /// Bytes of one gain.
@@ -359,6 +373,7 @@ impl fmt::Display for TableKind {
             Self::FlatOutput => "flat output",
             Self::Integral => "equilibrium with integral action",
             Self::AlongTrajectory => "equilibrium along a trajectory",
+            Self::ActuatorAware => "actuator-aware",
         })
     }
 }
