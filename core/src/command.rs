@@ -19,6 +19,13 @@ pub struct Command {
 impl Command {
     /// No thrust, no rotation: what a stopped craft is given.
     pub const ZERO: Self = Self { thrust_m_s2: 0.0, body_rates_rad_s: Vector3::new(0.0, 0.0, 0.0) };
+
+    /// Whether all four numbers are finite.
+    #[cold]
+    pub fn is_finite(&self) -> bool {
+        let Self { thrust_m_s2: thrust, body_rates_rad_s: rates } = self;
+        is_finite(*thrust) && is_finite(rates.x) && is_finite(rates.y) && is_finite(rates.z)
+    }
 }
 
 /// What a vehicle can be asked for; built with [`Limits::new`].
@@ -175,13 +182,12 @@ impl Limits {
         self.body_rates_max_rad_s
     }
 
-    /// The command cut to the limits and what was cut; nothing where a number is not finite, or their sum is not: a command
-    /// near the end of f32 is none.
+    /// The command cut to the limits and what was cut; nothing where a number is not finite.
     #[inline]
     pub fn saturate(&self, command: &Command) -> Option<(Command, Limited)> {
         let Command { thrust_m_s2: thrust, body_rates_rad_s: rates } = *command;
-        // A sum is finite only if all of its terms are.
-        if !is_finite((thrust + rates.x) + (rates.y + rates.z)) {
+        // A sum is finite only if all of its terms are; the converse fails only near the end of f32.
+        if !is_finite((thrust + rates.x) + (rates.y + rates.z)) && !command.is_finite() {
             return None;
         }
         let max = &self.body_rates_max_rad_s;

@@ -272,8 +272,9 @@ impl Flight {
     #[cold]
     pub fn arm(&mut self, now: Tick) -> Result<(), ArmError> {
         self.last_report = StepReport::NoReference;
-        self.laws.settle();
+        // Asked again in flight, nothing changes.
         if !self.mode().motors_allowed() {
+            self.laws.settle();
             self.motors.begin();
         }
         self.supervisor.arm(&self.config, age(self.heard_at, now))
