@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 /// What computes commands, seen from the workspace's root.
-const CONTROL_PATH: [&str; 9] = [
+const CONTROL_PATH: [&str; 10] = [
     "core/src",
     "plans",
+    "gains/generated/actuator-aware.rs",
     "firmware/src/control.rs",
     "firmware/src/flight.rs",
     "firmware/src/flight",

@@ -4,7 +4,6 @@
 
 use quatrack::body_rate::BandwidthError;
 use quatrack::error::Field;
-use quatrack::gains::actuator_aware;
 use quatrack::link::NoCommand;
 use quatrack::nalgebra::Vector3;
 use quatrack::{
@@ -13,6 +12,11 @@ use quatrack::{
 };
 
 use crate::flight::{DECIMATION, TICK_RATE_HZ};
+
+/// The table in the image.
+pub mod table {
+    include!("../../gains/generated/actuator-aware.rs");
+}
 
 /// The craft.
 pub const AIRFRAME: Airframe = Airframe::CRAZYFLIE_2_1;
@@ -32,7 +36,7 @@ const LAG: MotorLag = match MotorLag::new(AIRFRAME.figures().motor_lag_s, RATE) 
 };
 
 static ACTUATOR_AWARE: MotorTracker<'static> = MotorTracker::new(
-    match ActuatorAware::new(&actuator_aware::CRAZYFLIE_2_1, &AIRFRAME, RATE) {
+    match ActuatorAware::new(&table::ACTUATOR_AWARE, &AIRFRAME, RATE) {
         Ok(law) => MotorLaw::ActuatorAware(law),
         Err(_) => panic!("the motors are too fast for this rate"),
     },

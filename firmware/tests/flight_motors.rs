@@ -5,7 +5,7 @@ use embedded_hal::i2c::ErrorKind;
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::{Mock as Bus, Transaction as OnBus};
 use embedded_hal_mock::eh1::pwm::{Mock as Channel, Transaction as OnChannel};
-use quatrack::gains::{actuator_aware, paper};
+use quatrack::gains::paper;
 use quatrack::link::{ForcesOut, FromBoard, LawChoice, NoCommand, RigidStateIn, StateIn, Table, TrajectoryId};
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{Fault, Mode, StopReason};
@@ -20,7 +20,7 @@ use quatrack_firmware::drivers::motors::Motors;
 use quatrack_firmware::drivers::thrust_curve::ThrustCurve;
 use quatrack_firmware::flight::{CONFIG, Flight, LOCK_STEP};
 use quatrack_firmware::laws::Refused;
-use quatrack_firmware::motor_control::AIRFRAME;
+use quatrack_firmware::motor_control::{AIRFRAME, table};
 use quatrack_firmware::stored;
 
 const LAWS: [Table; 2] = [Table::LqrE, Table::ActuatorAware];
@@ -73,7 +73,7 @@ fn core(table: Table, limits: Limits) -> MotorTracker<'static> {
     let rate = Rate::from_hz(500).unwrap();
     let law = match table {
         Table::ActuatorAware => {
-            MotorLaw::ActuatorAware(ActuatorAware::new(&actuator_aware::CRAZYFLIE_2_1, &AIRFRAME, rate).unwrap())
+            MotorLaw::ActuatorAware(ActuatorAware::new(&table::ACTUATOR_AWARE, &AIRFRAME, rate).unwrap())
         }
         _ => MotorLaw::BodyRates(ByBodyRates {
             tracker: quatrack::Tracker::new(Equilibrium::new(&paper::LQR_E), limits),

@@ -1,6 +1,5 @@
 //! Gain tables made offline: constants in the image, checked when it is compiled, and files, checked when they are
 //! loaded.
 
-pub mod actuator_aware;
 pub mod paper;
 pub mod table;

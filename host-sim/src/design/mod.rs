@@ -25,7 +25,6 @@ mod hamiltonian;
 pub mod integral;
 mod lyapunov;
 mod lyapunov_operator;
-pub mod motor_tables;
 mod newton;
 mod riccati;
 pub mod sampled;

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use nalgebra::{Vector3, Vector4};
-use quatrack::gains::{actuator_aware, paper};
+use quatrack::gains::paper;
 use quatrack::link::{LawChoice, LimitsSetting, Parameter, Table, ToBoard, TrajectoryCommand};
 use quatrack::{
     ActuatorAware, ActuatorMemory, Airframe, BodyRateLoop, ByBodyRates, Equilibrium, MotorForces, MotorLag, MotorLaw,
@@ -27,6 +27,12 @@ use crate::plant::{Craft, Ground, RigidState as PlantState};
 use crate::reproduction::report::digits;
 use crate::reproduction::table::Course;
 use crate::vehicle::Vehicle;
+
+/// The same file that the image is built from.
+#[allow(unreachable_pub, reason = "the image needs it public")]
+mod table {
+    include!("../../../gains/generated/actuator-aware.rs");
+}
 
 /// Control steps a sample of the position error.
 const STEPS_A_SAMPLE: u32 = RATE_HZ / 100;
@@ -128,7 +134,7 @@ impl HostCore {
                 lag: MotorLag::new(airframe.figures().motor_lag_s, rate).map_err(|error| refused(&error))?,
             }),
             MotorFlight::ActuatorAware => MotorLaw::ActuatorAware(
-                ActuatorAware::new(&actuator_aware::CRAZYFLIE_2_1, &airframe, rate).map_err(|error| refused(&error))?,
+                ActuatorAware::new(&table::ACTUATOR_AWARE, &airframe, rate).map_err(|error| refused(&error))?,
             ),
         };
         Ok(Self {
