@@ -1,0 +1,148 @@
+//! The edge: the firmware's units, signs and orders in, SI out. Nothing else converts.
+//!
+//! Degrees become radians, the scalar of a quaternion comes first, the angle of pitch changes its sign (rates do not), a
+//! thrust of 65535 becomes what four motors can do. A yaw angle becomes a heading: the same at hover; the firmware's own
+//! trajectories bend away from it as they tilt, Z-X-Y, by less than a degree below 15 degrees.
+
+use quatrack::math::sin_cos;
+use quatrack::nalgebra::Vector3;
+use quatrack::{Quaternion, State};
+
+use crate::abi::{self, Mode};
+use crate::demand::{Demand, Flight, Horizontal, Motion, Turn, Vertical};
+
+const RAD_PER_DEG: f32 = core::f32::consts::PI / 180.0;
+
+/// What stands for all of the thrust.
+const THRUST_MAX: f32 = 65_535.0;
+
+/// Thrust below which a manual setpoint means motors off, as with the firmware's own controllers.
+const THRUST_OFF: f32 = 1_000.0;
+
+/// Largest heading, rad: beyond it the sine loses digits.
+const HEADING_MAX_RAD: f32 = 2_000.0;
+
+/// The estimate.
+pub fn state(state: &abi::State) -> State {
+    State {
+        position_m: vector(&state.position),
+        attitude: quaternion(&state.attitude_quaternion),
+        velocity_m_s: vector(&state.velocity),
+    }
+}
+
+/// Body rates that the gyroscope measures, rad/s.
+pub fn body_rates_rad_s(sensors: &abi::SensorData) -> Vector3<f32> {
+    let [x, y, z] = sensors.gyro;
+    Vector3::new(x * RAD_PER_DEG, y * RAD_PER_DEG, z * RAD_PER_DEG)
+}
+
+/// Position and its derivatives in a setpoint.
+pub fn motion(setpoint: &abi::Setpoint) -> Motion {
+    Motion {
+        position_m: vector(&setpoint.position),
+        velocity_m_s: vector(&setpoint.velocity),
+        acceleration_m_s2: vector(&setpoint.acceleration),
+        jerk_m_s3: vector(&setpoint.jerk),
+    }
+}
+
+/// What a setpoint asks of a craft whose four motors push with `thrust_max_n` at most; nothing where its modes make no
+/// sense together or a number that counts is not finite.
+pub fn demand(setpoint: &abi::Setpoint, thrust_max_n: f32) -> Option<Demand> {
+    let mode = &setpoint.mode;
+    if *mode == abi::Modes::default() {
+        return Some(Demand::Off);
+    }
+    let vertical = match mode.z {
+        Mode::DISABLED => Vertical::Thrust(setpoint.thrust / THRUST_MAX * thrust_max_n),
+        Mode::ABSOLUTE => Vertical::Position,
+        Mode::VELOCITY => Vertical::Velocity,
+        _ => return None,
+    };
+    let (turn, heading_sum) = turn(setpoint)?;
+    let horizontal = horizontal(setpoint)?;
+    // A sum is finite only if all of its terms are.
+    let counting = match (&horizontal, vertical) {
+        (Horizontal::Tilt(axis), _) => axis.x + axis.y,
+        (Horizontal::Rates([p, q]), _) => p + q,
+        _ => 0.0,
+    } + setpoint.thrust
+        + heading_sum
+        + sum(&setpoint.position)
+        + sum(&setpoint.velocity)
+        + sum(&setpoint.acceleration)
+        + sum(&setpoint.jerk);
+    if !(counting.abs() <= f32::MAX) {
+        return None;
+    }
+    if matches!(vertical, Vertical::Thrust(_)) && setpoint.thrust < THRUST_OFF {
+        return Some(Demand::Off);
+    }
+    Some(Demand::Fly(Flight { horizontal, vertical, turn }))
+}
+
+fn horizontal(setpoint: &abi::Setpoint) -> Option<Horizontal> {
+    let mode = &setpoint.mode;
+    match (mode.x, mode.y) {
+        (Mode::ABSOLUTE, Mode::ABSOLUTE) => Some(Horizontal::Position),
+        (Mode::VELOCITY, Mode::VELOCITY) => {
+            Some(Horizontal::Velocity { in_heading_frame: setpoint.velocity_body != 0 })
+        }
+        (Mode::DISABLED, Mode::DISABLED) => match (mode.roll, mode.pitch, mode.quat) {
+            (Mode::ABSOLUTE, Mode::ABSOLUTE, Mode::DISABLED) => {
+                let (sin_roll, cos_roll) = sin_cos(setpoint.attitude.roll * RAD_PER_DEG);
+                let (sin_pitch, cos_pitch) = sin_cos(-setpoint.attitude.pitch * RAD_PER_DEG);
+                Some(Horizontal::Tilt(Vector3::new(sin_pitch * cos_roll, -sin_roll, cos_pitch * cos_roll)))
+            }
+            (Mode::VELOCITY, Mode::VELOCITY, Mode::DISABLED) => {
+                let rate = &setpoint.attitude_rate;
+                Some(Horizontal::Rates([rate.roll * RAD_PER_DEG, rate.pitch * RAD_PER_DEG]))
+            }
+            (Mode::DISABLED, Mode::DISABLED, Mode::ABSOLUTE) => {
+                let q = quaternion(&setpoint.attitude_quaternion);
+                let heading = Quaternion::new(q.w, 0.0, 0.0, -q.z);
+                let norm_squared = q.w * q.w + q.z * q.z;
+                let axis = (heading * q * Quaternion::new(0.0, 0.0, 0.0, 1.0) * q.conjugate() * heading.conjugate())
+                    .vector()
+                    / norm_squared;
+                Some(Horizontal::Tilt(axis))
+            }
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// And the sum of the figures that it is made of.
+fn turn(setpoint: &abi::Setpoint) -> Option<(Turn, f32)> {
+    let mode = &setpoint.mode;
+    let rate = setpoint.attitude_rate.yaw * RAD_PER_DEG;
+    let heading_rad = match (mode.quat, mode.yaw) {
+        (Mode::ABSOLUTE, Mode::DISABLED) => heading_rad(&quaternion(&setpoint.attitude_quaternion)),
+        (Mode::DISABLED, Mode::ABSOLUTE) => setpoint.attitude.yaw * RAD_PER_DEG,
+        (Mode::DISABLED, Mode::VELOCITY) => return Some((Turn::Rate(rate), rate)),
+        (Mode::DISABLED, Mode::DISABLED) => return Some((Turn::Rate(0.0), 0.0)),
+        _ => return None,
+    };
+    let turn = Turn::Heading { heading_rad, body_rate_rad_s: rate };
+    (heading_rad.abs() <= HEADING_MAX_RAD).then_some((turn, rate))
+}
+
+/// The heading of an attitude `q_tilt q_z(psi)`, within a turn.
+pub fn heading_rad(q: &Quaternion) -> f32 {
+    // Most flights do not turn.
+    if q.z == 0.0 { 0.0 } else { 2.0 * libm::atan2f(q.z, q.w) }
+}
+
+fn vector(v: &abi::Vector) -> Vector3<f32> {
+    Vector3::new(v.x, v.y, v.z)
+}
+
+fn quaternion(q: &abi::Quaternion) -> Quaternion {
+    Quaternion::new(q.w, q.x, q.y, q.z)
+}
+
+fn sum(v: &abi::Vector) -> f32 {
+    v.x + v.y + v.z
+}

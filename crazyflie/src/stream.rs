@@ -1,0 +1,177 @@
+//! Setpoints that arrive slowly, a hundred a second, each with its derivatives up to the jerk, in; the motion at every
+//! step between them, with snap and crackle, out.
+//!
+//! Between two setpoints the newest is extrapolated by its own derivatives. Snap and crackle come from backward
+//! differences of the jerks of successive setpoints: the difference of two jerks is the snap halfway between them, that of
+//! two such snaps the crackle, which carries the snap on to the newest one. Nothing is differenced over a jump, over a gap
+//! of more than [`GAP_MAX_MS`], or from a stream that sends no jerk.
+
+use quatrack::FlatSample;
+use quatrack::motor_reference::FifthOrderSample;
+use quatrack::nalgebra::Vector3;
+
+use crate::demand::Motion;
+
+/// Longest time between two setpoints over which jerks are differenced, ms.
+pub const GAP_MAX_MS: u32 = 25;
+
+/// Longest time that a setpoint is extrapolated, ms; then the motion stands still where it has come to.
+pub const EXTRAPOLATION_MAX_MS: u32 = 100;
+
+/// Differences from what the last setpoint led to expect, beyond which a setpoint is a jump: m, m/s, m/s^2.
+const JUMP: [f32; 3] = [0.02, 0.2, 2.0];
+
+/// Largest snap (m/s^4) and crackle (m/s^5) that are taken for a motion, ten and fifty times those of the fastest flights;
+/// beyond lies the corner of a trajectory.
+const SNAP_MAX_M_S4: f32 = 1_000.0;
+const CRACKLE_MAX_M_S5: f32 = 25_000.0;
+
+/// The newest setpoint's motion, and what the ones before tell about it.
+#[derive(Clone, Copy, Debug)]
+pub struct Stream {
+    newest: Motion,
+    snap_m_s4: Vector3<f32>,
+    crackle_m_s5: Vector3<f32>,
+    /// Difference of the newest jerks, over which time, s; nothing before two of them.
+    jerk_difference: Option<(Vector3<f32>, f32)>,
+    /// When the newest came, ms; nothing before the first.
+    since_ms: Option<u32>,
+}
+
+/// What a setpoint was to the ones before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrival {
+    /// Their continuation.
+    Continued,
+    /// A new beginning: the first one, or one after a gap.
+    Begun,
+    /// Somewhere else.
+    Jumped,
+}
+
+impl Stream {
+    /// Nothing yet.
+    pub const fn new() -> Self {
+        Self {
+            newest: Motion::ZERO,
+            snap_m_s4: Vector3::new(0.0, 0.0, 0.0),
+            crackle_m_s5: Vector3::new(0.0, 0.0, 0.0),
+            jerk_difference: None,
+            since_ms: None,
+        }
+    }
+
+    /// Takes a setpoint that has changed, at a time of a clock that may wrap.
+    pub fn accept(&mut self, motion: &Motion, now_ms: u32) -> Arrival {
+        let gap_ms = self.since_ms.map(|since_ms| now_ms.wrapping_sub(since_ms));
+        let arrival = match gap_ms {
+            Some(gap_ms) if (1..=GAP_MAX_MS).contains(&gap_ms) => self.difference(motion, gap_ms),
+            _ => Arrival::Begun,
+        };
+        if arrival != Arrival::Continued {
+            *self = Self::new();
+        }
+        self.newest = *motion;
+        self.since_ms = Some(now_ms);
+        arrival
+    }
+
+    /// The motion at a time, heading aside.
+    pub fn at(&self, now_ms: u32) -> FifthOrderSample {
+        let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
+        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
+        if age_ms == 0 {
+            return self.sample(*p, *v, *a, *j, self.snap_m_s4);
+        }
+        if age_ms > EXTRAPOLATION_MAX_MS {
+            return self.end();
+        }
+        let t = age_ms as f32 * 1e-3;
+        let (t2, t3, t4, t5) = (t * (1.0 / 2.0), t * (1.0 / 3.0), t * (1.0 / 4.0), t * (1.0 / 5.0));
+        let (s, c) = (&self.snap_m_s4, &self.crackle_m_s5);
+        let along = |p: f32, v: f32, a: f32, j: f32, s: f32, c: f32| {
+            (
+                p + t * (v + t2 * (a + t3 * (j + t4 * (s + t5 * c)))),
+                v + t * (a + t2 * (j + t3 * (s + t4 * c))),
+                a + t * (j + t2 * (s + t3 * c)),
+                j + t * (s + t2 * c),
+                s + t * c,
+            )
+        };
+        let (px, vx, ax, jx, sx) = along(p.x, v.x, a.x, j.x, s.x, c.x);
+        let (py, vy, ay, jy, sy) = along(p.y, v.y, a.y, j.y, s.y, c.y);
+        let (pz, vz, az, jz, sz) = along(p.z, v.z, a.z, j.z, s.z, c.z);
+        self.sample(
+            Vector3::new(px, py, pz),
+            Vector3::new(vx, vy, vz),
+            Vector3::new(ax, ay, az),
+            Vector3::new(jx, jy, jz),
+            Vector3::new(sx, sy, sz),
+        )
+    }
+
+    fn sample(&self, p: Vector3<f32>, v: Vector3<f32>, a: Vector3<f32>, j: Vector3<f32>, s: Vector3<f32>) -> FifthOrderSample {
+        FifthOrderSample {
+            flat: FlatSample {
+                position_m: p,
+                velocity_m_s: v,
+                acceleration_m_s2: a,
+                jerk_m_s3: j,
+                heading_rad: 0.0,
+                heading_rate_rad_s: 0.0,
+            },
+            snap_m_s4: s,
+            crackle_m_s5: self.crackle_m_s5,
+            heading_acceleration_rad_s2: 0.0,
+            heading_jerk_rad_s3: 0.0,
+        }
+    }
+
+    /// Where a motion without successors has come to.
+    #[cold]
+    fn end(&self) -> FifthOrderSample {
+        let since_ms = self.since_ms.unwrap_or_default();
+        let last = self.at(since_ms.wrapping_add(EXTRAPOLATION_MAX_MS));
+        FifthOrderSample::at_rest(last.flat.position_m, 0.0)
+    }
+
+    /// Snap and crackle at a setpoint that continues the ones before, so many milliseconds after the last of them.
+    fn difference(&mut self, motion: &Motion, gap_ms: u32) -> Arrival {
+        let gap_s = gap_ms as f32 * 1e-3;
+        let expected = self.at(self.since_ms.unwrap_or_default().wrapping_add(gap_ms)).flat;
+        let is_near = |a: &Vector3<f32>, b: &Vector3<f32>, bound: f32| {
+            (a.x - b.x).abs() <= bound && (a.y - b.y).abs() <= bound && (a.z - b.z).abs() <= bound
+        };
+        let continues = is_near(&motion.position_m, &expected.position_m, JUMP[0])
+            && is_near(&motion.velocity_m_s, &expected.velocity_m_s, JUMP[1])
+            && is_near(&motion.acceleration_m_s2, &expected.acceleration_m_s2, JUMP[2]);
+        if !continues {
+            return Arrival::Jumped;
+        }
+        let (new, old) = (&motion.jerk_m_s3, &self.newest.jerk_m_s3);
+        let zero = Vector3::new(0.0, 0.0, 0.0);
+        if *new == zero {
+            (self.jerk_difference, self.snap_m_s4, self.crackle_m_s5) = (None, zero, zero);
+            return Arrival::Continued;
+        }
+        let rate = 1.0 / gap_s;
+        let middle = Vector3::new((new.x - old.x) * rate, (new.y - old.y) * rate, (new.z - old.z) * rate);
+        let crackle = match &self.jerk_difference {
+            Some((before, gap_before_s)) => {
+                let rate = 2.0 / (gap_s + gap_before_s);
+                Vector3::new((middle.x - before.x) * rate, (middle.y - before.y) * rate, (middle.z - before.z) * rate)
+            }
+            None => zero,
+        };
+        let size = |v: &Vector3<f32>| v.x.abs() + v.y.abs() + v.z.abs();
+        if !(size(&middle) <= SNAP_MAX_M_S4 && size(&crackle) <= CRACKLE_MAX_M_S5) {
+            return Arrival::Jumped;
+        }
+        let half = 0.5 * gap_s;
+        self.snap_m_s4 =
+            Vector3::new(middle.x + half * crackle.x, middle.y + half * crackle.y, middle.z + half * crackle.z);
+        self.crackle_m_s5 = crackle;
+        self.jerk_difference = Some((middle, gap_s));
+        Arrival::Continued
+    }
+}
