@@ -21,6 +21,12 @@ pub enum Field {
     Heading,
     /// Heading rate, rad/s.
     HeadingRate,
+    /// Measured body rates, rad/s.
+    BodyRates,
+    /// Snap and crackle, m/s^4 and m/s^5.
+    SnapAndCrackle,
+    /// Second and third derivative of the heading, rad/s^2 and rad/s^3.
+    HeadingDerivatives,
 }
 
 impl fmt::Display for Field {
@@ -33,6 +39,9 @@ impl fmt::Display for Field {
             Self::Jerk => "jerk",
             Self::Heading => "heading",
             Self::HeadingRate => "heading rate",
+            Self::BodyRates => "body rates",
+            Self::SnapAndCrackle => "snap or crackle",
+            Self::HeadingDerivatives => "heading acceleration or jerk",
         })
     }
 }

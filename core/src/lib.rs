@@ -42,6 +42,8 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod airframe;
+pub mod body_rate;
 pub mod checksum;
 pub mod clock;
 pub mod command;
@@ -56,6 +58,10 @@ pub mod law;
 #[cfg(feature = "link")]
 pub mod link;
 pub mod math;
+pub mod mixer;
+pub mod motor_lag;
+pub mod motor_reference;
+pub mod motor_tracker;
 pub mod quaternion;
 pub mod reference;
 pub mod state;
@@ -65,11 +71,19 @@ pub mod trajectory;
 
 pub use nalgebra;
 
+pub use airframe::{Airframe, AirframeFigures};
+pub use body_rate::BodyRateLoop;
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};
 pub use crossfade::Crossfade;
 pub use error::{ReferenceError, StateError, StepError};
-pub use law::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput};
+pub use law::{
+    ActuatorAware, ActuatorAwareGain, ActuatorMemory, AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput,
+};
+pub use mixer::{MotorLimited, Wrench};
+pub use motor_lag::{MotorForces, MotorLag};
+pub use motor_reference::{FifthOrderSample, MotorReference};
+pub use motor_tracker::{MotorLaw, MotorStep, MotorTracker};
 pub use quaternion::{Heading, Quaternion};
 pub use reference::{FlatSample, Reference};
 pub use state::State;

@@ -42,7 +42,7 @@ impl FlatSample {
 
     /// The first number that is not finite.
     #[cold]
-    fn fault(&self) -> Option<ReferenceError> {
+    pub(crate) fn fault(&self) -> Option<ReferenceError> {
         let Self { position_m: r, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j, .. } = self;
         let (psi, rate) = (self.heading_rad, self.heading_rate_rad_s);
         let fields =

@@ -1,4 +1,4 @@
-//! Stored trajectories: polynomial pieces and a tick in, the flat output to jerk out.
+//! Stored trajectories: polynomial pieces and a tick in, the flat output to jerk out, or to its fifth derivative.
 //!
 //! A [`Trajectory`] is pieces that have been checked; a [`Player`] walks along them at a fixed rate. Time is the tick:
 //! the time within a piece is found by integers, in nanoseconds, and only then becomes an `f32`.
@@ -7,8 +7,10 @@ use core::fmt;
 
 use nalgebra::Vector3;
 
+use crate::airframe::Airframe;
 use crate::clock::{Rate, Tick, TickClock};
 use crate::error::ReferenceError;
+use crate::motor_reference::{FifthOrderSample, MotorReference};
 use crate::reference::{FlatSample, Reference};
 
 /// Coefficients of a polynomial of degree at most 7, ascending powers of the seconds since the piece began.
@@ -200,6 +202,34 @@ impl Piece {
         }
     }
 
+    /// The flat output and its derivatives to the fifth, those of the heading to the third.
+    #[inline(always)]
+    fn at_fifth_order(&self, time_ns: u64, shape: Shape) -> FifthOrderSample {
+        let t = seconds(time_ns);
+        let [x, y, z] = if shape.quintic {
+            [&self.x, &self.y, &self.z].map(|axis| quintic_derivatives_to_fifth(axis, t))
+        } else {
+            [&self.x, &self.y, &self.z].map(|axis| derivatives_to_fifth(axis, t))
+        };
+        let [[x, vx, ax, jx, sx, cx], [y, vy, ay, jy, sy, cy], [z, vz, az, jz, sz, cz]] = [x, y, z];
+        let [heading_rad, heading_rate_rad_s, heading_acceleration_rad_s2, heading_jerk_rad_s3] =
+            if shape.straight { [0.0; 4] } else { derivatives(&self.heading, t) };
+        FifthOrderSample {
+            flat: FlatSample {
+                position_m: Vector3::new(x, y, z),
+                velocity_m_s: Vector3::new(vx, vy, vz),
+                acceleration_m_s2: Vector3::new(ax, ay, az),
+                jerk_m_s3: Vector3::new(jx, jy, jz),
+                heading_rad,
+                heading_rate_rad_s,
+            },
+            snap_m_s4: Vector3::new(sx, sy, sz),
+            crackle_m_s5: Vector3::new(cx, cy, cz),
+            heading_acceleration_rad_s2,
+            heading_jerk_rad_s3,
+        }
+    }
+
     /// The rest at which it begins.
     fn start(&self) -> FlatSample {
         // A polynomial begins with its first coefficient.
@@ -234,8 +264,8 @@ impl Piece {
     fn is_finite(&self) -> bool {
         let t = 1.0 + seconds(self.duration_ns);
         [&self.x, &self.y, &self.z, &self.heading].iter().all(|coefficients| {
-            // Bounds |p|, |p'|, |p''| and |p'''| over the piece: 210 = 7 * 6 * 5.
-            (210.0 * coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c.abs())).is_finite()
+            // Bounds the derivatives to the fifth over the piece: 2520 = 7 * 6 * 5 * 4 * 3.
+            (2520.0 * coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c.abs())).is_finite()
         })
     }
 
@@ -277,6 +307,32 @@ fn quintic_derivatives(coefficients: &Coefficients, t: f32) -> [f32; 4] {
     let (d3, d2, d1, p) = (d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c1);
     let (d3, d2, d1, p) = (d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c0);
     [p, d1, 2.0 * d2, 6.0 * d3]
+}
+
+/// A polynomial and its first five derivatives at `t`; the first four to the same bits as by [`derivatives`].
+#[inline]
+fn derivatives_to_fifth(coefficients: &Coefficients, t: f32) -> [f32; 6] {
+    let [c0, c1, c2, c3, c4, c5, c6, c7] = *coefficients;
+    let (d1, p) = (c7, c7 * t + c6);
+    let (d2, d1, p) = (d1, d1 * t + p, p * t + c5);
+    let (d3, d2, d1, p) = (d2, d2 * t + d1, d1 * t + p, p * t + c4);
+    let (d4, d3, d2, d1, p) = (d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c3);
+    let (d5, d4, d3, d2, d1, p) = (d4, d4 * t + d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c2);
+    let (d5, d4, d3, d2, d1, p) = (d5 * t + d4, d4 * t + d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c1);
+    let (d5, d4, d3, d2, d1, p) = (d5 * t + d4, d4 * t + d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c0);
+    [p, d1, 2.0 * d2, 6.0 * d3, 24.0 * d4, 120.0 * d5]
+}
+
+/// The same for a polynomial of degree 5, to the same bits.
+#[inline]
+fn quintic_derivatives_to_fifth(coefficients: &Coefficients, t: f32) -> [f32; 6] {
+    let [c0, c1, c2, c3, c4, c5, ..] = *coefficients;
+    let (d1, p) = (c5, c5 * t + c4);
+    let (d2, d1, p) = (d1, d1 * t + p, p * t + c3);
+    let (d3, d2, d1, p) = (d2, d2 * t + d1, d1 * t + p, p * t + c2);
+    let (d4, d3, d2, d1, p) = (d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c1);
+    let (d5, d4, d3, d2, d1, p) = (d4, d4 * t + d3, d3 * t + d2, d2 * t + d1, d1 * t + p, p * t + c0);
+    [p, d1, 2.0 * d2, 6.0 * d3, 24.0 * d4, 120.0 * d5]
 }
 
 /// A polynomial and its first derivative at `t`.
@@ -381,6 +437,29 @@ impl<'a> Player<'a> {
         };
         // The pieces have been checked: what they give is finite.
         Reference::of_finite(&sample)
+    }
+
+    /// What flies the trajectory with a craft `tick` ticks after the start, to the motor forces and their rates.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] where the trajectory asks for what cannot be flown.
+    pub fn motor_reference(&mut self, tick: Tick, airframe: &Airframe) -> Result<MotorReference, ReferenceError> {
+        MotorReference::of_finite(&self.fifth_order(tick), airframe)
+    }
+
+    /// The flat output and its derivatives to the fifth `tick` ticks after the start.
+    pub fn at_fifth_order(&mut self, tick: Tick) -> FifthOrderSample {
+        self.fifth_order(tick)
+    }
+
+    #[inline(always)]
+    fn fifth_order(&mut self, tick: Tick) -> FifthOrderSample {
+        let Summary { end, shape, .. } = self.trajectory.summary;
+        if tick >= self.end_tick {
+            return FifthOrderSample::of_jerk(end);
+        }
+        let time_ns = self.seek(tick);
+        self.piece.at_fifth_order(time_ns, shape)
     }
 
     /// The flat output `tick` ticks after the start.

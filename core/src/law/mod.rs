@@ -3,9 +3,11 @@
 //! A law does not check its inputs and does not fail: what is not finite, and what its map has no answer to, comes out
 //! as a command that is not finite, which [`crate::tracker`] refuses.
 
+mod actuator_aware;
 mod equilibrium;
 mod flat_output;
 
+pub use actuator_aware::{ActuatorAware, ActuatorAwareGain, ActuatorMemory};
 pub use equilibrium::{Equilibrium, EquilibriumGain, ErrorForm};
 pub use flat_output::{FlatOutput, FlatOutputGain};
 

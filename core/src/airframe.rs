@@ -1,0 +1,263 @@
+//! The craft as the motors see it: mass, inertia, lever arms and what a motor can do in; factors of the mixing out.
+//!
+//! Four motors in an X, seen from above with the nose (body x) up and body y to the left:
+//!
+//! | motor | place | at (x, y) | propeller turns | its drag turns the craft by |
+//! |---|---|---|---|---|
+//! | M1 | front right | (a, -a) | anticlockwise | -c f |
+//! | M2 | rear right | (-a, -a) | clockwise | +c f |
+//! | M3 | rear left | (-a, a) | anticlockwise | -c f |
+//! | M4 | front left | (a, a) | clockwise | +c f |
+//!
+//! Each pushes along body z with its force f. So thrust and torques are `F = f1 + f2 + f3 + f4`,
+//! `tx = a (-f1 - f2 + f3 + f4)`, `ty = a (-f1 + f2 + f3 - f4)`, `tz = c (-f1 + f2 - f3 + f4)`, and the four sign patterns
+//! are orthogonal: the inverse is the transposed one over four. Order and signs are those of the Crazyflie's firmware.
+
+use core::fmt;
+
+use crate::flatness::GRAVITY_M_S2;
+
+/// What is measured of a craft; checked by [`Airframe::new`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct AirframeFigures {
+    /// Mass ready to fly, kg.
+    pub mass_kg: f32,
+    /// Principal moments of inertia about body x, y, z, kg m^2.
+    pub inertia_kg_m2: [f32; 3],
+    /// The lever a: distance of each motor from body x and from body y, m; the arm over the root of two.
+    pub lever_arm_m: f32,
+    /// The ratio c: torque about body z over the force of a motor, m.
+    pub torque_per_thrust_m: f32,
+    /// Least force of a turning motor, N.
+    pub force_min_n: f32,
+    /// Most force of a motor, N.
+    pub force_max_n: f32,
+    /// Time constant of the first-order lag from commanded to actual force, s.
+    pub motor_lag_s: f32,
+}
+
+/// A craft whose figures have been checked, with the factors that the mixing takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Airframe {
+    figures: AirframeFigures,
+    pub(crate) mixing: Mixing,
+}
+
+/// Motor forces per unit of what is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Mixing {
+    /// `m / 4`: force per motor over thrust in m/s^2, kg.
+    pub(crate) quarter_mass_kg: f32,
+    /// `1 / (4 a)`, `1 / (4 a)`, `1 / (4 c)`: force per motor over torque, 1/m.
+    pub(crate) per_torque: [f32; 3],
+    /// Inertia over four levers: force per motor over angular acceleration, N s^2.
+    pub(crate) inertia: [f32; 3],
+    /// `(Iz - Iy, Ix - Iz, Iy - Ix)` over four levers: force per motor over `(q r, p r, p q)`, N s^2.
+    pub(crate) gyroscopic: [f32; 3],
+}
+
+/// A figure of a craft.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum AirframeFigure {
+    /// [`AirframeFigures::mass_kg`].
+    Mass,
+    /// [`AirframeFigures::inertia_kg_m2`].
+    Inertia,
+    /// [`AirframeFigures::lever_arm_m`].
+    LeverArm,
+    /// [`AirframeFigures::torque_per_thrust_m`].
+    TorquePerThrust,
+    /// [`AirframeFigures::motor_lag_s`].
+    MotorLag,
+}
+
+/// Why figures are no craft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum AirframeError {
+    /// A figure is not between a millionth (a billionth for the inertia) and a thousand of its SI unit: check the units.
+    OutOfRange {
+        /// Which.
+        figure: AirframeFigure,
+        /// Its value.
+        value: f32,
+    },
+    /// A moment of inertia exceeds the sum of the other two, which no body's does.
+    Inertia {
+        /// The largest moment, kg m^2.
+        largest_kg_m2: f32,
+        /// The sum of the others, kg m^2.
+        others_kg_m2: f32,
+    },
+    /// `0 <= force_min_n < force_max_n` does not hold, or the motors cannot hold the weight within it.
+    Force {
+        /// Least force of a motor, N.
+        min_n: f32,
+        /// Most force, N.
+        max_n: f32,
+        /// A quarter of the weight, which has to lie between them, N.
+        hover_n: f32,
+    },
+}
+
+impl Airframe {
+    /// Crazyflie 2.1; inertia from Förster, System Identification of the Crazyflie 2.0 Nano Quadrocopter (2015); motor lag at
+    /// the top of the published 63 to 126 ms.
+    pub const CRAZYFLIE_2_1: Self = Self::constant(AirframeFigures {
+        mass_kg: 0.029,
+        inertia_kg_m2: [16.571_71e-6, 16.655_602e-6, 29.261_652e-6],
+        lever_arm_m: 0.0325,
+        torque_per_thrust_m: 0.006_992_9,
+        force_min_n: 0.012_818,
+        force_max_n: 0.12,
+        motor_lag_s: 0.126,
+    });
+
+    /// Crazyflie 2.1 with the thrust upgrade kit. Inertia estimated: that of the 2.1 scaled by mass.
+    pub const CRAZYFLIE_2_1_UPGRADE_KIT: Self = Self::constant(AirframeFigures {
+        mass_kg: 0.0325,
+        inertia_kg_m2: [18.571_744e-6, 18.665_761e-6, 32.793_23e-6],
+        lever_arm_m: 0.0325,
+        torque_per_thrust_m: 0.005_164_9,
+        force_min_n: 0.019_226,
+        force_max_n: 0.18,
+        motor_lag_s: 0.126,
+    });
+
+    /// Crazyflie 2.1 Brushless; lag at the top of the published 50 to 66 ms. Inertia estimated: that of the 2.1 scaled by
+    /// mass and by the square of the arm.
+    pub const CRAZYFLIE_2_1_BRUSHLESS: Self = Self::constant(AirframeFigures {
+        mass_kg: 0.0393,
+        inertia_kg_m2: [26.533_2e-6, 26.667_5e-6, 46.851_2e-6],
+        lever_arm_m: 0.035_355,
+        torque_per_thrust_m: 0.005_692_8,
+        force_min_n: 0.021_363,
+        force_max_n: 0.2,
+        motor_lag_s: 0.066,
+    });
+
+    /// Checks the figures of a craft.
+    ///
+    /// # Errors
+    /// [`AirframeError`] names the figure.
+    pub const fn new(figures: AirframeFigures) -> Result<Self, AirframeError> {
+        let AirframeFigures { mass_kg, inertia_kg_m2, lever_arm_m, torque_per_thrust_m, motor_lag_s, .. } = figures;
+        let [ix, iy, iz] = inertia_kg_m2;
+        // Scaled so that one range serves all.
+        let mut rest: &[(AirframeFigure, f32, f32)] = &[
+            (AirframeFigure::Mass, mass_kg, 1.0),
+            (AirframeFigure::Inertia, ix, 1e3),
+            (AirframeFigure::Inertia, iy, 1e3),
+            (AirframeFigure::Inertia, iz, 1e3),
+            (AirframeFigure::LeverArm, lever_arm_m, 1.0),
+            (AirframeFigure::TorquePerThrust, torque_per_thrust_m, 1.0),
+            (AirframeFigure::MotorLag, motor_lag_s, 1.0),
+        ];
+        while let Some(((figure, value, scale), after)) = rest.split_first() {
+            if !(*value * *scale >= 1e-6 && *value <= 1e3) {
+                return Err(AirframeError::OutOfRange { figure: *figure, value: *value });
+            }
+            rest = after;
+        }
+        let mut rest: &[(f32, f32)] = &[(ix, iy + iz), (iy, iz + ix), (iz, ix + iy)];
+        while let Some(((largest_kg_m2, others_kg_m2), after)) = rest.split_first() {
+            if *largest_kg_m2 > *others_kg_m2 {
+                return Err(AirframeError::Inertia { largest_kg_m2: *largest_kg_m2, others_kg_m2: *others_kg_m2 });
+            }
+            rest = after;
+        }
+        let (min_n, max_n, hover_n) = (figures.force_min_n, figures.force_max_n, 0.25 * mass_kg * GRAVITY_M_S2);
+        if !(min_n >= 0.0 && min_n < hover_n && hover_n < max_n && max_n <= 1e3) {
+            return Err(AirframeError::Force { min_n, max_n, hover_n });
+        }
+        let (lever, yaw) = (0.25 / lever_arm_m, 0.25 / torque_per_thrust_m);
+        let mixing = Mixing {
+            quarter_mass_kg: 0.25 * mass_kg,
+            per_torque: [lever, lever, yaw],
+            inertia: [ix * lever, iy * lever, iz * yaw],
+            gyroscopic: [(iz - iy) * lever, (ix - iz) * lever, (iy - ix) * yaw],
+        };
+        Ok(Self { figures, mixing })
+    }
+
+    const fn constant(figures: AirframeFigures) -> Self {
+        match Self::new(figures) {
+            Ok(airframe) => airframe,
+            Err(_) => panic!("the figures in the source are no craft"),
+        }
+    }
+
+    /// What it was made from.
+    pub const fn figures(&self) -> &AirframeFigures {
+        &self.figures
+    }
+
+    /// A quarter of the weight: the force of each motor at hover, N.
+    pub const fn hover_force_n(&self) -> f32 {
+        self.mixing.quarter_mass_kg * GRAVITY_M_S2
+    }
+}
+
+impl fmt::Display for AirframeFigure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mass => "mass (kg)",
+            Self::Inertia => "moment of inertia (kg m^2)",
+            Self::LeverArm => "lever arm (m)",
+            Self::TorquePerThrust => "torque per thrust (m)",
+            Self::MotorLag => "motor lag (s)",
+        })
+    }
+}
+
+impl fmt::Display for AirframeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OutOfRange { figure, value } => {
+                write!(f, "airframe: {figure} is {value}; give it positive and in SI units")
+            }
+            Self::Inertia { largest_kg_m2, others_kg_m2 } => write!(
+                f,
+                "airframe: a moment of inertia, {largest_kg_m2} kg m^2, exceeds the sum of the others, {others_kg_m2}; \
+                 check their order"
+            ),
+            Self::Force { min_n, max_n, hover_n } => write!(
+                f,
+                "airframe: motors of {min_n} to {max_n} N do not hold the weight, {hover_n} N each; check mass and forces"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for AirframeError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FIGURES: AirframeFigures = Airframe::CRAZYFLIE_2_1.figures;
+
+    #[test]
+    fn a_wrong_figure_is_named() {
+        let grams = AirframeFigures { mass_kg: 29e3, ..FIGURES };
+        let refused = Err(AirframeError::OutOfRange { figure: AirframeFigure::Mass, value: 29e3 });
+        assert_eq!(Airframe::new(grams), refused);
+        let no_lag = Airframe::new(AirframeFigures { motor_lag_s: f32::NAN, ..FIGURES });
+        assert!(matches!(no_lag, Err(AirframeError::OutOfRange { figure: AirframeFigure::MotorLag, .. })));
+        let rod = Airframe::new(AirframeFigures { inertia_kg_m2: [1e-5, 1e-5, 3e-5], ..FIGURES });
+        assert_eq!(rod, Err(AirframeError::Inertia { largest_kg_m2: 3e-5, others_kg_m2: 2e-5 }));
+    }
+
+    #[test]
+    fn motors_that_cannot_hold_the_weight_are_refused() {
+        for (min_n, max_n) in [(0.0, 0.07), (0.08, 0.12), (-0.01, 0.12), (0.12, 0.01), (0.0, f32::INFINITY)] {
+            let refused = Airframe::new(AirframeFigures { force_min_n: min_n, force_max_n: max_n, ..FIGURES });
+            assert!(matches!(refused, Err(AirframeError::Force { .. })), "{min_n} to {max_n}");
+        }
+    }
+}

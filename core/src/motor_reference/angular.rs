@@ -1,0 +1,156 @@
+//! The flat map carried on to the angular jerk: derivatives of position to the fifth and of heading to the third in;
+//! thrust, attitude and the derivatives of both out, exactly.
+//!
+//! In the frame F of the tilt alone (the smallest rotation that takes the vertical to n) gravity and acceleration are
+//! `T e3`, and the frame turns with `w = (p, q, r)`. Jerk j, snap s and crackle c, seen from F, are then
+//!
+//! ```text
+//! j = T' e3 + w x T e3,   s = dj/dt + w x j,   c = ds/dt + w x s
+//! ```
+//!
+//! which are solved one after the other for `(T', p, q)`, `(T'', p', q')` and `(p'', q'')`:
+//!
+//! ```text
+//! p   = -j_y / T                               q   = j_x / T                                T'  = j_z
+//! p'  = -s_y / T - 2 t1 p + r q                q'  = s_x / T - 2 t1 q - r p                 T'' = s_z + T (p^2 + q^2)
+//! p'' = -c_y / T - 3 t2 p - 3 t1 (p' - r q) + p w.w + r' q + 2 r q'
+//! q'' =  c_x / T - 3 t2 q - 3 t1 (q' + r p) + q w.w - r' p - 2 r p'
+//! ```
+//!
+//! with `t1 = T'/T`, `t2 = T''/T`. That F turns no more than the tilt needs gives r, by `i = 1 / (1 + n_z)`:
+//!
+//! ```text
+//! r = i (n_x p + n_y q)    r' = i (n_x p' + n_y q')    r'' = i (n_x p'' + n_y q'' + p' q - q' p)
+//! ```
+//!
+//! Heading psi turns the body about n on top of F: `w_b = R_z(-psi) w + psi' e3`, differentiated twice.
+
+use nalgebra::Vector3;
+
+use crate::error::{Field, ReferenceError};
+use crate::flatness::{GRAVITY_M_S2, MIN_AXIS_Z, MIN_THRUST_M_S2};
+use crate::math::sqrt;
+use crate::quaternion::{Heading, Quaternion};
+
+/// Derivatives of the flat output that the map takes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) acceleration: Vector3<f32>,
+    pub(super) jerk: Vector3<f32>,
+    pub(super) snap: Vector3<f32>,
+    pub(super) crackle: Vector3<f32>,
+    pub(super) heading: f32,
+    /// First to third derivative.
+    pub(super) heading_rates: [f32; 3],
+}
+
+/// What the map gives; rates, accelerations and jerks in the body frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turning {
+    pub(super) attitude: Quaternion,
+    pub(super) heading: Heading,
+    /// Thrust over mass, m/s^2, and its rate.
+    pub(super) thrust: f32,
+    pub(super) thrust_rate: f32,
+    pub(super) rates: [f32; 3],
+    pub(super) acceleration: [f32; 3],
+    pub(super) jerk: [f32; 3],
+}
+
+impl Turning {
+    /// Not finite where the derivatives are not, or are beyond the range of f32.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] at the singularities of the flat map.
+    #[inline(always)]
+    pub(super) fn of(motion: &Motion) -> Result<Self, ReferenceError> {
+        let (a, j, s, c) = (&motion.acceleration, &motion.jerk, &motion.snap, &motion.crackle);
+        let hz = a.z + GRAVITY_M_S2;
+        let thrust = sqrt(a.x * a.x + a.y * a.y + hz * hz);
+        let inverse = 1.0 / thrust;
+        let (nx, ny, nz) = (a.x * inverse, a.y * inverse, hz * inverse);
+        // Fails for NaN.
+        if !(thrust >= MIN_THRUST_M_S2 && nz >= MIN_AXIS_Z) {
+            return Err(fault(thrust, nz));
+        }
+        let half = 0.5 * (1.0 + nz);
+        let (root, scale) = (sqrt(half), 0.5 / half);
+
+        // World to F: the component across n that the tilt turns away, then that along n.
+        let across = |v: &Vector3<f32>| {
+            let horizontal = nx * v.x + ny * v.y;
+            let w = horizontal * scale + v.z;
+            (v.x - nx * w, v.y - ny * w, horizontal + nz * v.z)
+        };
+        let (jx, jy, thrust_rate) = across(j);
+        let (p, q) = (-(jy * inverse), jx * inverse);
+        let r = scale * (nx * p + ny * q);
+
+        let (sx, sy, sz) = across(s);
+        let t1 = thrust_rate * inverse;
+        let twice = t1 + t1;
+        let p1 = r * q - sy * inverse - twice * p;
+        let q1 = sx * inverse - twice * q - r * p;
+        let r1 = scale * (nx * p1 + ny * q1);
+        let tilting = p * p + q * q;
+        let t2 = sz * inverse + tilting;
+
+        let (cx, cy, _) = across(c);
+        let (three_t1, turning) = (twice + t1, tilting + r * r - 3.0 * t2);
+        let p2 = turning * p - cy * inverse - three_t1 * (p1 - r * q) + r1 * q + 2.0 * (r * q1);
+        let q2 = turning * q + cx * inverse - three_t1 * (q1 + r * p) - r1 * p - 2.0 * (r * p1);
+        let r2 = scale * (nx * p2 + ny * q2 + (p1 * q - q1 * p));
+
+        let half_axis = root * scale;
+        let tilted = [root, -(ny * half_axis), nx * half_axis];
+        let turned = Self {
+            attitude: Quaternion::new(tilted[0], tilted[1], tilted[2], 0.0),
+            heading: Heading::ZERO,
+            thrust,
+            thrust_rate,
+            rates: [p, q, r],
+            acceleration: [p1, q1, r1],
+            jerk: [p2, q2, r2],
+        };
+        let [h1, h2, h3] = motion.heading_rates;
+        // Most flights do not turn.
+        if motion.heading == 0.0 && h1 == 0.0 && h2 == 0.0 && h3 == 0.0 {
+            return Ok(turned);
+        }
+        Ok(turned.with_heading(motion.heading, [h1, h2, h3]))
+    }
+
+    /// From heading 0 to any.
+    #[inline(never)]
+    fn with_heading(&self, heading_rad: f32, heading_rates: [f32; 3]) -> Self {
+        let heading = Heading::from_angle(heading_rad);
+        let (cos, sin) = heading.cos_sin();
+        let [h1, h2, h3] = heading_rates;
+        let turn = |[x, y, _]: [f32; 3]| (cos * x + sin * y, cos * y - sin * x);
+        let ((p, q), (p1, q1), (p2, q2)) = (turn(self.rates), turn(self.acceleration), turn(self.jerk));
+        let (tilt, (c, s)) = (self.attitude, (heading.cos_half(), heading.sin_half()));
+        let (twice, squared) = (h1 + h1, h1 * h1);
+        Self {
+            // `q_tilt q_z(psi)`, whose tilt has no third component.
+            attitude: Quaternion::new(tilt.w * c, tilt.x * c + tilt.y * s, tilt.y * c - tilt.x * s, tilt.w * s),
+            heading,
+            thrust: self.thrust,
+            thrust_rate: self.thrust_rate,
+            rates: [p, q, self.rates[2] + h1],
+            acceleration: [p1 + h1 * q, q1 - h1 * p, self.acceleration[2] + h2],
+            jerk: [p2 + twice * q1 + h2 * q - squared * p, q2 - twice * p1 - h2 * p - squared * q, self.jerk[2] + h3],
+        }
+    }
+}
+
+/// Why a direction of thrust has no attitude.
+#[cold]
+fn fault(thrust_m_s2: f32, axis_z: f32) -> ReferenceError {
+    if thrust_m_s2 < MIN_THRUST_M_S2 {
+        ReferenceError::NoThrust { thrust_m_s2 }
+    } else if axis_z < MIN_AXIS_Z {
+        ReferenceError::Inverted { axis_z }
+    } else {
+        ReferenceError::NonFinite { field: Field::Acceleration, value: thrust_m_s2 }
+    }
+}

@@ -1,0 +1,194 @@
+//! The reference carried on to the motors: the flat output to its fifth derivative, and any heading to its third, in; state,
+//! angular acceleration, motor forces and their rates out, checked once.
+//!
+//! The paper's flat map ends at body rates, which take the jerk. Torque takes the angular acceleration and so the snap;
+//! its rate, which a motor that lags has to be ahead by, takes the fifth derivative.
+
+mod angular;
+
+use nalgebra::Vector3;
+
+use self::angular::{Motion, Turning};
+use crate::airframe::Airframe;
+use crate::command::Command;
+use crate::error::{Field, ReferenceError, first_non_finite};
+use crate::mixer::Parts;
+use crate::motor_lag::MotorForces;
+use crate::reference::{FlatSample, Reference};
+use crate::state::State;
+
+/// The flat output and its derivatives at one time, as far as the motor forces and their rates depend on it; world frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FifthOrderSample {
+    /// Position to jerk, heading and its rate.
+    pub flat: FlatSample,
+    /// Snap, fourth derivative of the position, m/s^4.
+    pub snap_m_s4: Vector3<f32>,
+    /// Crackle, fifth derivative of the position, m/s^5.
+    pub crackle_m_s5: Vector3<f32>,
+    /// Second derivative of the heading, rad/s^2.
+    pub heading_acceleration_rad_s2: f32,
+    /// Third derivative of the heading, rad/s^3.
+    pub heading_jerk_rad_s3: f32,
+}
+
+impl FifthOrderSample {
+    /// Rest at a position and heading.
+    pub const fn at_rest(position_m: Vector3<f32>, heading_rad: f32) -> Self {
+        Self::of_jerk(FlatSample::at_rest(position_m, heading_rad))
+    }
+
+    /// A sample of which no more than the jerk is known: the rest is taken for zero.
+    pub const fn of_jerk(flat: FlatSample) -> Self {
+        const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
+        Self { flat, snap_m_s4: ZERO, crackle_m_s5: ZERO, heading_acceleration_rad_s2: 0.0, heading_jerk_rad_s3: 0.0 }
+    }
+
+    /// The first number that is not finite.
+    #[cold]
+    fn fault(&self) -> Option<ReferenceError> {
+        let (s, c) = (&self.snap_m_s4, &self.crackle_m_s5);
+        let fields = [Field::SnapAndCrackle, Field::SnapAndCrackle, Field::HeadingDerivatives];
+        let values = [s.x, s.y, s.z, c.x, c.y, c.z, self.heading_acceleration_rad_s2, self.heading_jerk_rad_s3];
+        self.flat.fault().or_else(|| {
+            first_non_finite(&fields, &values).map(|(field, value)| ReferenceError::NonFinite { field, value })
+        })
+    }
+}
+
+/// A flyable reference with the motor forces that fly it: finite, with thrust, upright enough for the flat map. Only this
+/// module makes one. The forces may be beyond what the motors can do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotorReference {
+    pub(crate) reference: Reference,
+    pub(crate) angular_acceleration_rad_s2: Vector3<f32>,
+    pub(crate) forces_n: MotorForces,
+    pub(crate) force_rates_n_s: MotorForces,
+}
+
+impl MotorReference {
+    /// Hover at a position and heading.
+    ///
+    /// # Errors
+    /// [`ReferenceError::NonFinite`].
+    pub fn hover(position_m: Vector3<f32>, heading_rad: f32, airframe: &Airframe) -> Result<Self, ReferenceError> {
+        Self::from_flat(&FifthOrderSample::at_rest(position_m, heading_rad), airframe)
+    }
+
+    /// What flies a flat output with a craft.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] where a number is not finite and at the flat map's singularities.
+    pub fn from_flat(sample: &FifthOrderSample, airframe: &Airframe) -> Result<Self, ReferenceError> {
+        let FlatSample { position_m: r, velocity_m_s: v, .. } = &sample.flat;
+        // What the motor forces depend on shows in them; position and velocity do not.
+        if ((r.x + r.y + r.z) + (v.x + v.y + v.z)).is_finite() {
+            let mapped = Self::of_finite(sample, airframe);
+            if mapped.is_ok() {
+                return mapped;
+            }
+        }
+        match sample.fault() {
+            Some(fault) => Err(fault),
+            None => Self::of_finite(sample, airframe),
+        }
+    }
+
+    /// The same for a sample whose position and velocity are known to be finite.
+    #[inline(always)]
+    pub(crate) fn of_finite(sample: &FifthOrderSample, airframe: &Airframe) -> Result<Self, ReferenceError> {
+        let flat = &sample.flat;
+        let turning = Turning::of(&Motion {
+            acceleration: flat.acceleration_m_s2,
+            jerk: flat.jerk_m_s3,
+            snap: sample.snap_m_s4,
+            crackle: sample.crackle_m_s5,
+            heading: flat.heading_rad,
+            heading_rates: [flat.heading_rate_rad_s, sample.heading_acceleration_rad_s2, sample.heading_jerk_rad_s3],
+        })?;
+        let ([p, q, r], [p1, q1, r1], [p2, q2, r2]) = (turning.rates, turning.acceleration, turning.jerk);
+        // Euler's equations and their derivative, with inertia over four levers.
+        let mixing = &airframe.mixing;
+        let ([ix, iy, iz], [gx, gy, gz]) = (mixing.inertia, mixing.gyroscopic);
+        let forces_n = Parts {
+            thrust: mixing.quarter_mass_kg * turning.thrust,
+            roll: ix * p1 + gx * (q * r),
+            pitch: iy * q1 + gy * (p * r),
+            yaw: iz * r1 + gz * (p * q),
+        }
+        .forces();
+        let rates = Parts {
+            thrust: mixing.quarter_mass_kg * turning.thrust_rate,
+            roll: ix * p2 + gx * (q1 * r + q * r1),
+            pitch: iy * q2 + gy * (p1 * r + p * r1),
+            yaw: iz * r2 + gz * (p1 * q + p * q1),
+        };
+        let force_rates_n_s = rates.forces();
+        // Every derivative is in one of the rates.
+        let sum = rates.thrust.abs() + rates.roll.abs() + rates.pitch.abs() + rates.yaw.abs();
+        let in_range = sum <= f32::MAX;
+        if !in_range {
+            return Err(beyond_range(sum));
+        }
+        Ok(Self {
+            reference: Reference {
+                state: State {
+                    position_m: flat.position_m,
+                    attitude: turning.attitude,
+                    velocity_m_s: flat.velocity_m_s,
+                },
+                input: Command { thrust_m_s2: turning.thrust, body_rates_rad_s: Vector3::new(p, q, r) },
+                acceleration_m_s2: flat.acceleration_m_s2,
+                jerk_m_s3: flat.jerk_m_s3,
+                heading: turning.heading,
+                heading_rate_rad_s: flat.heading_rate_rad_s,
+            },
+            angular_acceleration_rad_s2: Vector3::new(p1, q1, r1),
+            forces_n,
+            force_rates_n_s,
+        })
+    }
+
+    /// As the paper's laws take it: state, thrust and body rates.
+    pub fn reference(&self) -> &Reference {
+        &self.reference
+    }
+
+    /// Position, attitude and velocity to be at.
+    pub fn state(&self) -> &State {
+        &self.reference.state
+    }
+
+    /// Body rates, rad/s.
+    pub fn body_rates_rad_s(&self) -> Vector3<f32> {
+        self.reference.input.body_rates_rad_s
+    }
+
+    /// Their rate in the body frame, rad/s^2.
+    pub fn angular_acceleration_rad_s2(&self) -> Vector3<f32> {
+        self.angular_acceleration_rad_s2
+    }
+
+    /// Motor forces M1 to M4, N.
+    pub fn forces_n(&self) -> MotorForces {
+        self.forces_n
+    }
+
+    /// Their rates, N/s.
+    pub fn force_rates_n_s(&self) -> MotorForces {
+        self.force_rates_n_s
+    }
+
+    /// Commands that give these forces behind a first-order lag of `lag_s` seconds: `f + lag df/dt`, N.
+    pub fn commands_n(&self, lag_s: f32) -> MotorForces {
+        let ([f1, f2, f3, f4], [d1, d2, d3, d4]) = (self.forces_n, self.force_rates_n_s);
+        [f1 + lag_s * d1, f2 + lag_s * d2, f3 + lag_s * d3, f4 + lag_s * d4]
+    }
+}
+
+/// The rates of the motor forces left the range of f32.
+#[cold]
+fn beyond_range(value: f32) -> ReferenceError {
+    ReferenceError::NonFinite { field: Field::SnapAndCrackle, value }
+}
