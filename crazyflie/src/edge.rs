@@ -9,6 +9,7 @@ use quatrack::nalgebra::Vector3;
 use quatrack::{Quaternion, State};
 
 use crate::abi::{self, Mode};
+use crate::control::Output;
 use crate::demand::{Demand, Flight, Horizontal, Motion, Turn, Vertical};
 
 const RAD_PER_DEG: f32 = core::f32::consts::PI / 180.0;
@@ -145,4 +146,47 @@ fn quaternion(q: &abi::Quaternion) -> Quaternion {
 
 fn sum(v: &abi::Vector) -> f32 {
     v.x + v.y + v.z
+}
+
+/// Whether two setpoints ask for the same, bit by bit; when they were made does not count.
+#[inline]
+pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
+    let vectors = |a: &abi::Vector, b: &abi::Vector| {
+        a.x.to_bits() == b.x.to_bits() && a.y.to_bits() == b.y.to_bits() && a.z.to_bits() == b.z.to_bits()
+    };
+    let angles = |a: &abi::Attitude, b: &abi::Attitude| {
+        a.roll.to_bits() == b.roll.to_bits()
+            && a.pitch.to_bits() == b.pitch.to_bits()
+            && a.yaw.to_bits() == b.yaw.to_bits()
+    };
+    let (p, q) = (&a.attitude_quaternion, &b.attitude_quaternion);
+    vectors(&a.position, &b.position)
+        && vectors(&a.velocity, &b.velocity)
+        && vectors(&a.acceleration, &b.acceleration)
+        && vectors(&a.jerk, &b.jerk)
+        && angles(&a.attitude, &b.attitude)
+        && angles(&a.attitude_rate, &b.attitude_rate)
+        && p.x.to_bits() == q.x.to_bits()
+        && p.y.to_bits() == q.y.to_bits()
+        && p.z.to_bits() == q.z.to_bits()
+        && p.w.to_bits() == q.w.to_bits()
+        && a.thrust.to_bits() == b.thrust.to_bits()
+        && a.velocity_body == b.velocity_body
+        && a.mode == b.mode
+}
+
+/// An output as the firmware takes it: forces over the largest of a motor.
+#[inline]
+pub fn control(output: &Output, force_max_n: f32) -> abi::Control {
+    match output {
+        Output::Wrench(wrench) => {
+            let torque = &wrench.torque_n_m;
+            let payload = [wrench.thrust_n, torque.x, torque.y, torque.z];
+            abi::Control { payload, control_mode: abi::Control::FORCE_TORQUE }
+        }
+        Output::Forces(forces) => {
+            let scale = 1.0 / force_max_n;
+            abi::Control { payload: forces.map(|force| force * scale), control_mode: abi::Control::FORCE }
+        }
+    }
 }

@@ -76,6 +76,12 @@ impl Stream {
         arrival
     }
 
+    /// Time since the newest setpoint, as far as it is extrapolated; s.
+    pub fn age_s(&self, now_ms: u32) -> f32 {
+        let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
+        age_ms.min(EXTRAPOLATION_MAX_MS) as f32 * 1e-3
+    }
+
     /// The motion at a time, heading aside.
     pub fn at(&self, now_ms: u32) -> FifthOrderSample {
         let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
@@ -110,7 +116,14 @@ impl Stream {
         )
     }
 
-    fn sample(&self, p: Vector3<f32>, v: Vector3<f32>, a: Vector3<f32>, j: Vector3<f32>, s: Vector3<f32>) -> FifthOrderSample {
+    fn sample(
+        &self,
+        p: Vector3<f32>,
+        v: Vector3<f32>,
+        a: Vector3<f32>,
+        j: Vector3<f32>,
+        s: Vector3<f32>,
+    ) -> FifthOrderSample {
         FifthOrderSample {
             flat: FlatSample {
                 position_m: p,

@@ -1,0 +1,271 @@
+//! Tables to fly: those in the image and an uploaded one in; gains as flown, scaled within what their certificate allows,
+//! out.
+
+use quatrack::gains::paper;
+use quatrack::gains::table::{AcceptedTable, Rows};
+use quatrack::law::{ActuatorAwareGain, EquilibriumGain, FlatOutputGain};
+use quatrack::{Airframe, Limits, MotorLag};
+
+use crate::builtin;
+use crate::craft::{Craft, RATE};
+use crate::shared::GAINS;
+
+/// Which table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum TableId {
+    /// The craft's own actuator-aware one, for any motor lag that is published of it.
+    ActuatorAware = 0,
+    /// (LYAP-E) of the paper.
+    LyapE = 1,
+    /// (LQR-E) of the paper.
+    LqrE = 2,
+    /// (LYAP-F) of the paper.
+    LyapF = 3,
+    /// (LQR-F) of the paper.
+    LqrF = 4,
+    /// The one that was sent last.
+    Uploaded = 5,
+}
+
+impl TableId {
+    /// By its number.
+    pub const fn numbered(number: u8) -> Option<Self> {
+        match number {
+            0 => Some(Self::ActuatorAware),
+            1 => Some(Self::LyapE),
+            2 => Some(Self::LqrE),
+            3 => Some(Self::LyapF),
+            4 => Some(Self::LqrF),
+            5 => Some(Self::Uploaded),
+            _ => None,
+        }
+    }
+}
+
+/// A gain, and with it the law that it is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gains {
+    /// Thrust and body rates from the state.
+    Equilibrium(EquilibriumGain),
+    /// Thrust and body rates from the flat state.
+    FlatOutput(FlatOutputGain),
+    /// Motor forces.
+    ActuatorAware(ActuatorAwareGain, MotorLag),
+}
+
+impl Gains {
+    /// The entries that make up the gain where it falls apart as designs at hover do: thrust from height, roll from y,
+    /// pitch from x, yaw from heading. [`crate::shared::Gains`] has what stands where.
+    pub fn shown(&self) -> [f32; GAINS] {
+        match self {
+            Self::Equilibrium(gain) => {
+                let [t, p, q, r] = *gain.gain().rows();
+                let [_, _, tz, _, _, _, _, _, tv] = t;
+                let [_, py, _, pq, _, _, _, pv, _] = p;
+                let [qx, _, _, _, qq, _, qv, _, _] = q;
+                let [_, _, _, _, _, rq, _, _, _] = r;
+                [tz, tv, 0.0, 0.0, py, pv, pq, 0.0, 0.0, 0.0, qx, qv, qq, 0.0, 0.0, 0.0, rq, 0.0, 0.0]
+            }
+            Self::FlatOutput(gain) => {
+                let [[x, _, _, vx, ..], [_, y, _, _, vy, ..], [_, _, z, _, _, vz, ..], jx, jy, _, yaw] =
+                    *gain.gain().rows();
+                let ([_, _, _, _, _, _, ax, ..], [_, _, _, _, _, _, _, ay, ..]) = (jx, jy);
+                let [.., q3] = yaw;
+                [z, vz, 0.0, 0.0, y, vy, ay, 0.0, 0.0, 0.0, x, vx, ax, 0.0, 0.0, 0.0, q3, 0.0, 0.0]
+            }
+            Self::ActuatorAware(gain, _) => {
+                let [m1, m2, m3, _] = *gain.gain().rows();
+                let [_, _, _, _, _, _, _, _, _, _, _, _, same, side, opposite, end, _, _, _] = m1;
+                let [_, _, _, _, _, _, _, _, yaw, _, _, yaw_rate, ..] = m2;
+                let [x, y, z, vx, vy, vz, roll, pitch, _, p, q, _, _, _, _, _, ix, iy, iz] = m3;
+                let [thrust, of_roll, of_pitch, of_yaw] = [
+                    same + side + opposite + end,
+                    same + side - opposite - end,
+                    same - side - opposite + end,
+                    same - side + opposite - end,
+                ];
+                [z, vz, thrust, iz, y, vy, roll, p, of_roll, iy, x, vx, pitch, q, of_pitch, ix, yaw, yaw_rate, of_yaw]
+            }
+        }
+    }
+}
+
+/// A table as it is flown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Table {
+    /// Which.
+    pub id: TableId,
+    /// Its gain.
+    pub gains: Gains,
+    /// What the paper's laws may command.
+    pub limits: Limits,
+    /// The loop stays stable with each of its channels weakened or strengthened by this factor, all at once.
+    pub margin: f32,
+}
+
+/// Factors on the feedback.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// Of thrust, roll and pitch.
+    pub position: f32,
+    /// Of yaw.
+    pub yaw: f32,
+}
+
+/// Why a table is not flown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u16)]
+pub enum Refusal {
+    /// There is no such table.
+    Unknown = 1,
+    /// Nothing has been sent yet, or what was sent was refused.
+    NothingUploaded = 2,
+    /// Its certificate ends at a shorter motor lag than this craft's.
+    MotorLag = 3,
+    /// What was sent is no sound table with a certificate.
+    Table = 4,
+    /// It is for another vehicle or control rate.
+    Vehicle = 5,
+}
+
+impl Table {
+    /// A table in the image, or the uploaded one, for a craft whose motors lag by `motor_lag_s`.
+    ///
+    /// # Errors
+    /// [`Refusal`].
+    pub fn choose(
+        number: u8,
+        craft: &Craft,
+        uploaded: Option<&AcceptedTable>,
+        motor_lag_s: f32,
+    ) -> Result<Self, Refusal> {
+        let id = TableId::numbered(number).ok_or(Refusal::Unknown)?;
+        let limits = limits(&craft.airframe);
+        let (gains, margin, lag_max_s) = match id {
+            TableId::ActuatorAware => return Self::actuator_aware(craft),
+            TableId::LyapE => (Gains::Equilibrium(paper::LYAP_E), builtin::LYAP_E.0, builtin::LYAP_E.1),
+            TableId::LqrE => (Gains::Equilibrium(paper::LQR_E), builtin::LQR_E.0, builtin::LQR_E.1),
+            TableId::LyapF => (Gains::FlatOutput(paper::LYAP_F), builtin::LYAP_F.0, builtin::LYAP_F.1),
+            TableId::LqrF => (Gains::FlatOutput(paper::LQR_F), builtin::LQR_F.0, builtin::LQR_F.1),
+            TableId::Uploaded => return Self::uploaded(uploaded.ok_or(Refusal::NothingUploaded)?, motor_lag_s),
+        };
+        allowed_behind(lag_max_s, motor_lag_s)?;
+        Ok(Self { id, gains, limits, margin })
+    }
+
+    /// The craft's own.
+    ///
+    /// # Errors
+    /// [`Refusal::Unknown`] where there is none.
+    pub fn actuator_aware(craft: &Craft) -> Result<Self, Refusal> {
+        let (gain, lag_s, margin) = builtin::ACTUATOR_AWARE.get(craft.index).ok_or(Refusal::Unknown)?;
+        let lag = MotorLag::new(*lag_s, RATE).map_err(|_| Refusal::MotorLag)?;
+        let limits = limits(&craft.airframe);
+        Ok(Self { id: TableId::ActuatorAware, gains: Gains::ActuatorAware(*gain, lag), limits, margin: *margin })
+    }
+
+    fn uploaded(table: &AcceptedTable, motor_lag_s: f32) -> Result<Self, Refusal> {
+        let certificate = &table.head().certificate;
+        let gains = match table.table().rows() {
+            Rows::Equilibrium(rows) => EquilibriumGain::new(rows).map(Gains::Equilibrium),
+            Rows::FlatOutput(rows) => FlatOutputGain::new(rows).map(Gains::FlatOutput),
+        }
+        .map_err(|_| Refusal::Table)?;
+        allowed_behind(certificate.motor_lag_max_s, motor_lag_s)?;
+        let margin = certificate.all_channels.gain_factor;
+        Ok(Self { id: TableId::Uploaded, gains, limits: table.limits(), margin })
+    }
+
+    /// The same with its feedback scaled, as far as its margin allows.
+    pub fn scaled(&self, scales: &Scales) -> Self {
+        let (least, most) = (1.0 / self.margin, self.margin);
+        let within = |scale: f32| {
+            if scale >= most {
+                most
+            } else if scale >= least {
+                scale
+            } else {
+                least
+            }
+        };
+        let scales = Scales { position: within(scales.position), yaw: within(scales.yaw) };
+        let gains = match &self.gains {
+            _ if scales == Scales::ONE => self.gains,
+            Gains::Equilibrium(gain) => scale_equilibrium(gain, &scales),
+            Gains::FlatOutput(gain) => scale_flat_output(gain, &scales),
+            Gains::ActuatorAware(gain, lag) => scale_actuator_aware(gain, *lag, &scales),
+        };
+        Self { gains, ..*self }
+    }
+}
+
+impl Scales {
+    /// The table as it is.
+    pub const ONE: Self = Self { position: 1.0, yaw: 1.0 };
+}
+
+/// What the motors of a craft can do in the paper's terms.
+pub fn limits(airframe: &Airframe) -> Limits {
+    let figures = airframe.figures();
+    let per_mass = 4.0 / figures.mass_kg;
+    let rates = quatrack::nalgebra::Vector3::new(BODY_RATE_MAX_RAD_S, BODY_RATE_MAX_RAD_S, YAW_RATE_MAX_RAD_S);
+    Limits::new(figures.force_min_n * per_mass, figures.force_max_n * per_mass, rates).unwrap_or(Limits::NONE)
+}
+
+/// Largest body rates of the paper's tables in the image, half of what the gyroscope measures; rad/s.
+const BODY_RATE_MAX_RAD_S: f32 = 20.0;
+const YAW_RATE_MAX_RAD_S: f32 = 10.0;
+
+/// Behind the body-rate loop, which closes at half of what the motors' lag would allow, a body rate lags twice as long as
+/// the motors do.
+fn allowed_behind(lag_max_s: f32, motor_lag_s: f32) -> Result<(), Refusal> {
+    if 2.0 * motor_lag_s <= lag_max_s { Ok(()) } else { Err(Refusal::MotorLag) }
+}
+
+fn scale_equilibrium(gain: &EquilibriumGain, scales: &Scales) -> Gains {
+    let [t, p, q, r] = *gain.gain().rows();
+    let (s, y) = (scales.position, scales.yaw);
+    let rows = [t.map(|k| k * s), p.map(|k| k * s), q.map(|k| k * s), r.map(|k| k * y)];
+    Gains::Equilibrium(EquilibriumGain::new(rows).unwrap_or(*gain))
+}
+
+fn scale_flat_output(gain: &FlatOutputGain, scales: &Scales) -> Gains {
+    let [a, b, c, d, e, f, r] = *gain.gain().rows();
+    let s = |row: [f32; 10]| row.map(|k| k * scales.position);
+    let rows = [s(a), s(b), s(c), s(d), s(e), s(f), r.map(|k| k * scales.yaw)];
+    Gains::FlatOutput(FlatOutputGain::new(rows).unwrap_or(*gain))
+}
+
+/// In the parts of the forces that move the craft and turn it: column by column they are taken apart and put together
+/// again. The block of the motors is symmetric, and stays so to the bit: its sixteen entries are four numbers.
+fn scale_actuator_aware(gain: &ActuatorAwareGain, lag: MotorLag, scales: &Scales) -> Gains {
+    let (s, y) = (scales.position, scales.yaw);
+    let mut rows = *gain.gain().rows();
+    let scaled_column = |[k1, k2, k3, k4]: [f32; 4]| {
+        // The yaw part of a column has the signs - + - +.
+        let yaw = 0.25 * ((k2 - k1) + (k4 - k3));
+        let change = (y - s) * yaw;
+        [k1 * s - change, k2 * s + change, k3 * s - change, k4 * s + change]
+    };
+    {
+        let [m1, m2, m3, m4] = &mut rows;
+        for (((k1, k2), k3), k4) in m1.iter_mut().zip(m2).zip(m3).zip(m4) {
+            [*k1, *k2, *k3, *k4] = scaled_column([*k1, *k2, *k3, *k4]);
+        }
+    }
+    if gain.is_decoupled() {
+        let [.., same, side, opposite, end, _, _, _] = rows[0];
+        let lying = [
+            [same, side, opposite, end],
+            [side, same, end, opposite],
+            [opposite, end, same, side],
+            [end, opposite, side, same],
+        ];
+        for (row, block) in rows.iter_mut().zip(lying) {
+            let [_, _, _, _, _, _, _, _, _, _, _, _, a, b, c, d, _, _, _] = row;
+            [*a, *b, *c, *d] = block;
+        }
+    }
+    Gains::ActuatorAware(ActuatorAwareGain::new(rows).unwrap_or(*gain), lag)
+}
