@@ -6,13 +6,15 @@
 //! ```text
 //! pil                             the image on its processor, emulated or real: flown, compared, counted
 //! reproduction, figures           Table I and Figures 2 to 5
-//!   flight                        plant, integrators, laws in f64, the f32 core in the loop, metrics
+//!   flight                        plants under laws in f64 and under the f32 core, metrics
 //!     plan                        waypoints and bounds -> B-spline, by second-order cone programming
 //!       trajectory                B-splines, polynomial pieces, their files
 //!   certify                       what a gain as flown promises: poles, margins, delay and lag
 //!     design                      Section IV: Lyapunov and Riccati equations, the four gains, gains for a control rate
 //!     analysis                    Section III: poles, Jordan blocks, controllability
 //!       model                     Section II: the model (1), its linearisations
+//!   plant                         a rigid body with motors that lag and saturate, and what else pushes it
+//!     vehicle, integrator         mass, inertia, motors and limits of a craft, from TOML; one-step methods
 //! ```
 //!
 //! Conventions: world frame z up, quaternion scalar first, Hamilton product, body to world; thrust is divided by mass
@@ -23,8 +25,11 @@ pub mod certify;
 pub mod design;
 pub mod figures;
 pub mod flight;
+pub mod integrator;
 pub mod model;
 pub mod pil;
 pub mod plan;
+pub mod plant;
 pub mod reproduction;
 pub mod trajectory;
+pub mod vehicle;

@@ -9,7 +9,7 @@ use super::decrease::{self, Decrease};
 use super::limits::{Disturbance, StabilityLimit, limits};
 use super::linear_loop::LinearLoop;
 use super::margins::{self, LoopMargins};
-use super::plant::{Controller, LagModel, Plant, Timing};
+use super::plant::{Controller, LagModel, Plant, Predictor, Timing};
 use super::sampled_loop::SampledLoop;
 use crate::analysis::eigenvalues;
 
@@ -109,6 +109,11 @@ pub fn certify(
     let flown = Controller {
         gain: single_precision(&controller.gain)?,
         past_command_gains: controller.past_command_gains.iter().map(single_precision).collect::<Result<_, _>>()?,
+        predictor: controller
+            .predictor
+            .as_ref()
+            .map(|held| Ok::<_, CertifyError>(Predictor { gain: single_precision(&held.gain)?, ..*held }))
+            .transpose()?,
     };
     let whole = LinearLoop::new(plant, &flown);
     let parts = whole.independent();
@@ -127,7 +132,8 @@ pub fn certify(
         decrease: decrease::sampled(&closed)?,
         margins: margins::sampled(&parts, timing, names)?.ok_or(unstable)?,
     };
-    let has_continuous_form = flown.past_command_gains.is_empty() && timing.delay_samples == 0;
+    let has_continuous_form =
+        flown.past_command_gains.is_empty() && flown.predictor.is_none() && timing.delay_samples == 0;
     let search = |disturbance| limits(&parts, timing, names, disturbance);
     Ok(Certificate {
         rate_hz,
@@ -158,7 +164,7 @@ fn continuous(whole: &LinearLoop, parts: &[LinearLoop], names: &[String]) -> Res
 }
 
 /// Every entry the nearest f32.
-fn single_precision(gain: &DMatrix<f64>) -> Result<DMatrix<f64>, CertifyError> {
+pub(super) fn single_precision(gain: &DMatrix<f64>) -> Result<DMatrix<f64>, CertifyError> {
     for column in 0..gain.ncols() {
         for row in 0..gain.nrows() {
             let value = gain[(row, column)];
@@ -172,7 +178,8 @@ fn single_precision(gain: &DMatrix<f64>) -> Result<DMatrix<f64>, CertifyError> {
 
 fn rounding(designed: &Controller, flown: &Controller) -> Rounding {
     let matrices = |controller: &Controller| -> Vec<DMatrix<f64>> {
-        std::iter::once(&controller.gain).chain(&controller.past_command_gains).cloned().collect()
+        let predictor = controller.predictor.iter().map(|held| &held.gain);
+        std::iter::once(&controller.gain).chain(&controller.past_command_gains).chain(predictor).cloned().collect()
     };
     let mut found = Rounding { largest_absolute: 0.0, largest_relative: 0.0 };
     for (designed, flown) in matrices(designed).iter().zip(&matrices(flown)) {

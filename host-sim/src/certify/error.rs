@@ -53,4 +53,7 @@ pub enum CertifyError {
         /// The given delay.
         delay_samples: usize,
     },
+    /// A region without a point.
+    #[error("the region is empty; give at least one lag, mass, inertia and delay")]
+    EmptyRegion,
 }

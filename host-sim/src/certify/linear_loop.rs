@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::plant::{Controller, LagModel, Plant};
+use super::plant::{Controller, LagModel, Plant, Predictor};
 
 /// A plant and the feedback around it.
 #[derive(Debug, Clone)]
@@ -19,6 +19,8 @@ pub(super) struct LinearLoop {
     pub(super) integral_gain: DMatrix<f64>,
     /// m x m each.
     pub(super) past_command_gains: Vec<DMatrix<f64>>,
+    /// m x m.
+    pub(super) predictor: Option<Predictor>,
     pub(super) body_rates: Vec<bool>,
     /// Which channels of the whole plant these are.
     pub(super) channels: Vec<usize>,
@@ -34,6 +36,7 @@ impl LinearLoop {
             state_gain: controller.gain.columns(0, n).into_owned(),
             integral_gain: controller.gain.columns(n, plant.integrated.len()).into_owned(),
             past_command_gains: controller.past_command_gains.clone(),
+            predictor: controller.predictor.clone(),
             body_rates: plant.body_rates.clone(),
             channels: (0..plant.b.ncols()).collect(),
         }
@@ -70,7 +73,7 @@ impl LinearLoop {
                     join(n + channel, *state);
                 }
             }
-            for past in &self.past_command_gains {
+            for past in self.past_command_gains.iter().chain(self.predictor.iter().map(|held| &held.gain)) {
                 (0..m).filter(|j| past[(channel, *j)] != 0.0).for_each(|j| join(n + channel, n + j));
             }
         }
@@ -100,6 +103,10 @@ impl LinearLoop {
             state_gain: pick(&self.state_gain, channels, states),
             integral_gain: pick(&self.integral_gain, channels, &sums),
             past_command_gains: self.past_command_gains.iter().map(|past| pick(past, channels, channels)).collect(),
+            predictor: self
+                .predictor
+                .as_ref()
+                .map(|held| Predictor { gain: pick(&held.gain, channels, channels), ..*held }),
             body_rates: channels.iter().map(|j| self.body_rates[*j]).collect(),
             channels: channels.iter().map(|j| self.channels[*j]).collect(),
         }

@@ -8,7 +8,8 @@
 //! - the largest delay and the largest actuator lag up to which the sampled loop stays stable.
 //!
 //! A loop that falls apart into independent chains, as those of hover do, is taken apart first: its figures are then
-//! exact for all channels at once, too. [`require`] holds a certificate against the least that a design asks for.
+//! exact for all channels at once, too. [`certify_region`] holds an actuator-aware gain against a region of lags, masses,
+//! inertias and delays. [`require`] holds a certificate against the least that a design asks for.
 //!
 //! Reference: Seiler, Packard and Gahinet, An Introduction to Disk Margins, IEEE Control Systems Magazine 2020.
 
@@ -20,6 +21,7 @@ mod linear_loop;
 mod margins;
 mod minimum;
 mod plant;
+mod region;
 mod sampled_loop;
 mod structured;
 mod sweep;
@@ -30,5 +32,6 @@ pub use error::CertifyError;
 pub use limits::StabilityLimit;
 pub use margins::{AllChannels, ChannelMargins, DiskMargin, LoopMargins};
 pub use minimum::{MarginTooSmall, Minimum, require};
-pub use plant::{Controller, LagModel, Plant, Timing};
+pub use plant::{Controller, LagModel, Plant, Predictor, Timing};
+pub use region::{Region, RegionCertificate, Variation, certify_region};
 pub use structured::{StructuredBounds, structured_bounds};

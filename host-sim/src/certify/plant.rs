@@ -4,9 +4,11 @@ use nalgebra::DMatrix;
 
 use super::CertifyError;
 use crate::analysis::{MatrixError, require_finite, require_square};
+use crate::design::actuator_aware::{FORCES, hover_pair};
 use crate::design::sampled::{SampledDesign, equilibrium_pair};
 use crate::model::INPUT_NAMES;
 use crate::model::linear::flat_chain;
+use crate::vehicle::Vehicle;
 
 /// A linear plant `x' = A x + B u`, and which of its states the controller sums up.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +29,17 @@ pub struct Controller {
     pub gain: DMatrix<f64>,
     /// `K_1 ... K_d`, m x m; empty for a feedback without memory.
     pub past_command_gains: Vec<DMatrix<f64>>,
+    /// Feedback of actuators that are predicted instead of measured.
+    pub predictor: Option<Predictor>,
+}
+
+/// Actuators that the controller predicts from its own commands, `y+ = d y + (1 - d) u`, and feeds back: `-K y` more.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Predictor {
+    /// K, m x m.
+    pub gain: DMatrix<f64>,
+    /// d, what is left of a deviation after a period.
+    pub decay: f64,
 }
 
 /// When the controller runs and when its commands act.
@@ -62,13 +75,23 @@ impl Timing {
 impl Controller {
     /// A feedback without memory.
     pub fn memoryless(gain: DMatrix<f64>) -> Self {
-        Self { gain, past_command_gains: Vec::new() }
+        Self { gain, past_command_gains: Vec::new(), predictor: None }
+    }
+
+    /// An actuator-aware gain in parts, 4 x 19, which feeds back the forces that a lag of `lag_s` makes of its commands.
+    pub fn actuator_aware(gain_in_parts: &DMatrix<f64>, lag_s: f64, period_s: f64) -> Self {
+        let mut gain = gain_in_parts.clone();
+        let of_forces = gain.columns(FORCES, 4).into_owned();
+        // The plant's own forces are not measured.
+        gain.columns_mut(FORCES, 4).fill(0.0);
+        let predictor = Predictor { gain: of_forces, decay: (-period_s / lag_s).exp() };
+        Self { gain, past_command_gains: Vec::new(), predictor: Some(predictor) }
     }
 }
 
 impl From<&SampledDesign> for Controller {
     fn from(design: &SampledDesign) -> Self {
-        Self { gain: design.gain.clone(), past_command_gains: design.past_command_gains.clone() }
+        Self { gain: design.gain.clone(), past_command_gains: design.past_command_gains.clone(), predictor: None }
     }
 }
 
@@ -115,6 +138,19 @@ impl Plant {
         }
     }
 
+    /// Hover of a vehicle down to its motors, forces in parts: `[r v theta omega e]`, inputs thrust, roll, pitch and yaw part
+    /// of the commanded forces; under a controller that sums up the position error, gains 4 x 19.
+    pub fn hover_with_motors(vehicle: &Vehicle, lag_s: f64, mass_factor: f64, inertia_factor: f64) -> Self {
+        let (a, b) = hover_pair(vehicle, lag_s, mass_factor, inertia_factor);
+        Self {
+            a,
+            b,
+            input_names: ["thrust_n", "roll_n", "pitch_n", "yaw_n"].map(String::from).to_vec(),
+            body_rates: vec![false; 4],
+            integrated: vec![0, 1, 2],
+        }
+    }
+
     /// Names of the inputs, in order, with their units where they have any.
     pub fn input_names(&self) -> &[String] {
         &self.input_names
@@ -128,6 +164,10 @@ impl Plant {
         for past in &controller.past_command_gains {
             require_finite("K of past commands", past)?;
             require_shape("K of past commands", past, m, m, "the plant")?;
+        }
+        if let Some(Predictor { gain, .. }) = &controller.predictor {
+            require_finite("K of predicted actuators", gain)?;
+            require_shape("K of predicted actuators", gain, m, m, "the plant")?;
         }
         Ok(())
     }

@@ -8,7 +8,7 @@ use num_complex::Complex64;
 
 use super::CertifyError;
 use super::linear_loop::LinearLoop;
-use super::plant::Timing;
+use super::plant::{Predictor, Timing};
 use crate::design::discretise::zero_order_hold_late;
 
 /// Halvings of a step of the angle before a zero of the determinant counts as lying on the circle.
@@ -26,7 +26,7 @@ struct Path {
     whole_samples: usize,
 }
 
-/// States: the plant's, the sums, the controller's memory of its past commands.
+/// States: the plant's, the sums, the controller's memory of its past commands, the actuators that it predicts.
 #[derive(Debug, Clone)]
 pub(super) struct SampledLoop {
     /// N x N, without any command.
@@ -44,7 +44,8 @@ impl SampledLoop {
     pub(super) fn new(given: &LinearLoop, timing: &Timing, extra_delays_s: &[f64]) -> Result<Self, CertifyError> {
         let (n, m, p) = (given.a.nrows(), given.b.ncols(), given.integrated.len());
         let depth = given.past_command_gains.len();
-        let size = n + p + m * depth;
+        let predicted = given.predictor.as_ref().map_or(0, |_| m);
+        let size = n + p + m * depth + predicted;
         let mut motion = DMatrix::zeros(size, size);
         let mut paths = Vec::with_capacity(m);
         // A part without a channel still moves.
@@ -76,6 +77,14 @@ impl SampledLoop {
             for channel in 0..m {
                 let row = first + age * m + channel;
                 if age == 0 { memory[(row, channel)] = 1.0 } else { motion[(row, row - m)] = 1.0 }
+            }
+        }
+        if let Some(Predictor { gain: of_predicted, decay }) = &given.predictor {
+            let first = size - m;
+            gain.view_mut((0, first), (m, m)).copy_from(of_predicted);
+            for channel in 0..m {
+                motion[(first + channel, first + channel)] = *decay;
+                memory[(first + channel, channel)] = 1.0 - decay;
             }
         }
         Ok(Self { motion, paths, memory, gain })
@@ -216,7 +225,7 @@ mod tests {
             let plant = Plant::new(matrix(n, n, 1.5), matrix(n, m, 1.0)).expect("finite");
             let gain = matrix(m, n, 2.0);
             let past_command_gains = (0..case % 3).map(|_| matrix(m, m, 0.4)).collect();
-            let given = LinearLoop::new(&plant, &Controller { gain, past_command_gains });
+            let given = LinearLoop::new(&plant, &Controller { gain, past_command_gains, predictor: None });
             let timing = Timing { period_s: 0.1, delay_samples: case % 2 };
             let delays: Vec<f64> = (0..m).map(|_| 0.3 * random(&mut state).abs()).collect();
             let held = SampledLoop::new(&given, &timing, &delays).expect("finite");

@@ -8,9 +8,11 @@
 //! - [`stein()`]: `A' X A - X + Q = 0`; [`dlqr`], [`dare`]: the discrete algebraic Riccati equation.
 //! - [`discretise`]: a pair under held inputs, with or without a delay; [`sampled`]: gains for a control rate.
 //! - [`along`]: gains over time along a trajectory.
+//! - [`mod@actuator_aware`]: gains from 19 errors, motors' lag and integral among them, to four motor forces.
 //! - [`synthesis`]: (LYAP-F), (LYAP-E), (LQR-F), (LQR-E) with the paper's numbers; [`integral`]: E with the integral of
 //!   the position error.
 
+pub mod actuator_aware;
 pub mod along;
 pub mod codegen;
 mod dare;

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector3;
 
-use super::integrator::{DormandPrince, Method};
 use super::reference::Reference;
+use crate::integrator::{DormandPrince, Method};
 use crate::model::flat::ReferencePoint;
 use crate::model::{InputVector, StateVector, dynamics, normalised, position};
 

@@ -4,14 +4,14 @@
 //! closed_loop        plant (1) under a law in continuous time, or under held commands at a rate
 //!   core_loop        the f32 core in the loop: the one crossing between f64 and f32
 //!   law, reference   the laws in f64; references sampled as in the paper, or exact
-//!   integrator       Bogacki-Shampine 3, Runge-Kutta 4, Dormand-Prince 5(4)
 //! metrics, log       what a flight came to; its rows as CSV
 //! ```
 
 pub mod closed_loop;
 pub mod core_loop;
-pub mod integrator;
 pub mod law;
 pub mod log;
 pub mod metrics;
 pub mod reference;
+
+pub use crate::integrator;

@@ -1,0 +1,146 @@
+//! An actuator-aware gain on craft other than its own: a vehicle and a region of lag, mass, inertia and delay in; the
+//! spectral radius all over the region's grid out.
+//!
+//! The grid has every value of each quantity with every value of the others: each singly, and all corners. The controller
+//! predicts with the lag of its design throughout. Between the points nothing is promised; the lags stand close.
+
+use nalgebra::DMatrix;
+use serde::Serialize;
+
+use super::CertifyError;
+use super::certificate::single_precision;
+use super::linear_loop::LinearLoop;
+use super::plant::{Controller, Plant, Predictor, Timing};
+use super::sampled_loop::SampledLoop;
+use crate::analysis::eigenvalues;
+use crate::vehicle::Vehicle;
+
+/// How a craft and its link differ from the vehicle that the gain was designed for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Variation {
+    /// Time constant of the motors, s.
+    pub lag_s: f64,
+    /// Mass over that of the vehicle.
+    pub mass_factor: f64,
+    /// Inertia over that of the vehicle.
+    pub inertia_factor: f64,
+    /// How late a command acts, s.
+    pub delay_s: f64,
+}
+
+/// Values of each quantity.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Region {
+    /// Time constants of the motors, s.
+    pub lags_s: Vec<f64>,
+    /// Masses over that of the vehicle.
+    pub mass_factors: Vec<f64>,
+    /// Inertias over that of the vehicle.
+    pub inertia_factors: Vec<f64>,
+    /// How late commands act, s.
+    pub delays_s: Vec<f64>,
+}
+
+/// What was found over a region.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RegionCertificate {
+    /// The region.
+    pub region: Region,
+    /// Points of its grid.
+    pub points: usize,
+    /// Where the spectral radius is largest.
+    pub worst: Variation,
+    /// The largest spectral radius; below 1 every point is stable.
+    pub spectral_radius: f64,
+}
+
+impl Region {
+    /// Lags between two, in even steps of ratio, and nothing else.
+    pub fn of_lags(shortest_s: f64, longest_s: f64) -> Self {
+        const STEPS: i32 = 6;
+        let ratio = longest_s / shortest_s;
+        let lags_s = (0..=STEPS).map(|k| shortest_s * ratio.powf(f64::from(k) / f64::from(STEPS))).collect();
+        Self { lags_s, mass_factors: vec![1.0], inertia_factors: vec![1.0], delays_s: vec![0.0] }
+    }
+
+    /// What a default table is held to: 50 to 126 ms of lag, with the mass off by 20 %, the inertia by 30 % and 10 ms of
+    /// delay.
+    pub fn of_any_crazyflie() -> Self {
+        Self {
+            mass_factors: vec![0.8, 1.0, 1.2],
+            inertia_factors: vec![0.7, 1.0, 1.3],
+            delays_s: vec![0.0, 0.005, 0.01],
+            ..Self::of_lags(0.050, 0.126)
+        }
+    }
+
+    /// What a table for a known lag is held to: half of it to one and a half of it.
+    pub fn around_lag(lag_s: f64) -> Self {
+        Self::of_lags(0.5 * lag_s, 1.5 * lag_s)
+    }
+
+    fn points(&self) -> impl Iterator<Item = Variation> + '_ {
+        self.lags_s.iter().flat_map(move |lag_s| {
+            self.mass_factors.iter().flat_map(move |mass_factor| {
+                self.inertia_factors.iter().flat_map(move |inertia_factor| {
+                    self.delays_s.iter().map(move |delay_s| Variation {
+                        lag_s: *lag_s,
+                        mass_factor: *mass_factor,
+                        inertia_factor: *inertia_factor,
+                        delay_s: *delay_s,
+                    })
+                })
+            })
+        })
+    }
+}
+
+/// Finds the least stable point of a region for an actuator-aware gain in parts (4 x 19), rounded to f32 first, designed
+/// for `design_lag_s`.
+///
+/// # Errors
+/// As [`super::certify`]; an unstable point is no error, it shows in the spectral radius.
+pub fn certify_region(
+    vehicle: &Vehicle,
+    gain_in_parts: &DMatrix<f64>,
+    design_lag_s: f64,
+    period_s: f64,
+    region: &Region,
+) -> Result<RegionCertificate, CertifyError> {
+    let mut controller = Controller::actuator_aware(&single_precision(gain_in_parts)?, design_lag_s, period_s);
+    if let Some(Predictor { decay, .. }) = &mut controller.predictor {
+        *decay = f64::from(*decay as f32);
+    }
+    let mut worst: Option<(Variation, f64)> = None;
+    let mut points = 0;
+    for variation in region.points() {
+        let radius = spectral_radius(vehicle, &controller, period_s, &variation)?;
+        points += 1;
+        // A NaN is as bad as it gets.
+        if worst.is_none_or(|(_, held)| !(radius <= held)) {
+            worst = Some((variation, radius));
+        }
+    }
+    let (worst, spectral_radius) = worst.ok_or(CertifyError::EmptyRegion)?;
+    Ok(RegionCertificate { region: region.clone(), points, worst, spectral_radius })
+}
+
+/// The largest modulus of the poles per sample.
+fn spectral_radius(
+    vehicle: &Vehicle,
+    controller: &Controller,
+    period_s: f64,
+    variation: &Variation,
+) -> Result<f64, CertifyError> {
+    let Variation { lag_s, mass_factor, inertia_factor, delay_s } = *variation;
+    let plant = Plant::hover_with_motors(vehicle, lag_s, mass_factor, inertia_factor);
+    plant.require_fitting(controller)?;
+    let timing = Timing { period_s, delay_samples: 0 };
+    let mut largest = 0.0_f64;
+    for part in LinearLoop::new(&plant, controller).independent() {
+        let delays = vec![delay_s; part.channels.len()];
+        let poles = eigenvalues(&SampledLoop::new(&part, &timing, &delays)?.closed_loop())?;
+        largest = poles.iter().map(|pole| pole.norm()).fold(largest, f64::max);
+    }
+    Ok(largest)
+}
