@@ -1,0 +1,17 @@
+//! The Crazyflie's firmware around our controller, in simulation: courses flown through the controller's C interface on
+//! the rigid plant; tracking errors out.
+//!
+//! ```text
+//! report        rows of flights
+//!   flight      a course, a craft and what is wrong with it -> errors
+//!     firmware  the stabilizer at 1 kHz: commander, gyroscope, controller, power distribution
+//!       course  what the high-level commander evaluates
+//! ```
+
+mod course;
+mod firmware;
+mod flight;
+
+pub use course::{Course, CourseError, Septics, figure_eight};
+pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
+pub use flight::{Case, Flown, fly};
