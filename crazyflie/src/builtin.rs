@@ -2,17 +2,18 @@
 
 use quatrack::law::ActuatorAwareGain;
 
-/// Of a table of the paper: the factor by which all channels may be off at once, and the longest lag of the body rates, s.
+/// Of a table of the paper: the factor by which all channels of the command may be off at once, from its certificate, and
+/// the longest lag of the motors, s, that the body-rate loop of this crate still makes up for at hover.
 pub(crate) type Certified = (f32, f32);
 
 /// (LYAP-E).
-pub(crate) const LYAP_E: Certified = (2.0, 0.1);
+pub(crate) const LYAP_E: Certified = (2.4, 0.0687);
 /// (LQR-E).
-pub(crate) const LQR_E: Certified = (2.0, 0.1);
-/// (LYAP-F).
-pub(crate) const LYAP_F: Certified = (2.0, 0.1);
-/// (LQR-F).
-pub(crate) const LQR_F: Certified = (2.0, 0.1);
+pub(crate) const LQR_E: Certified = (3.506, 0.0218);
+/// (LYAP-F). Its position over the ground answers to no attitude: no lag is certified, this is as far as it has flown.
+pub(crate) const LYAP_F: Certified = (3.714, 0.02);
+/// (LQR-F), likewise.
+pub(crate) const LQR_F: Certified = (14.71, 0.02);
 
 /// Gain, design lag (s) and factor for each of [`crate::craft::KNOWN`].
 pub(crate) static ACTUATOR_AWARE: [(ActuatorAwareGain, f32, f32); 3] =

@@ -66,6 +66,8 @@ pub struct Settings {
     pub body_rates_rad_s: [f32; 2],
     /// Of the paper's laws.
     pub feed_forward: FeedForward,
+    /// Time constant of the motors that the body-rate loop reckons with, s; 0 for the longest that is published.
+    pub motor_lag_s: f32,
 }
 
 /// What the steps have seen.
@@ -118,7 +120,7 @@ impl Controller {
     /// For a craft, with motors off.
     pub fn new(craft: Craft, table: Table, settings: Settings) -> Self {
         Self {
-            craft,
+            craft: craft.with_motor_lag(settings.motor_lag_s),
             table,
             limits: tightened(&table.limits, &settings),
             memory: ActuatorMemory::hovering(&craft.airframe),
@@ -340,6 +342,7 @@ impl Controller {
         if self.settings != *settings {
             self.settings = *settings;
             self.limits = tightened(&self.table.limits, settings);
+            self.craft = self.craft.with_motor_lag(settings.motor_lag_s);
         }
     }
 

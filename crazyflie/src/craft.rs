@@ -43,6 +43,8 @@ pub struct Craft {
     pub vehicle: Vehicle,
     /// Which of [`KNOWN`] it is.
     pub index: usize,
+    /// Time constant of its motors as far as it is known, s.
+    pub motor_lag_s: f32,
 }
 
 /// A craft that the controller knows.
@@ -86,7 +88,18 @@ impl Craft {
         // The mass as the owner has set it: the weight is fed forward.
         let figures = quatrack::AirframeFigures { mass_kg: platform.mass_kg, ..*known.airframe.figures() };
         let airframe = Airframe::new(figures).ok()?;
-        let body_rates = BodyRateLoop::behind_lag(&airframe);
-        Some(Self { airframe, body_rates, vehicle: known.vehicle, index })
+        let (body_rates, motor_lag_s) = (BodyRateLoop::behind_lag(&airframe), figures.motor_lag_s);
+        Some(Self { airframe, body_rates, vehicle: known.vehicle, index, motor_lag_s })
+    }
+
+    /// The same whose owner knows the time constant of the motors; 0 for the longest that is published.
+    pub fn with_motor_lag(&self, motor_lag_s: f32) -> Self {
+        let published = self.airframe.figures().motor_lag_s;
+        let motor_lag_s = if motor_lag_s > 0.0 { motor_lag_s } else { published };
+        let figures = quatrack::AirframeFigures { motor_lag_s, ..*self.airframe.figures() };
+        match Airframe::new(figures) {
+            Ok(airframe) => Self { body_rates: BodyRateLoop::behind_lag(&airframe), motor_lag_s, ..*self },
+            Err(_) => *self,
+        }
     }
 }

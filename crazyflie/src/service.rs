@@ -114,9 +114,7 @@ impl Service {
 #[inline(never)]
 fn change_table(controller: &mut Controller, shared: &Shared, asked: &Asked, uploaded: Option<&AcceptedTable>) {
     let craft = controller.craft();
-    let published_s = craft.airframe.figures().motor_lag_s;
-    let motor_lag_s = if asked.motor_lag_s > 0.0 { asked.motor_lag_s } else { published_s };
-    match Table::choose(asked.table, craft, uploaded, motor_lag_s).map(|table| table.scaled(&asked.scales)) {
+    match Table::choose(asked.table, craft, uploaded).map(|table| table.scaled(&asked.scales)) {
         Ok(table) if table != *controller.table() => {
             controller.change_table(&table);
             show_table(shared, &table);
@@ -155,6 +153,7 @@ fn settings(shared: &Shared) -> Settings {
             within(&parameters.roll_pitch_rate_rad_s, 0.5, 100.0),
             within(&parameters.yaw_rate_rad_s, 0.5, 100.0),
         ],
+        motor_lag_s: within(&parameters.motor_lag_s, 0.0, 1.0),
         feed_forward: if parameters.feed_forward.load(Relaxed) == 0 { FeedForward::Without } else { FeedForward::With },
     }
 }

@@ -130,16 +130,12 @@ pub enum Refusal {
 }
 
 impl Table {
-    /// A table in the image, or the uploaded one, for a craft whose motors lag by `motor_lag_s`.
+    /// A table in the image, or the uploaded one, for a craft.
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn choose(
-        number: u8,
-        craft: &Craft,
-        uploaded: Option<&AcceptedTable>,
-        motor_lag_s: f32,
-    ) -> Result<Self, Refusal> {
+    pub fn choose(number: u8, craft: &Craft, uploaded: Option<&AcceptedTable>) -> Result<Self, Refusal> {
+        let motor_lag_s = craft.motor_lag_s;
         let id = TableId::numbered(number).ok_or(Refusal::Unknown)?;
         let limits = limits(&craft.airframe);
         let (gains, margin, lag_max_s) = match id {
@@ -150,7 +146,7 @@ impl Table {
             TableId::LqrF => (Gains::FlatOutput(paper::LQR_F), builtin::LQR_F.0, builtin::LQR_F.1),
             TableId::Uploaded => return Self::uploaded(uploaded.ok_or(Refusal::NothingUploaded)?, motor_lag_s),
         };
-        allowed_behind(lag_max_s, motor_lag_s)?;
+        let margin = behind_motors(margin, motor_lag_s, lag_max_s)?;
         Ok(Self { id, gains, limits, margin })
     }
 
@@ -172,8 +168,7 @@ impl Table {
             Rows::FlatOutput(rows) => FlatOutputGain::new(rows).map(Gains::FlatOutput),
         }
         .map_err(|_| Refusal::Table)?;
-        allowed_behind(certificate.motor_lag_max_s, motor_lag_s)?;
-        let margin = certificate.all_channels.gain_factor;
+        let margin = behind_motors(certificate.all_channels.gain_factor, motor_lag_s, certificate.motor_lag_max_s)?;
         Ok(Self { id: TableId::Uploaded, gains, limits: table.limits(), margin })
     }
 
@@ -217,42 +212,44 @@ pub fn limits(airframe: &Airframe) -> Limits {
 const BODY_RATE_MAX_RAD_S: f32 = 20.0;
 const YAW_RATE_MAX_RAD_S: f32 = 10.0;
 
-/// Behind the body-rate loop, which closes at half of what the motors' lag would allow, a body rate lags twice as long as
-/// the motors do.
-fn allowed_behind(lag_max_s: f32, motor_lag_s: f32) -> Result<(), Refusal> {
-    if 2.0 * motor_lag_s <= lag_max_s { Ok(()) } else { Err(Refusal::MotorLag) }
+/// What is left of a margin of the commands behind motors that lag, through the body-rate loop: half of what the lag
+/// leaves on its way to the longest that is stable.
+fn behind_motors(margin: f32, motor_lag_s: f32, lag_max_s: f32) -> Result<f32, Refusal> {
+    let left = 1.0 - motor_lag_s / lag_max_s;
+    if left >= 0.0 { Ok(1.0 + 0.5 * left * (margin - 1.0)) } else { Err(Refusal::MotorLag) }
 }
 
+/// Multiplies rows, but for the last, by one factor, and the last by the other.
+#[inline(never)]
+fn scale_rows(entries: &mut [f32], last: usize, scales: &Scales) {
+    let others = entries.len().saturating_sub(last);
+    for (index, entry) in entries.iter_mut().enumerate() {
+        *entry *= if index < others { scales.position } else { scales.yaw };
+    }
+}
+
+#[inline(never)]
 fn scale_equilibrium(gain: &EquilibriumGain, scales: &Scales) -> Gains {
-    let [t, p, q, r] = *gain.gain().rows();
-    let (s, y) = (scales.position, scales.yaw);
-    let rows = [t.map(|k| k * s), p.map(|k| k * s), q.map(|k| k * s), r.map(|k| k * y)];
+    let mut rows = *gain.gain().rows();
+    scale_rows(rows.as_flattened_mut(), 9, scales);
     Gains::Equilibrium(EquilibriumGain::new(rows).unwrap_or(*gain))
 }
 
+#[inline(never)]
 fn scale_flat_output(gain: &FlatOutputGain, scales: &Scales) -> Gains {
-    let [a, b, c, d, e, f, r] = *gain.gain().rows();
-    let s = |row: [f32; 10]| row.map(|k| k * scales.position);
-    let rows = [s(a), s(b), s(c), s(d), s(e), s(f), r.map(|k| k * scales.yaw)];
+    let mut rows = *gain.gain().rows();
+    scale_rows(rows.as_flattened_mut(), 10, scales);
     Gains::FlatOutput(FlatOutputGain::new(rows).unwrap_or(*gain))
 }
 
 /// In the parts of the forces that move the craft and turn it: column by column they are taken apart and put together
 /// again. The block of the motors is symmetric, and stays so to the bit: its sixteen entries are four numbers.
+#[inline(never)]
 fn scale_actuator_aware(gain: &ActuatorAwareGain, lag: MotorLag, scales: &Scales) -> Gains {
-    let (s, y) = (scales.position, scales.yaw);
     let mut rows = *gain.gain().rows();
-    let scaled_column = |[k1, k2, k3, k4]: [f32; 4]| {
-        // The yaw part of a column has the signs - + - +.
-        let yaw = 0.25 * ((k2 - k1) + (k4 - k3));
-        let change = (y - s) * yaw;
-        [k1 * s - change, k2 * s + change, k3 * s - change, k4 * s + change]
-    };
     {
         let [m1, m2, m3, m4] = &mut rows;
-        for (((k1, k2), k3), k4) in m1.iter_mut().zip(m2).zip(m3).zip(m4) {
-            [*k1, *k2, *k3, *k4] = scaled_column([*k1, *k2, *k3, *k4]);
-        }
+        scale_columns([m1, m2, m3, m4], scales);
     }
     if gain.is_decoupled() {
         let [.., same, side, opposite, end, _, _, _] = rows[0];
@@ -268,4 +265,16 @@ fn scale_actuator_aware(gain: &ActuatorAwareGain, lag: MotorLag, scales: &Scales
         }
     }
     Gains::ActuatorAware(ActuatorAwareGain::new(rows).unwrap_or(*gain), lag)
+}
+
+/// On slices, of whose length the compiler knows nothing and therefore unrolls nothing.
+#[inline(never)]
+fn scale_columns([m1, m2, m3, m4]: [&mut [f32]; 4], scales: &Scales) {
+    let (s, y) = (scales.position, scales.yaw);
+    for (((k1, k2), k3), k4) in m1.iter_mut().zip(m2).zip(m3).zip(m4) {
+        // The yaw part of a column has the signs - + - +.
+        let yaw = 0.25 * ((*k2 - *k1) + (*k4 - *k3));
+        let change = (y - s) * yaw;
+        [*k1, *k2, *k3, *k4] = [*k1 * s - change, *k2 * s + change, *k3 * s - change, *k4 * s + change];
+    }
 }

@@ -6,9 +6,9 @@ fn main() {
     let s = Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 };
     let n = Sensors { gyro_noise_rad_s: 0.02, estimate_steps: 1 };
     let mild = Course::mild().unwrap(); let w = Course::aggressive().unwrap();
-    for (table, lags) in [(0u8, vec![0.02, 0.063, 0.126]), (1, vec![0.0, 0.02, 0.063]), (2, vec![0.0,0.02, 0.04, 0.063]), (3, vec![0.0,0.02]), (4, vec![0.0,0.02, 0.063])] {
+    for (table, lags) in [(0u8, vec![0.126]), (1, vec![0.005, 0.01, 0.02, 0.04]), (2, vec![0.005,0.01, 0.02]), (3, vec![0.005,0.02]), (4, vec![0.005,0.01,0.02])] {
         for lag in lags {
-            let tune = Tune { table, motor_lag_s: if lag < 0.01 {0.01} else {lag} };
+            let tune = Tune { table, motor_lag_s: lag };
             let base = Case { lag_s: lag.max(1e-3), mass_factor: 1.0, sensors: s, setpoints: Setpoints::HighLevel };
             for (name, course, case) in [
                 ("hover", Course::Hover(Vector3::z()), base),
