@@ -34,7 +34,7 @@ pub struct AirframeFigures {
     pub force_min_n: f32,
     /// Most force of a motor, N.
     pub force_max_n: f32,
-    /// Time constant of the first-order lag from commanded to actual force, s.
+    /// Time constant of the first-order lag from commanded to actual force, s: that which control reckons with.
     pub motor_lag_s: f32,
 }
 
@@ -183,6 +183,14 @@ impl Airframe {
             gyroscopic: [(iz - iy) * lever, (ix - iz) * lever, (iy - ix) * yaw],
         };
         Ok(Self { figures, mixing })
+    }
+
+    /// The same craft with motors that answer faster or slower: for a gain that was designed for another lag.
+    ///
+    /// # Errors
+    /// [`AirframeError::OutOfRange`].
+    pub const fn with_motor_lag(&self, motor_lag_s: f32) -> Result<Self, AirframeError> {
+        Self::new(AirframeFigures { motor_lag_s, ..self.figures })
     }
 
     const fn constant(figures: AirframeFigures) -> Self {

@@ -1,8 +1,6 @@
-//! One control step to the motors: an estimated state, the gyroscope and a reference in, four motor forces within their
+//! One control step to the motors: an estimated state with body rates and a reference in, four motor forces within their
 //! range out, or the reason for none. Any law: the paper's go through the body-rate loop and the mixer, the
 //! actuator-aware one straight to the forces.
-
-use nalgebra::Vector3;
 
 use crate::airframe::Airframe;
 use crate::body_rate::BodyRateLoop;
@@ -11,7 +9,7 @@ use crate::law::{ActuatorAware, ActuatorMemory};
 use crate::mixer::MotorLimited;
 use crate::motor_lag::{MotorForces, MotorLag};
 use crate::motor_reference::MotorReference;
-use crate::state::State;
+use crate::rigid_state::RigidState;
 use crate::tracker::Tracker;
 
 /// A law on a craft, down to its motors. To be called at the rate of its lag.
@@ -20,24 +18,40 @@ use crate::tracker::Tracker;
 /// take over between two steps.
 #[derive(Clone, Copy, Debug)]
 pub struct MotorTracker<'a> {
-    airframe: Airframe,
-    law: MotorLaw<'a>,
+    flown: Flown<'a>,
 }
 
-/// How the forces are found.
+/// Any law, to be chosen at run time.
 #[derive(Clone, Copy, Debug)]
 pub enum MotorLaw<'a> {
     /// Thrust and body rates from a tracker, through the body-rate loop and the mixer.
-    BodyRates {
-        /// The law and its limits.
-        tracker: Tracker<'a>,
-        /// From body rates to torque.
-        body_rates: BodyRateLoop,
-        /// By which the motor forces are predicted for who takes over.
-        lag: MotorLag,
-    },
+    BodyRates(ByBodyRates<'a>),
     /// Straight to the forces.
     ActuatorAware(ActuatorAware<'a>),
+}
+
+/// Each law beside what it needs of the craft: a step then takes one pointer to both.
+#[derive(Clone, Copy, Debug)]
+enum Flown<'a> {
+    BodyRates(Mixed<'a>),
+    ActuatorAware(ActuatorAware<'a>),
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Mixed<'a> {
+    law: ByBodyRates<'a>,
+    airframe: Airframe,
+}
+
+/// A law of thrust and body rates with what carries it to the motors.
+#[derive(Clone, Copy, Debug)]
+pub struct ByBodyRates<'a> {
+    /// The law and its limits.
+    pub tracker: Tracker<'a>,
+    /// From body rates to torque.
+    pub body_rates: BodyRateLoop,
+    /// The craft's, by which the motor forces are predicted for who takes over.
+    pub lag: MotorLag,
 }
 
 /// What one step gives.
@@ -54,12 +68,11 @@ pub struct MotorStep {
 impl<'a> MotorTracker<'a> {
     /// A law on a craft.
     pub const fn new(law: MotorLaw<'a>, airframe: &Airframe) -> Self {
-        Self { airframe: *airframe, law }
-    }
-
-    /// The craft.
-    pub const fn airframe(&self) -> &Airframe {
-        &self.airframe
+        let flown = match law {
+            MotorLaw::BodyRates(law) => Flown::BodyRates(Mixed { law, airframe: *airframe }),
+            MotorLaw::ActuatorAware(law) => Flown::ActuatorAware(law),
+        };
+        Self { flown }
     }
 
     /// The commanded forces for this step. The measured quaternion may have either sign.
@@ -70,46 +83,55 @@ impl<'a> MotorTracker<'a> {
     pub fn step(
         &self,
         memory: &mut ActuatorMemory,
-        state: &State,
-        body_rates_rad_s: &Vector3<f32>,
+        state: &RigidState,
         reference: &MotorReference,
     ) -> Result<MotorStep, StepError> {
-        match &self.law {
-            MotorLaw::ActuatorAware(law) => straight(law, memory, state, body_rates_rad_s, reference),
-            MotorLaw::BodyRates { tracker, body_rates, lag } => {
-                let step = tracker.step(state, &reference.reference)?;
-                let wrench = body_rates.wrench(&step.command, body_rates_rad_s);
-                let Some((forces_n, limited)) = self.airframe.mix(&wrench) else {
-                    return refuse(state, body_rates_rad_s);
-                };
-                memory.forces_n = lag.next(&memory.forces_n, &forces_n);
-                Ok(MotorStep { forces_n, limited: limited.with_command(step.limited) })
-            }
+        match &self.flown {
+            Flown::ActuatorAware(law) => straight(law, memory, state, reference),
+            Flown::BodyRates(mixed) => mixed.step(memory, state, reference),
         }
     }
 }
 
-/// Out of line, so that no law pays for the registers of another.
+// Both out of line, so that no law pays for the registers of another.
+
+impl Mixed<'_> {
+    #[inline(never)]
+    fn step(
+        &self,
+        memory: &mut ActuatorMemory,
+        state: &RigidState,
+        reference: &MotorReference,
+    ) -> Result<MotorStep, StepError> {
+        let ByBodyRates { tracker, body_rates, lag } = &self.law;
+        let step = tracker.step(&state.state, &reference.reference)?;
+        let wrench = body_rates.wrench(&step.command, &state.body_rates_rad_s);
+        let Some((forces_n, limited)) = self.airframe.mix(&wrench) else { return refuse(state) };
+        memory.forces_n = lag.next(&memory.forces_n, &forces_n);
+        Ok(MotorStep { forces_n, limited: limited.with_command(step.limited) })
+    }
+}
+
 #[inline(never)]
 fn straight(
     law: &ActuatorAware<'_>,
     memory: &mut ActuatorMemory,
-    state: &State,
-    body_rates_rad_s: &Vector3<f32>,
+    state: &RigidState,
     reference: &MotorReference,
 ) -> Result<MotorStep, StepError> {
-    let Some(measured) = state.measured() else { return refuse(state, body_rates_rad_s) };
-    match law.step(memory, &measured, body_rates_rad_s, reference) {
-        Some((forces_n, limited)) => Ok(MotorStep { forces_n, limited }),
-        None => refuse(state, body_rates_rad_s),
+    if state.state.measured().is_some()
+        && let Some((forces_n, limited)) = law.step(memory, state, reference)
+    {
+        return Ok(MotorStep { forces_n, limited });
     }
+    refuse(state)
 }
 
 /// Why there are no forces. The reference has been checked when it was made.
 #[cold]
 #[inline(never)]
-fn refuse(state: &State, body_rates_rad_s: &Vector3<f32>) -> Result<MotorStep, StepError> {
+fn refuse(state: &RigidState) -> Result<MotorStep, StepError> {
     let of_rates = |value: &f32| StateError::NonFinite { field: Field::BodyRates, value: *value };
-    let rates = || body_rates_rad_s.iter().find(|rate| !rate.is_finite()).map(of_rates);
-    Err(state.fault().or_else(rates).map_or(StepError::Singular, StepError::State))
+    let rates = || state.body_rates_rad_s.iter().find(|rate| !rate.is_finite()).map(of_rates);
+    Err(state.state.fault().or_else(rates).map_or(StepError::Singular, StepError::State))
 }

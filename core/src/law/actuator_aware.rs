@@ -11,24 +11,32 @@ use nalgebra::Vector3;
 
 use super::difference;
 use crate::airframe::Airframe;
+use crate::clock::Rate;
 use crate::gain::{Gain, GainError};
-use crate::mixer::{MotorLimited, Parts, saturate_each};
-use crate::motor_lag::{MotorForces, MotorLag};
+use crate::mixer::{ForceRange, MotorLimited, Parts};
+use crate::motor_lag::{MotorForces, MotorLag, MotorLagError};
 use crate::motor_reference::MotorReference;
-use crate::state::Measured;
+use crate::rigid_state::RigidState;
 
 /// Outputs: forces of M1 to M4, N. Errors: position (3, m), velocity (3, m/s), rotation vector (3, rad), body rates (3, rad/s),
 /// motor forces (4, N), integral of position (3, m s); the first two groups and the last in the heading frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActuatorAwareGain {
-    /// `-K`: the law adds.
-    feedback: Gain<4, 19>,
-    chains: Option<Chains>,
+    gain: Gain<4, 19>,
+    feedback: Feedback,
+}
+
+/// `-K` as a step takes it. Entries for the rotation are doubled: a step has half of it, the vector part of a quaternion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "there is no heap to put the larger one on")]
+enum Feedback {
+    Decoupled(Chains),
+    /// By columns, so that every error is done with once it is used.
+    Dense([[f32; 4]; 19]),
 }
 
 /// The gain of a design in which the hover model of an X with equal arms falls apart: thrust, roll, pitch and yaw parts of the
-/// four forces answer each to their own errors. A quarter of the products of the whole matrix. Entries are those of `-K` in
-/// parts of forces.
+/// four forces answer each to their own errors. A quarter of the products of the whole matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Chains {
     /// From z, vz, thrust part of the forces, integral of z.
@@ -47,8 +55,7 @@ pub struct ActuatorAware<'a> {
     /// The gain.
     pub gain: &'a ActuatorAwareGain,
     lag: MotorLag,
-    force_min_n: f32,
-    force_max_n: f32,
+    range: ForceRange,
 }
 
 /// What the law remembers from step to step.
@@ -103,8 +110,12 @@ impl ActuatorAwareGain {
     pub const fn new(rows: [[f32; 19]; 4]) -> Result<Self, GainError> {
         match Gain::new(rows) {
             Ok(gain) => {
-                let feedback = gain.negated();
-                Ok(Self { chains: Chains::of(&feedback), feedback })
+                let columns = columns_of_feedback(&gain);
+                let feedback = match Chains::of(&columns) {
+                    Some(chains) => Feedback::Decoupled(chains),
+                    None => Feedback::Dense(columns),
+                };
+                Ok(Self { gain, feedback })
             }
             Err(error) => Err(error),
         }
@@ -122,23 +133,25 @@ impl ActuatorAwareGain {
     }
 
     /// The matrix.
-    pub const fn gain(&self) -> Gain<4, 19> {
-        self.feedback.negated()
+    pub const fn gain(&self) -> &Gain<4, 19> {
+        &self.gain
     }
 
     /// Whether it falls apart into thrust, roll, pitch and yaw, and a step therefore takes a quarter of the products.
     pub const fn is_decoupled(&self) -> bool {
-        self.chains.is_some()
+        matches!(self.feedback, Feedback::Decoupled(_))
     }
+}
 
-    /// `-K e`.
+impl Feedback {
+    /// `u - K e`.
     #[inline(always)]
-    fn feedback(&self, e: &Errors) -> MotorForces {
-        let (r, v, rotation, rates, i) = (&e.position, &e.velocity, &e.rotation, &e.body_rates, &e.integral);
-        match &self.chains {
-            Some(Chains { thrust, roll, pitch, yaw }) => {
+    fn added_to(&self, u: MotorForces, e: &Errors) -> MotorForces {
+        let (r, v, rotation, rates, i) = (&e.position, &e.velocity, &e.half_rotation, &e.body_rates, &e.integral);
+        match self {
+            Self::Decoupled(Chains { thrust, roll, pitch, yaw }) => {
                 let f = Parts::four_times_of(e.forces);
-                Parts {
+                let [k1, k2, k3, k4] = Parts {
                     thrust: thrust[0] * r.z + thrust[1] * v.z + thrust[2] * f.thrust + thrust[3] * i.z,
                     roll: roll[0] * r.y
                         + roll[1] * v.y
@@ -154,118 +167,110 @@ impl ActuatorAwareGain {
                         + pitch[5] * i.x,
                     yaw: yaw[0] * rotation.z + yaw[1] * rates.z + yaw[2] * f.yaw,
                 }
-                .forces()
+                .forces();
+                let [u1, u2, u3, u4] = u;
+                [u1 + k1, u2 + k2, u3 + k3, u4 + k4]
             }
-            None => {
-                let [f1, f2, f3, f4] = e.forces;
-                self.feedback.rows().map(
-                    |[k0, k1, k2, k3, k4, k5, k6, k7, k8, k9, ka, kb, kc, kd, ke, kf, kg, kh, ki]| {
-                        let linear = k0 * r.x + k1 * r.y + k2 * r.z + k3 * v.x + k4 * v.y + k5 * v.z;
-                        let angular = k6 * rotation.x
-                            + k7 * rotation.y
-                            + k8 * rotation.z
-                            + k9 * rates.x
-                            + ka * rates.y
-                            + kb * rates.z;
-                        let motors = kc * f1 + kd * f2 + ke * f3 + kf * f4;
-                        linear + angular + motors + (kg * i.x + kh * i.y + ki * i.z)
-                    },
-                )
+            Self::Dense(columns) => {
+                let add = |[u1, u2, u3, u4]: MotorForces, [k1, k2, k3, k4]: &[f32; 4], e: f32| {
+                    [u1 + k1 * e, u2 + k2 * e, u3 + k3 * e, u4 + k4 * e]
+                };
+                let [rx, ry, rz, vx, vy, vz, ax, ay, az, p, q, s, f1, f2, f3, f4, ix, iy, iz] = columns;
+                let [e1, e2, e3, e4] = e.forces;
+                let u = add(add(add(u, rx, r.x), ry, r.y), rz, r.z);
+                let u = add(add(add(u, vx, v.x), vy, v.y), vz, v.z);
+                let u = add(add(add(u, ax, rotation.x), ay, rotation.y), az, rotation.z);
+                let u = add(add(add(u, p, rates.x), q, rates.y), s, rates.z);
+                let u = add(add(add(add(u, f1, e1), f2, e2), f3, e3), f4, e4);
+                add(add(add(u, ix, i.x), iy, i.y), iz, i.z)
             }
         }
     }
+}
+
+/// `-K` by columns, with those of the rotation twice.
+const fn columns_of_feedback(gain: &Gain<4, 19>) -> [[f32; 4]; 19] {
+    let rows = gain.rows();
+    let mut columns = [[0.0; 4]; 19];
+    let mut column = 0;
+    while column < 19 {
+        let scale = if column >= 6 && column < 9 { -2.0 } else { -1.0 };
+        let mut row = 0;
+        while row < 4 {
+            columns[column][row] = scale * rows[row][column];
+            row += 1;
+        }
+        column += 1;
+    }
+    columns
 }
 
 impl Chains {
-    /// Signs of the thrust, roll, pitch and yaw part in the forces of M1 to M4.
-    const SIGNS: [[f32; 4]; 4] =
-        [[1.0, 1.0, 1.0, 1.0], [-1.0, -1.0, 1.0, 1.0], [-1.0, 1.0, 1.0, -1.0], [-1.0, 1.0, -1.0, 1.0]];
-
-    /// The part that a column drives alone, by the pattern of its signs; every entry must have the same size.
-    const fn of(feedback: &Gain<4, 19>) -> Option<Self> {
-        const THRUST: usize = 0;
-        const ROLL: usize = 1;
-        const PITCH: usize = 2;
-        const YAW: usize = 3;
-        let rows = feedback.rows();
-        let parts = [
-            (0, PITCH),
-            (1, ROLL),
-            (2, THRUST),
-            (3, PITCH),
-            (4, ROLL),
-            (5, THRUST),
-            (6, ROLL),
-            (7, PITCH),
-            (8, YAW),
-            (9, ROLL),
-            (10, PITCH),
-            (11, YAW),
-            (16, PITCH),
-            (17, ROLL),
-            (18, THRUST),
-        ];
-        let mut rest: &[(usize, usize)] = &parts;
-        while let Some(((column, part), after)) = rest.split_first() {
-            if !has_signs(rows, *column, &Self::SIGNS[*part]) {
-                return None;
-            }
-            rest = after;
+    /// Nothing unless every column drives one part alone, by the pattern of its signs and with entries of the same size.
+    const fn of(columns: &[[f32; 4]; 19]) -> Option<Self> {
+        const THRUST: [f32; 4] = [1.0, 1.0, 1.0, 1.0];
+        const ROLL: [f32; 4] = [-1.0, -1.0, 1.0, 1.0];
+        const PITCH: [f32; 4] = [-1.0, 1.0, 1.0, -1.0];
+        const YAW: [f32; 4] = [-1.0, 1.0, -1.0, 1.0];
+        let [x, y, z, vx, vy, vz, rotation_x, rotation_y, rotation_z, p, q, r, f1, f2, f3, f4, ix, iy, iz] = columns;
+        let thrust = [size(z, &THRUST), size(vz, &THRUST), size(iz, &THRUST), Some(0.0), Some(0.0)];
+        let roll = [size(y, &ROLL), size(vy, &ROLL), size(rotation_x, &ROLL), size(p, &ROLL), size(iy, &ROLL)];
+        let pitch = [size(x, &PITCH), size(vx, &PITCH), size(rotation_y, &PITCH), size(q, &PITCH), size(ix, &PITCH)];
+        let yaw = [size(rotation_z, &YAW), size(r, &YAW), Some(0.0), Some(0.0), Some(0.0)];
+        // What one motor adds to another depends only on how the two lie to each other: the same, on one side, across, at one end.
+        let [same, side, across, end] = *f1;
+        let circulates =
+            is(f2, [side, same, end, across]) && is(f3, [across, end, same, side]) && is(f4, [end, across, side, same]);
+        match (thrust, roll, pitch, yaw, circulates) {
+            (
+                [Some(z), Some(vz), Some(iz), ..],
+                [Some(y), Some(vy), Some(rotation_x), Some(p), Some(iy)],
+                [Some(x), Some(vx), Some(rotation_y), Some(q), Some(ix)],
+                [Some(rotation_z), Some(r), ..],
+                true,
+            ) => Some(Self {
+                // A quarter: the forces come as four times their parts.
+                thrust: [z, vz, 0.25 * ((same + side) + (across + end)), iz],
+                roll: [y, vy, rotation_x, p, 0.25 * ((same + side) - (across + end)), iy],
+                pitch: [x, vx, rotation_y, q, 0.25 * ((same - side) - (across - end)), ix],
+                yaw: [rotation_z, r, 0.25 * ((same - side) + (across - end))],
+            }),
+            _ => None,
         }
-        // The block of the motors: what M_j adds to M_i depends only on how the two lie to each other.
-        let [same, side, opposite, end] = [rows[0][12], rows[0][13], rows[0][14], rows[0][15]];
-        let lying = [
-            [same, side, opposite, end],
-            [side, same, end, opposite],
-            [opposite, end, same, side],
-            [end, opposite, side, same],
-        ];
-        let mut i = 0;
-        while i < 16 {
-            if rows[i / 4][12 + i % 4] != lying[i / 4][i % 4] {
-                return None;
-            }
-            i += 1;
-        }
-        // M2 shares a side (roll) with M1, M3 the yaw, M4 the end (pitch). Forces come as four times their parts.
-        let of_forces = [
-            0.25 * (same + side + opposite + end),
-            0.25 * (same + side - opposite - end),
-            0.25 * (same - side - opposite + end),
-            0.25 * (same - side + opposite - end),
-        ];
-        // M3 has + in roll and pitch, M2 in yaw.
-        let (m3, m2) = (rows[2], rows[1]);
-        Some(Self {
-            thrust: [m3[2], m3[5], of_forces[0], m3[18]],
-            roll: [m3[1], m3[4], m3[6], m3[9], of_forces[1], m3[17]],
-            pitch: [m3[0], m3[3], m3[7], m3[10], of_forces[2], m3[16]],
-            yaw: [m2[8], m2[11], of_forces[3]],
-        })
     }
 }
 
-/// Whether a column is one number times these signs.
-const fn has_signs(rows: &[[f32; 19]; 4], column: usize, signs: &[f32; 4]) -> bool {
-    let size = rows[0][column] * signs[0];
-    size == rows[1][column] * signs[1] && size == rows[2][column] * signs[2] && size == rows[3][column] * signs[3]
+/// What a column is times the signs, if it is.
+const fn size(column: &[f32; 4], signs: &[f32; 4]) -> Option<f32> {
+    let size = column[0] * signs[0];
+    if is(column, [size * signs[0], size * signs[1], size * signs[2], size * signs[3]]) { Some(size) } else { None }
+}
+
+const fn is(column: &[f32; 4], other: [f32; 4]) -> bool {
+    column[0] == other[0] && column[1] == other[1] && column[2] == other[2] && column[3] == other[3]
 }
 
 /// What the gain is applied to.
 struct Errors {
     position: Vector3<f32>,
     velocity: Vector3<f32>,
-    rotation: Vector3<f32>,
+    half_rotation: Vector3<f32>,
     body_rates: Vector3<f32>,
     forces: MotorForces,
     integral: Vector3<f32>,
 }
 
 impl<'a> ActuatorAware<'a> {
-    /// The law for a craft whose motors answer with `lag`: that of the design.
-    pub const fn new(gain: &'a ActuatorAwareGain, airframe: &Airframe, lag: MotorLag) -> Self {
-        let figures = airframe.figures();
-        Self { gain, lag, force_min_n: figures.force_min_n, force_max_n: figures.force_max_n }
+    /// The law for a craft at a control rate, those of the gain's design. References are to be made for the same airframe:
+    /// they too depend on its motor lag.
+    ///
+    /// # Errors
+    /// [`MotorLagError`] for a lag shorter than two control periods.
+    pub const fn new(gain: &'a ActuatorAwareGain, airframe: &Airframe, rate: Rate) -> Result<Self, MotorLagError> {
+        match MotorLag::new(airframe.figures().motor_lag_s, rate) {
+            Ok(lag) => Ok(Self { gain, lag, range: ForceRange::of(airframe) }),
+            Err(error) => Err(error),
+        }
     }
 
     /// The lag that it reckons with.
@@ -273,33 +278,33 @@ impl<'a> ActuatorAware<'a> {
         &self.lag
     }
 
-    /// Commanded forces (N) within the motors' range and which of them were cut; nothing, and the memory as it was, where one
-    /// of them is not finite.
+    /// Commanded forces (N) within the motors' range and whether any was cut; nothing, and the memory as it was, where one of
+    /// them is not finite. The quaternion's norm is known to be near 1, and is not made 1: it scales the attitude error, by
+    /// one part in a hundred at most.
     #[inline(always)]
     pub(crate) fn step(
         &self,
         memory: &mut ActuatorMemory,
-        state: &Measured<'_>,
-        body_rates_rad_s: &Vector3<f32>,
+        state: &RigidState,
         reference: &MotorReference,
     ) -> Option<(MotorForces, MotorLimited)> {
-        let target = &reference.reference;
+        let (RigidState { state, body_rates_rad_s }, target) = (state, &reference.reference);
         let heading = target.heading;
-        let error = difference(state.position_m(), &target.state.position_m);
-        let velocity = difference(state.velocity_m_s(), &target.state.velocity_m_s);
-        let attitude = state.attitude_from(target.state.attitude);
+        let error = difference(&state.position_m, &target.state.position_m);
+        let velocity = difference(&state.velocity_m_s, &target.state.velocity_m_s);
+        let attitude = target.state.attitude.conjugate() * state.attitude;
+        let hemisphere = if attitude.w < 0.0 { -1.0 } else { 1.0 };
         let ([f1, f2, f3, f4], [r1, r2, r3, r4]) = (memory.forces_n, reference.forces_n);
-        let [k1, k2, k3, k4] = self.gain.feedback(&Errors {
+        let errors = Errors {
             position: heading.to_heading_frame(error),
             velocity: heading.to_heading_frame(velocity),
-            rotation: Vector3::new(2.0 * attitude.x, 2.0 * attitude.y, 2.0 * attitude.z),
+            half_rotation: Vector3::new(hemisphere * attitude.x, hemisphere * attitude.y, hemisphere * attitude.z),
             body_rates: difference(body_rates_rad_s, &target.input.body_rates_rad_s),
             forces: [f1 - r1, f2 - r2, f3 - r3, f4 - r4],
             integral: heading.to_heading_frame(memory.integral_m_s),
-        });
-        let [u1, u2, u3, u4] = reference.commands_n(self.lag.lag_s());
-        let asked = [u1 + k1, u2 + k2, u3 + k3, u4 + k4];
-        let (commands, limited) = saturate_each(&asked, self.force_min_n, self.force_max_n)?;
+        };
+        let asked = self.gain.feedback.added_to(reference.commands_n, &errors);
+        let (commands, limited) = self.range.saturate(&asked)?;
         memory.forces_n = self.lag.next(&memory.forces_n, &commands);
         if !limited.any() {
             let (h, i) = (self.lag.period_s(), &memory.integral_m_s);

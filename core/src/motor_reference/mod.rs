@@ -1,5 +1,5 @@
 //! The reference carried on to the motors: the flat output to its fifth derivative, and any heading to its third, in; state,
-//! angular acceleration, motor forces and their rates out, checked once.
+//! angular acceleration, motor forces and the commands that give them out, checked once.
 //!
 //! The paper's flat map ends at body rates, which take the jerk. Torque takes the angular acceleration and so the snap;
 //! its rate, which a motor that lags has to be ahead by, takes the fifth derivative.
@@ -64,7 +64,8 @@ pub struct MotorReference {
     pub(crate) reference: Reference,
     pub(crate) angular_acceleration_rad_s2: Vector3<f32>,
     pub(crate) forces_n: MotorForces,
-    pub(crate) force_rates_n_s: MotorForces,
+    /// What gives these forces behind the airframe's motor lag.
+    pub(crate) commands_n: MotorForces,
 }
 
 impl MotorReference {
@@ -111,23 +112,28 @@ impl MotorReference {
         // Euler's equations and their derivative, with inertia over four levers.
         let mixing = &airframe.mixing;
         let ([ix, iy, iz], [gx, gy, gz]) = (mixing.inertia, mixing.gyroscopic);
-        let forces_n = Parts {
+        let forces = Parts {
             thrust: mixing.quarter_mass_kg * turning.thrust,
             roll: ix * p1 + gx * (q * r),
             pitch: iy * q1 + gy * (p * r),
             yaw: iz * r1 + gz * (p * q),
-        }
-        .forces();
+        };
         let rates = Parts {
             thrust: mixing.quarter_mass_kg * turning.thrust_rate,
             roll: ix * p2 + gx * (q1 * r + q * r1),
             pitch: iy * q2 + gy * (p1 * r + p * r1),
             yaw: iz * r2 + gz * (p1 * q + p * q1),
         };
-        let force_rates_n_s = rates.forces();
-        // Every derivative is in one of the rates.
-        let sum = rates.thrust.abs() + rates.roll.abs() + rates.pitch.abs() + rates.yaw.abs();
-        let in_range = sum <= f32::MAX;
+        let lag_s = airframe.figures().motor_lag_s;
+        let commands = Parts {
+            thrust: forces.thrust + lag_s * rates.thrust,
+            roll: forces.roll + lag_s * rates.roll,
+            pitch: forces.pitch + lag_s * rates.pitch,
+            yaw: forces.yaw + lag_s * rates.yaw,
+        };
+        // Every derivative is in one of the commands; what is not finite stays so in their sum.
+        let sum = (commands.thrust + commands.roll) + (commands.pitch + commands.yaw);
+        let in_range = sum.abs() <= f32::MAX;
         if !in_range {
             return Err(beyond_range(sum));
         }
@@ -145,8 +151,8 @@ impl MotorReference {
                 heading_rate_rad_s: flat.heading_rate_rad_s,
             },
             angular_acceleration_rad_s2: Vector3::new(p1, q1, r1),
-            forces_n,
-            force_rates_n_s,
+            forces_n: forces.forces(),
+            commands_n: commands.forces(),
         })
     }
 
@@ -175,15 +181,9 @@ impl MotorReference {
         self.forces_n
     }
 
-    /// Their rates, N/s.
-    pub fn force_rates_n_s(&self) -> MotorForces {
-        self.force_rates_n_s
-    }
-
-    /// Commands that give these forces behind a first-order lag of `lag_s` seconds: `f + lag df/dt`, N.
-    pub fn commands_n(&self, lag_s: f32) -> MotorForces {
-        let ([f1, f2, f3, f4], [d1, d2, d3, d4]) = (self.forces_n, self.force_rates_n_s);
-        [f1 + lag_s * d1, f2 + lag_s * d2, f3 + lag_s * d3, f4 + lag_s * d4]
+    /// Commands that give these forces behind the lag of the airframe that the reference was made for, `f + tau df/dt`, N.
+    pub fn commands_n(&self) -> MotorForces {
+        self.commands_n
     }
 }
 

@@ -1,0 +1,15 @@
+//! The estimated state of a craft with inertia: what the paper's model has, and the body rates that it commands.
+
+use nalgebra::Vector3;
+
+use crate::state::State;
+
+/// The state of a craft with inertia: the paper's, and the gyroscope's body rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RigidState {
+    /// Position, attitude and velocity.
+    pub state: State,
+    /// Body rates `p q r`, rad/s.
+    pub body_rates_rad_s: Vector3<f32>,
+}
