@@ -15,6 +15,9 @@ pub(crate) const LYAP_F: Certified = (3.714, 0.02);
 /// (LQR-F), likewise.
 pub(crate) const LQR_F: Certified = (14.71, 0.02);
 
+/// A gain for where one has to stand that is not looked at.
+pub(crate) static ANY: ActuatorAwareGain = CRAZYFLIE_2_1;
+
 /// Gain, design lag (s) and factor for each of [`crate::craft::KNOWN`].
 pub(crate) static ACTUATOR_AWARE: [(ActuatorAwareGain, f32, f32); 3] =
     [(CRAZYFLIE_2_1, 0.126, 1.5), (UPGRADE_KIT, 0.09, 1.5), (BRUSHLESS, 0.066, 1.5)];

@@ -8,8 +8,8 @@ use quatrack::law::ActuatorMemory;
 use quatrack::mixer::{MotorLimited, Wrench};
 use quatrack::nalgebra::Vector3;
 use quatrack::{
-    ActuatorAware, Command, Equilibrium, FeedForward, FifthOrderSample, FlatOutput, Limits, MotorForces, MotorLaw,
-    MotorReference, MotorTracker, Quaternion, Reference, State, StepError, Tracker,
+    Command, Equilibrium, FeedForward, FifthOrderSample, FlatOutput, Limits, MotorForces, MotorLaw,
+    MotorReference, MotorTracker, Quaternion, Reference, RigidState, State, StepError, Tracker,
 };
 
 use crate::abi;
@@ -156,7 +156,7 @@ impl Controller {
         }
         let is_late = self.last_step.is_none_or(|last| step.wrapping_sub(last) > GAP_MAX_MS);
         self.last_step = Some(step);
-        let (state, rates) = (edge::state(state), edge::body_rates_rad_s(sensors));
+        let (state, body_rates_rad_s) = (edge::state(state), edge::body_rates_rad_s(sensors));
         if is_late {
             self.restart();
         }
@@ -166,7 +166,7 @@ impl Controller {
         self.limited = MotorLimited::NOTHING;
         self.output = match self.flight {
             None => OFF,
-            Some(flight) => match self.fly(&flight, &state, &rates, step) {
+            Some(flight) => match self.fly(&flight, &RigidState { state, body_rates_rad_s }, step) {
                 Ok(output) => {
                     self.bad_states_in_a_row = 0;
                     output
@@ -230,24 +230,25 @@ impl Controller {
     }
 
     #[inline]
-    fn fly(&mut self, flight: &Flight, state: &State, rates: &Vector3<f32>, now_ms: u32) -> Result<Output, StepError> {
+    fn fly(&mut self, flight: &Flight, rigid: &RigidState, now_ms: u32) -> Result<Output, StepError> {
+        let state = &rigid.state;
         if let Horizontal::Rates([p, q]) = flight.horizontal {
-            return self.turn(flight, [p, q], state, rates);
+            return self.turn(flight, [p, q], state, &rigid.body_rates_rad_s);
         }
         let mass_kg = self.craft.airframe.figures().mass_kg;
         let sample = self.guide.sample(flight, &self.stream, now_ms, state, mass_kg, &self.settings.bounds);
         let p = &sample.flat.position_m;
         self.error_m = Vector3::new(state.position_m.x - p.x, state.position_m.y - p.y, state.position_m.z - p.z);
-        self.follow(&sample, state, rates)
+        self.follow(&sample, rigid)
     }
 
-    fn follow(&mut self, sample: &FifthOrderSample, state: &State, rates: &Vector3<f32>) -> Result<Output, StepError> {
+    fn follow(&mut self, sample: &FifthOrderSample, state: &RigidState) -> Result<Output, StepError> {
         if self.fade.is_some() {
-            return self.follow_fading(sample, state, rates);
+            return self.follow_fading(sample, state);
         }
-        let run = Run { craft: &self.craft, sample, state, rates, feed_forward: self.settings.feed_forward };
+        let run = Run { craft: &self.craft, sample, state, feed_forward: self.settings.feed_forward };
         let (output, limited, target) = run.of(&self.table, &self.limits, &mut self.memory)?;
-        (self.limited, self.attitudes) = (limited, [target, state.attitude]);
+        (self.limited, self.attitudes) = (limited, [target, state.state.attitude]);
         Ok(output)
     }
 
@@ -257,12 +258,11 @@ impl Controller {
     fn follow_fading(
         &mut self,
         sample: &FifthOrderSample,
-        state: &State,
-        rates: &Vector3<f32>,
+        state: &RigidState,
     ) -> Result<Output, StepError> {
-        let run = Run { craft: &self.craft, sample, state, rates, feed_forward: self.settings.feed_forward };
+        let run = Run { craft: &self.craft, sample, state, feed_forward: self.settings.feed_forward };
         let (to, limited, target) = run.of(&self.table, &self.limits, &mut self.memory)?;
-        (self.limited, self.attitudes) = (limited, [target, state.attitude]);
+        (self.limited, self.attitudes) = (limited, [target, state.state.attitude]);
         let Some(fade) = &mut self.fade else { return Ok(to) };
         fade.steps += 1;
         // Where only the old law has no answer, the new one's counts at once.
@@ -393,8 +393,7 @@ impl Controller {
 struct Run<'a> {
     craft: &'a Craft,
     sample: &'a FifthOrderSample,
-    state: &'a State,
-    rates: &'a Vector3<f32>,
+    state: &'a RigidState,
     feed_forward: FeedForward,
 }
 
@@ -408,14 +407,14 @@ impl Run<'_> {
         memory: &mut ActuatorMemory,
     ) -> Result<(Output, MotorLimited, Quaternion), StepError> {
         match &table.gains {
-            Gains::ActuatorAware(gain, lag) => {
-                let airframe = &self.craft.airframe;
+            Gains::ActuatorAware(motors) => {
+                let airframe = &motors.airframe;
                 let reference = match MotorReference::from_flat(self.sample, airframe) {
                     Ok(reference) => reference,
                     Err(_) => MotorReference::from_flat(&self.upright(), airframe).map_err(|_| StepError::Singular)?,
                 };
-                let law = MotorLaw::ActuatorAware(ActuatorAware::new(gain, airframe, *lag));
-                let step = MotorTracker::new(law, airframe).step(memory, self.state, self.rates, &reference)?;
+                let tracker = MotorTracker::new(MotorLaw::ActuatorAware(motors.law()), airframe);
+                let step = tracker.step(memory, self.state, &reference)?;
                 Ok((Output::Forces(step.forces_n), step.limited, reference.state().attitude))
             }
             Gains::Equilibrium(gain) => {
@@ -435,8 +434,8 @@ impl Run<'_> {
             Ok(reference) => reference,
             Err(_) => Reference::from_flat(&self.upright().flat).map_err(|_| StepError::Singular)?,
         };
-        let step = tracker.step(self.state, &reference)?;
-        let wrench = self.craft.body_rates.wrench(&step.command, self.rates);
+        let step = tracker.step(&self.state.state, &reference)?;
+        let wrench = self.craft.body_rates.wrench(&step.command, &self.state.body_rates_rad_s);
         let torque = &wrench.torque_n_m;
         if !((torque.x + torque.y + torque.z).abs() <= f32::MAX) {
             return Err(StepError::Singular);

@@ -37,7 +37,4 @@ mod try_cell;
 pub mod upload;
 
 #[cfg(target_os = "none")]
-#[panic_handler]
-fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
-    loop {}
-}
+mod panic;

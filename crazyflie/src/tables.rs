@@ -4,7 +4,7 @@
 use quatrack::gains::paper;
 use quatrack::gains::table::{AcceptedTable, Rows};
 use quatrack::law::{ActuatorAwareGain, EquilibriumGain, FlatOutputGain};
-use quatrack::{Airframe, Limits, MotorLag};
+use quatrack::{ActuatorAware, Airframe, AirframeFigures, Limits};
 
 use crate::builtin;
 use crate::craft::{Craft, RATE};
@@ -51,7 +51,45 @@ pub enum Gains {
     /// Thrust and body rates from the flat state.
     FlatOutput(FlatOutputGain),
     /// Motor forces.
-    ActuatorAware(ActuatorAwareGain, MotorLag),
+    ActuatorAware(MotorGains),
+}
+
+/// A gain for motor forces, with the craft as its design takes it.
+#[derive(Clone, Copy, Debug)]
+pub struct MotorGains {
+    /// The gain.
+    pub gain: ActuatorAwareGain,
+    /// The craft, its motors with the lag of the design.
+    pub airframe: Airframe,
+    /// The law but for the gain, which lies beside it.
+    law: ActuatorAware<'static>,
+}
+
+impl MotorGains {
+    /// A gain designed for motors of a lag.
+    ///
+    /// # Errors
+    /// [`Refusal::MotorLag`] for a lag that the control rate cannot follow.
+    pub fn new(gain: &ActuatorAwareGain, airframe: &Airframe, lag_s: f32) -> Result<Self, Refusal> {
+        let figures = AirframeFigures { motor_lag_s: lag_s, ..*airframe.figures() };
+        let airframe = Airframe::new(figures).map_err(|_| Refusal::MotorLag)?;
+        let law = ActuatorAware::new(&builtin::ANY, &airframe, RATE).map_err(|_| Refusal::MotorLag)?;
+        Ok(Self { gain: *gain, airframe, law })
+    }
+
+    /// The law.
+    #[inline]
+    pub fn law(&self) -> ActuatorAware<'_> {
+        let mut law = self.law;
+        law.gain = &self.gain;
+        law
+    }
+}
+
+impl PartialEq for MotorGains {
+    fn eq(&self, other: &Self) -> bool {
+        self.gain == other.gain && self.airframe == other.airframe
+    }
 }
 
 impl Gains {
@@ -74,7 +112,7 @@ impl Gains {
                 let [.., q3] = yaw;
                 [z, vz, 0.0, 0.0, y, vy, ay, 0.0, 0.0, 0.0, x, vx, ax, 0.0, 0.0, 0.0, q3, 0.0, 0.0]
             }
-            Self::ActuatorAware(gain, _) => {
+            Self::ActuatorAware(MotorGains { gain, .. }) => {
                 let [m1, m2, m3, _] = *gain.gain().rows();
                 let [_, _, _, _, _, _, _, _, _, _, _, _, same, side, opposite, end, _, _, _] = m1;
                 let [_, _, _, _, _, _, _, _, yaw, _, _, yaw_rate, ..] = m2;
@@ -156,9 +194,8 @@ impl Table {
     /// [`Refusal::Unknown`] where there is none.
     pub fn actuator_aware(craft: &Craft) -> Result<Self, Refusal> {
         let (gain, lag_s, margin) = builtin::ACTUATOR_AWARE.get(craft.index).ok_or(Refusal::Unknown)?;
-        let lag = MotorLag::new(*lag_s, RATE).map_err(|_| Refusal::MotorLag)?;
-        let limits = limits(&craft.airframe);
-        Ok(Self { id: TableId::ActuatorAware, gains: Gains::ActuatorAware(*gain, lag), limits, margin: *margin })
+        let gains = Gains::ActuatorAware(MotorGains::new(gain, &craft.airframe, *lag_s)?);
+        Ok(Self { id: TableId::ActuatorAware, gains, limits: limits(&craft.airframe), margin: *margin })
     }
 
     fn uploaded(table: &AcceptedTable, motor_lag_s: f32) -> Result<Self, Refusal> {
@@ -189,7 +226,7 @@ impl Table {
             _ if scales == Scales::ONE => self.gains,
             Gains::Equilibrium(gain) => scale_equilibrium(gain, &scales),
             Gains::FlatOutput(gain) => scale_flat_output(gain, &scales),
-            Gains::ActuatorAware(gain, lag) => scale_actuator_aware(gain, *lag, &scales),
+            Gains::ActuatorAware(motors) => scale_actuator_aware(motors, &scales),
         };
         Self { gains, ..*self }
     }
@@ -245,7 +282,8 @@ fn scale_flat_output(gain: &FlatOutputGain, scales: &Scales) -> Gains {
 /// In the parts of the forces that move the craft and turn it: column by column they are taken apart and put together
 /// again. The block of the motors is symmetric, and stays so to the bit: its sixteen entries are four numbers.
 #[inline(never)]
-fn scale_actuator_aware(gain: &ActuatorAwareGain, lag: MotorLag, scales: &Scales) -> Gains {
+fn scale_actuator_aware(motors: &MotorGains, scales: &Scales) -> Gains {
+    let gain = &motors.gain;
     let mut rows = *gain.gain().rows();
     {
         let [m1, m2, m3, m4] = &mut rows;
@@ -264,7 +302,7 @@ fn scale_actuator_aware(gain: &ActuatorAwareGain, lag: MotorLag, scales: &Scales
             [*a, *b, *c, *d] = block;
         }
     }
-    Gains::ActuatorAware(ActuatorAwareGain::new(rows).unwrap_or(*gain), lag)
+    Gains::ActuatorAware(MotorGains { gain: ActuatorAwareGain::new(rows).unwrap_or(*gain), ..*motors })
 }
 
 /// On slices, of whose length the compiler knows nothing and therefore unrolls nothing.
