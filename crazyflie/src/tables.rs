@@ -172,6 +172,7 @@ impl Table {
     ///
     /// # Errors
     /// [`Refusal`].
+    #[inline(never)]
     pub fn choose(number: u8, craft: &Craft, uploaded: Option<&AcceptedTable>) -> Result<Self, Refusal> {
         let motor_lag_s = craft.motor_lag_s;
         let id = TableId::numbered(number).ok_or(Refusal::Unknown)?;
@@ -192,12 +193,14 @@ impl Table {
     ///
     /// # Errors
     /// [`Refusal::Unknown`] where there is none.
+    #[inline(never)]
     pub fn actuator_aware(craft: &Craft) -> Result<Self, Refusal> {
         let (gain, lag_s, margin) = builtin::ACTUATOR_AWARE.get(craft.index).ok_or(Refusal::Unknown)?;
         let gains = Gains::ActuatorAware(MotorGains::new(gain, &craft.airframe, *lag_s)?);
         Ok(Self { id: TableId::ActuatorAware, gains, limits: limits(&craft.airframe), margin: *margin })
     }
 
+    #[inline(never)]
     fn uploaded(table: &AcceptedTable, motor_lag_s: f32) -> Result<Self, Refusal> {
         let certificate = &table.head().certificate;
         let gains = match table.table().rows() {
@@ -210,6 +213,7 @@ impl Table {
     }
 
     /// The same with its feedback scaled, as far as its margin allows.
+    #[inline(never)]
     pub fn scaled(&self, scales: &Scales) -> Self {
         let (least, most) = (1.0 / self.margin, self.margin);
         let within = |scale: f32| {

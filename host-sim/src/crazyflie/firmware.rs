@@ -13,6 +13,7 @@ use quatrack_crazyflie::craft::Platform;
 use quatrack_crazyflie::ffi;
 
 use super::course::Course;
+use super::recording::Recording;
 use crate::plant::RigidState;
 use crate::vehicle::Vehicle;
 
@@ -65,12 +66,23 @@ pub struct Firmware {
     step: u32,
     noise: Noise,
     sensors: Sensors,
+    recording: Option<Recording>,
+    is_selected: bool,
     _alone: MutexGuard<'static, ()>,
 }
 
 impl Firmware {
     /// Switches the craft on; waits until nobody else flies.
     pub fn start(vehicle: &Vehicle, tune: &Tune, sensors: Sensors) -> Self {
+        Self::recording(vehicle, tune, sensors, None)
+    }
+
+    /// The same, with every call recorded.
+    pub fn start_recorded(vehicle: &Vehicle, tune: &Tune, sensors: Sensors) -> Self {
+        Self::recording(vehicle, tune, sensors, Some(Recording::default()))
+    }
+
+    fn recording(vehicle: &Vehicle, tune: &Tune, sensors: Sensors, recording: Option<Recording>) -> Self {
         let alone = CONTROLLER.lock().unwrap_or_else(PoisonError::into_inner);
         let motors = vehicle.motors();
         let parameters = &ffi::quatrack.parameters;
@@ -78,12 +90,7 @@ impl Firmware {
         parameters.motor_lag_s.set(tune.motor_lag_s as f32);
         parameters.position_scale.set(1.0);
         parameters.yaw_scale.set(1.0);
-        ffi::quatrackPlatform(&Platform {
-            mass_kg: vehicle.mass_kg() as f32,
-            arm_m: motors.arm_m as f32,
-            thrust_max_n: motors.thrust_max_n as f32,
-            torque_per_thrust_m: motors.torque_per_thrust_m as f32,
-        });
+        ffi::quatrackPlatform(&platform(vehicle));
         let mut firmware = Self {
             control: abi::Control::default(),
             setpoint: abi::Setpoint::default(),
@@ -93,6 +100,8 @@ impl Firmware {
             step: 1,
             noise: Noise(1),
             sensors,
+            recording,
+            is_selected: false,
             _alone: alone,
         };
         // Motors off, until parameters have been looked at.
@@ -102,6 +111,7 @@ impl Firmware {
         }
         // Selected now: in flight, unless a setpoint says that the motors are off.
         ffi::controllerOutOfTreeInit();
+        firmware.is_selected = true;
         firmware
     }
 
@@ -126,8 +136,16 @@ impl Firmware {
         let sensors = abi::SensorData { gyro: rates.map(|rate| rate.to_degrees() as f32).into(), ..Default::default() };
         let setpoint = setpoint.unwrap_or(&self.setpoint);
         ffi::controllerOutOfTree(&mut self.control, setpoint, &sensors, &self.estimate, self.step);
+        if let Some(recording) = &mut self.recording {
+            recording.add(self.step, std::mem::take(&mut self.is_selected), setpoint, &sensors, &self.estimate, &self.control);
+        }
         self.step += 1;
         self.distribute()
+    }
+
+    /// What has been recorded.
+    pub fn recorded(&mut self) -> Option<Recording> {
+        self.recording.take()
     }
 
     /// The controller's last output.
@@ -159,6 +177,17 @@ impl Firmware {
         };
         let over = asked.iter().fold(0.0_f64, |over, force| over.max(force - FULL));
         Vector4::from(asked.map(|force| (force - over).max(0.0) / FULL * self.thrust_max_n))
+    }
+}
+
+/// What the firmware was built for.
+pub fn platform(vehicle: &Vehicle) -> Platform {
+    let motors = vehicle.motors();
+    Platform {
+        mass_kg: vehicle.mass_kg() as f32,
+        arm_m: motors.arm_m as f32,
+        thrust_max_n: motors.thrust_max_n as f32,
+        torque_per_thrust_m: motors.torque_per_thrust_m as f32,
     }
 }
 

@@ -5,6 +5,7 @@ use quatrack::{Airframe, AirframeFigures, FifthOrderSample, FlatSample, MotorRef
 use serde::Serialize;
 
 use super::course::{Course, Motion};
+use super::recording::Recording;
 use super::firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
 use crate::plant::{Craft, Ground, RigidState};
 use crate::vehicle::Vehicle;
@@ -41,8 +42,20 @@ pub struct Flown {
     pub max_tilt_deg: f64,
 }
 
-/// Flies a course from its start at rest in the air, or from the ground where it begins there.
+/// Flies a course from its start in the air, or from the ground where it begins there.
 pub fn fly(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case) -> Flown {
+    let mut firmware = Firmware::start(vehicle, tune, case.sensors);
+    fly_with(&mut firmware, vehicle, course, case, None)
+}
+
+/// Flies so many steps of a course and keeps what passed between firmware and controller.
+pub fn fly_recorded(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case, steps: usize) -> Recording {
+    let mut firmware = Firmware::start_recorded(vehicle, tune, case.sensors);
+    fly_with(&mut firmware, vehicle, course, case, Some(steps as u32));
+    firmware.recorded().unwrap_or_default()
+}
+
+fn fly_with(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case: &Case, limit: Option<u32>) -> Flown {
     let mut craft = Craft::new(vehicle);
     craft.body = craft.body.scaled(case.mass_factor, 1.0);
     craft.motors = craft.motors.with_lag(case.lag_s, case.lag_s);
@@ -54,10 +67,9 @@ pub fn fly(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case) -> Flow
         state = RigidState::at_rest(start[0], 0.0);
     }
 
-    let mut firmware = Firmware::start(vehicle, tune, case.sensors);
-    let steps = (course.duration_s() * f64::from(STEPS_HZ)).round() as u32;
+    let whole = (course.duration_s() * f64::from(STEPS_HZ)).round() as u32;
     let mut flown = Flown { iae: Some(0.0), max_error_m: 0.0, end_error_m: 0.0, max_tilt_deg: 0.0 };
-    for step in 0..=steps {
+    for step in 0..limit.unwrap_or(whole + 1) {
         let t_s = f64::from(step) / f64::from(STEPS_HZ);
         firmware.command(course, t_s, case.setpoints);
         let target = course.at(t_s).unwrap_or(start);

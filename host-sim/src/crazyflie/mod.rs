@@ -8,10 +8,14 @@
 //!       course  what the high-level commander evaluates
 //! ```
 
+mod count;
 mod course;
 mod firmware;
 mod flight;
+mod recording;
 
+pub use count::{Counts, count};
 pub use course::{Course, CourseError, Septics, figure_eight};
 pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
-pub use flight::{Case, Flown, fly};
+pub use flight::{Case, Flown, fly, fly_recorded};
+pub use recording::Recording;

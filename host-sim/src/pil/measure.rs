@@ -36,7 +36,7 @@ pub struct Count {
 }
 
 impl Count {
-    fn of(counts: &[u32]) -> Self {
+    pub(crate) fn of(counts: &[u32]) -> Self {
         let sum: u64 = counts.iter().copied().map(u64::from).sum();
         Self {
             min: counts.iter().copied().min().unwrap_or_default(),
