@@ -161,6 +161,28 @@ pub struct Setpoint {
     pub mode: Modes,
 }
 
+impl Setpoint {
+    /// The commander's null setpoint: motors off.
+    pub const OFF: Self = {
+        const VECTOR: Vector = Vector { timestamp: 0, x: 0.0, y: 0.0, z: 0.0 };
+        const ANGLES: Attitude = Attitude { timestamp: 0, roll: 0.0, pitch: 0.0, yaw: 0.0 };
+        const OFF: Mode = Mode::DISABLED;
+        Self {
+            timestamp: 0,
+            attitude: ANGLES,
+            attitude_rate: ANGLES,
+            attitude_quaternion: Quaternion { x: 0.0, y: 0.0, z: 0.0, w: 0.0 },
+            thrust: 0.0,
+            position: VECTOR,
+            velocity: VECTOR,
+            acceleration: VECTOR,
+            jerk: VECTOR,
+            velocity_body: 0,
+            mode: Modes { x: OFF, y: OFF, z: OFF, roll: OFF, pitch: OFF, yaw: OFF, quat: OFF },
+        }
+    };
+}
+
 /// `control_t`: a union of three meanings and which of them holds. The legacy one is never written.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,22 +1,22 @@
 //! The controller: setpoints, estimates and gyroscope readings at 1 kHz in; thrust and torque, or motor forces, out at
 //! 500 Hz.
 //!
-//! Even steps control; odd ones keep house: they publish what the last step did and take up parameters and tables. A change
-//! of the table is faded over [`FADE_STEPS`] control steps, both laws stepping side by side.
+//! A change of the table is faded over [`FADE_STEPS`] control steps, both laws stepping side by side. The stabilizer's
+//! stack is small: what is large lies here and is written in place.
 
 use quatrack::law::ActuatorMemory;
 use quatrack::mixer::{MotorLimited, Wrench};
 use quatrack::nalgebra::Vector3;
 use quatrack::{
-    Command, Equilibrium, FeedForward, FifthOrderSample, FlatOutput, Limits, MotorForces, MotorLaw,
-    MotorReference, MotorTracker, Quaternion, Reference, RigidState, State, StepError, Tracker,
+    Command, Equilibrium, FeedForward, FifthOrderSample, FlatOutput, Limits, MotorForces, MotorLaw, MotorReference,
+    MotorTracker, Quaternion, Reference, RigidState, State, StepError, Tracker,
 };
 
 use crate::abi;
 use crate::craft::{Craft, DECIMATION, PERIOD_S};
-use crate::demand::{Demand, Flight, Horizontal, Motion, Vertical};
+use crate::demand::{Demand, Flight, Horizontal, Motion, Turn, Vertical};
 use crate::edge;
-use crate::guide::{Bounds, Guide};
+use crate::guide::{Along, Bounds, Guide};
 use crate::stream::{Arrival, GAP_MAX_MS, Stream};
 use crate::tables::{Gains, Table};
 
@@ -38,8 +38,10 @@ pub enum Output {
     Forces(MotorForces),
 }
 
-/// Motors off.
-const OFF: Output = Output::Forces([0.0; 4]);
+impl Output {
+    /// Motors off.
+    pub const OFF: Self = Self::Forces([0.0; 4]);
+}
 
 /// How the last setpoint is flown, for the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,12 +64,10 @@ pub enum Mode {
 pub struct Settings {
     /// Of setpoints.
     pub bounds: Bounds,
-    /// Largest roll and pitch rate, and yaw rate, that the body-rate loop is asked for, rad/s.
-    pub body_rates_rad_s: [f32; 2],
+    /// What the paper's laws may command.
+    pub limits: Limits,
     /// Of the paper's laws.
     pub feed_forward: FeedForward,
-    /// Time constant of the motors that the body-rate loop reckons with, s; 0 for the longest that is published.
-    pub motor_lag_s: f32,
 }
 
 /// What the steps have seen.
@@ -83,66 +83,73 @@ pub struct Counters {
     pub jumps: u16,
 }
 
-/// The controller of one craft.
+/// What one step gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// What is put out.
+    pub output: Output,
+    /// What it gave up.
+    pub limited: MotorLimited,
+    /// The attitude that the reference has.
+    pub target: Quaternion,
+    /// Measured position less asked, world frame, m.
+    pub error_m: Vector3<f32>,
+}
+
+/// The controller of a craft.
 #[derive(Clone, Debug)]
 pub struct Controller {
     craft: Craft,
-    table: Table,
-    limits: Limits,
-    memory: ActuatorMemory,
-    fade: Option<Fade>,
     settings: Settings,
+    table: Table,
+    memory: ActuatorMemory,
+    /// The table on its way out, its memory, and how many steps the way still takes.
+    before: Table,
+    memory_before: ActuatorMemory,
+    fade_left: u16,
     setpoint: abi::Setpoint,
     flight: Option<Flight>,
     motion: Motion,
     stream: Stream,
     guide: Guide,
+    sample: FifthOrderSample,
     last_step: Option<u32>,
     bad_states_in_a_row: u16,
     mode: Mode,
-    limited: MotorLimited,
-    output: Output,
+    outcome: Outcome,
+    measured: Quaternion,
     counters: Counters,
-    error_m: Vector3<f32>,
-    attitudes: [Quaternion; 2],
-}
-
-/// A table on its way out.
-#[derive(Clone, Copy, Debug)]
-struct Fade {
-    table: Table,
-    limits: Limits,
-    memory: ActuatorMemory,
-    steps: u16,
 }
 
 impl Controller {
     /// For a craft, with motors off.
-    pub fn new(craft: Craft, table: Table, settings: Settings) -> Self {
+    pub const fn new(craft: Craft, table: Table, settings: Settings) -> Self {
+        const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
+        let (output, limited) = (Output::OFF, MotorLimited::NOTHING);
         Self {
-            craft: craft.with_motor_lag(settings.motor_lag_s),
-            table,
-            limits: tightened(&table.limits, &settings),
-            memory: ActuatorMemory::hovering(&craft.airframe),
-            fade: None,
+            craft,
             settings,
-            setpoint: abi::Setpoint::default(),
+            table,
+            memory: ActuatorMemory::at_rest(),
+            before: table,
+            memory_before: ActuatorMemory::at_rest(),
+            fade_left: 0,
+            setpoint: abi::Setpoint::OFF,
             flight: None,
             motion: Motion::ZERO,
             stream: Stream::new(),
             guide: Guide::new(PERIOD_S),
+            sample: FifthOrderSample::at_rest(ZERO, 0.0),
             last_step: None,
             bad_states_in_a_row: 0,
-            mode: Mode::Off,
-            limited: MotorLimited::NOTHING,
-            output: OFF,
-            counters: Counters::default(),
-            error_m: Vector3::new(0.0, 0.0, 0.0),
-            attitudes: [Quaternion::IDENTITY; 2],
+            mode: Mode::NoCraft,
+            outcome: Outcome { output, limited, target: Quaternion::IDENTITY, error_m: ZERO },
+            measured: Quaternion::IDENTITY,
+            counters: Counters { bad_states: 0, bad_setpoints: 0, limited_steps: 0, jumps: 0 },
         }
     }
 
-    /// One of the firmware's steps: the output where it is a control step, nothing where the last one holds.
+    /// One of the firmware's steps: whether [`Self::outcome`] is new; between control steps the last one holds.
     #[inline]
     pub fn step(
         &mut self,
@@ -150,42 +157,45 @@ impl Controller {
         sensors: &abi::SensorData,
         state: &abi::State,
         step: u32,
-    ) -> Option<abi::Control> {
+    ) -> bool {
         if step % DECIMATION != 0 {
-            return None;
+            return false;
+        }
+        if self.mode == Mode::NoCraft {
+            self.outcome.output = Output::OFF;
+            return true;
         }
         let is_late = self.last_step.is_none_or(|last| step.wrapping_sub(last) > GAP_MAX_MS);
         self.last_step = Some(step);
-        let (state, body_rates_rad_s) = (edge::state(state), edge::body_rates_rad_s(sensors));
+        let state = RigidState { state: edge::state(state), body_rates_rad_s: edge::body_rates_rad_s(sensors) };
+        self.measured = state.state.attitude;
         if is_late {
             self.restart();
         }
         if is_late || !edge::is_same(&self.setpoint, setpoint) {
-            self.take(setpoint, &state, step);
+            self.take(setpoint, &state.state, step);
         }
-        self.limited = MotorLimited::NOTHING;
-        self.output = match self.flight {
-            None => OFF,
-            Some(flight) => match self.fly(&flight, &RigidState { state, body_rates_rad_s }, step) {
-                Ok(output) => {
-                    self.bad_states_in_a_row = 0;
-                    output
-                }
+        self.outcome.limited = MotorLimited::NOTHING;
+        match self.flight {
+            None => self.outcome.output = Output::OFF,
+            Some(_) => match self.fly(&state, step) {
+                Ok(()) => self.bad_states_in_a_row = 0,
                 Err(_) => self.blind(),
             },
-        };
-        if self.limited.any() {
+        }
+        if self.outcome.limited.any() {
             self.counters.limited_steps = self.counters.limited_steps.wrapping_add(1);
         }
-        Some(edge::control(&self.output, self.craft.airframe.figures().force_max_n))
+        true
     }
 
     /// Another controller has flown in the meantime, or nobody: nothing that was remembered holds. The motors are
     /// taken to carry the craft until a setpoint says that they are off.
     #[cold]
+    #[inline(never)]
     fn restart(&mut self) {
         self.memory = ActuatorMemory::hovering(&self.craft.airframe);
-        (self.flight, self.fade, self.bad_states_in_a_row) = (None, None, 0);
+        (self.flight, self.fade_left, self.bad_states_in_a_row) = (None, 0, 0);
     }
 
     /// Forgets what it remembers, at the next control step.
@@ -198,162 +208,148 @@ impl Controller {
     fn take(&mut self, setpoint: &abi::Setpoint, state: &State, now_ms: u32) {
         self.setpoint = *setpoint;
         let thrust_max_n = 4.0 * self.craft.airframe.figures().force_max_n;
-        let (flight, motion) = match edge::demand(setpoint, thrust_max_n) {
+        let flight = match edge::demand(setpoint, thrust_max_n) {
             Some(Demand::Off) => {
-                (self.flight, self.fade, self.mode) = (None, None, Mode::Off);
+                (self.flight, self.fade_left, self.mode) = (None, 0, Mode::Off);
                 self.memory = ActuatorMemory::at_rest();
                 return;
             }
             Some(Demand::Fly(flight)) => {
                 self.mode = Mode::Flying;
-                (flight, edge::motion(setpoint))
+                flight
             }
             None => {
                 self.mode = Mode::Descending;
                 self.counters.bad_setpoints = self.counters.bad_setpoints.wrapping_add(1);
-                let down = Vector3::new(0.0, 0.0, -DESCENT_M_S);
-                (Flight::DESCENT, Motion { velocity_m_s: down, ..Motion::ZERO })
+                Flight::DESCENT
             }
         };
         let is_another = !self.flight.is_some_and(|before| before.is_like(&flight));
         if is_another {
-            self.stream = Stream::new();
-            self.guide.begin(state, edge::heading_rad(&state.attitude));
-            if matches!(flight.horizontal, Horizontal::Tilt(_) | Horizontal::Rates(_)) {
-                self.memory.clear_integral();
-            }
+            self.begin(&flight, state);
         }
+        let motion = match self.mode {
+            Mode::Descending => Motion { velocity_m_s: Vector3::new(0.0, 0.0, -DESCENT_M_S), ..Motion::ZERO },
+            _ => edge::motion(setpoint),
+        };
         if (is_another || motion != self.motion) && self.stream.accept(&motion, now_ms) == Arrival::Jumped {
             self.counters.jumps = self.counters.jumps.wrapping_add(1);
         }
         (self.flight, self.motion) = (Some(flight), motion);
     }
 
-    #[inline]
-    fn fly(&mut self, flight: &Flight, rigid: &RigidState, now_ms: u32) -> Result<Output, StepError> {
-        let state = &rigid.state;
-        if let Horizontal::Rates([p, q]) = flight.horizontal {
-            return self.turn(flight, [p, q], state, &rigid.body_rates_rad_s);
+    /// Starts a flight of another kind.
+    #[inline(never)]
+    fn begin(&mut self, flight: &Flight, state: &State) {
+        self.stream = Stream::new();
+        self.guide.begin(state, edge::heading_rad(&state.attitude));
+        if matches!(flight.horizontal, Horizontal::Tilt(_) | Horizontal::Rates(_)) {
+            self.memory.clear_integral();
         }
-        let mass_kg = self.craft.airframe.figures().mass_kg;
-        let sample = self.guide.sample(flight, &self.stream, now_ms, state, mass_kg, &self.settings.bounds);
-        let p = &sample.flat.position_m;
-        self.error_m = Vector3::new(state.position_m.x - p.x, state.position_m.y - p.y, state.position_m.z - p.z);
-        self.follow(&sample, rigid)
     }
 
-    fn follow(&mut self, sample: &FifthOrderSample, state: &RigidState) -> Result<Output, StepError> {
-        if self.fade.is_some() {
-            return self.follow_fading(sample, state);
+    #[inline]
+    fn fly(&mut self, state: &RigidState, now_ms: u32) -> Result<(), StepError> {
+        let Some(flight) = &self.flight else { return Ok(()) };
+        if let Horizontal::Rates([p, q]) = flight.horizontal {
+            return self.turn([p, q], state);
         }
-        let run = Run { craft: &self.craft, sample, state, feed_forward: self.settings.feed_forward };
-        let (output, limited, target) = run.of(&self.table, &self.limits, &mut self.memory)?;
-        (self.limited, self.attitudes) = (limited, [target, state.state.attitude]);
-        Ok(output)
+        let to_fifth = matches!(self.table.gains, Gains::ActuatorAware(_)) || self.fade_left > 0;
+        let mass_kg = self.craft.airframe.figures().mass_kg;
+        let along = Along { flight, stream: &self.stream, now_ms, to_fifth, mass_kg };
+        self.guide.put(&along, &state.state, &self.settings.bounds, &mut self.sample);
+        let (r, p) = (&state.state.position_m, &self.sample.flat.position_m);
+        self.outcome.error_m = Vector3::new(r.x - p.x, r.y - p.y, r.z - p.z);
+        let run = Run { craft: &self.craft, settings: &self.settings, sample: &self.sample, state };
+        run.step(&self.table, &mut self.memory, &mut self.outcome)?;
+        if self.fade_left > 0 { self.mix_in_the_one_before(state) } else { Ok(()) }
     }
 
     /// Both laws, their forces mixed in changing shares.
     #[cold]
     #[inline(never)]
-    fn follow_fading(
-        &mut self,
-        sample: &FifthOrderSample,
-        state: &RigidState,
-    ) -> Result<Output, StepError> {
-        let run = Run { craft: &self.craft, sample, state, feed_forward: self.settings.feed_forward };
-        let (to, limited, target) = run.of(&self.table, &self.limits, &mut self.memory)?;
-        (self.limited, self.attitudes) = (limited, [target, state.state.attitude]);
-        let Some(fade) = &mut self.fade else { return Ok(to) };
-        fade.steps += 1;
+    fn mix_in_the_one_before(&mut self, state: &RigidState) -> Result<(), StepError> {
+        self.fade_left -= 1;
+        let run = Run { craft: &self.craft, settings: &self.settings, sample: &self.sample, state };
+        let mut before = self.outcome;
         // Where only the old law has no answer, the new one's counts at once.
-        let from = run.of(&fade.table, &fade.limits, &mut fade.memory);
-        let share = f32::from(fade.steps) / f32::from(FADE_STEPS);
-        let over = fade.steps >= FADE_STEPS;
-        let mixed = match from {
-            Ok((from, _, _)) if !over => {
-                let (a, b) = (forces(&self.craft, &from), forces(&self.craft, &to));
-                Output::Forces(between(a, b, share))
-            }
-            _ => to,
-        };
-        if over || from.is_err() {
-            self.fade = None;
+        if run.step(&self.before, &mut self.memory_before, &mut before).is_err() {
+            self.fade_left = 0;
         }
-        Ok(mixed)
+        if self.fade_left > 0 {
+            let share = f32::from(self.fade_left) / f32::from(FADE_STEPS);
+            let (from, to) = (forces(&self.craft, &before.output), forces(&self.craft, &self.outcome.output));
+            self.outcome.output = Output::Forces(between(to, from, share));
+        }
+        Ok(())
     }
 
     /// Manual flight by body rates: the same under every table.
     #[inline(never)]
-    fn turn(
-        &mut self,
-        flight: &Flight,
-        [p, q]: [f32; 2],
-        state: &State,
-        rates: &Vector3<f32>,
-    ) -> Result<Output, StepError> {
+    fn turn(&mut self, [p, q]: [f32; 2], state: &RigidState) -> Result<(), StepError> {
         let mass_kg = self.craft.airframe.figures().mass_kg;
-        let thrust_m_s2 = match flight.vertical {
+        let (vertical, turn) = match &self.flight {
+            Some(flight) => (flight.vertical, flight.turn),
+            None => return Ok(()),
+        };
+        let thrust_m_s2 = match vertical {
             Vertical::Thrust(thrust_n) => thrust_n / mass_kg,
             // A height that is held while the craft turns over is nothing that anybody asks for.
             _ => quatrack::flatness::GRAVITY_M_S2,
         };
-        let r = match flight.turn {
-            crate::demand::Turn::Rate(rate) => rate,
-            crate::demand::Turn::Heading { .. } => 0.0,
+        let r = match turn {
+            Turn::Rate(rate) => rate,
+            Turn::Heading { .. } => 0.0,
         };
         let command = Command { thrust_m_s2, body_rates_rad_s: Vector3::new(p, q, r) };
-        let wrench = self.limits.saturate(&command).map(|(command, limited)| {
-            self.limited = MotorLimited::from_bits(u16::from(limited.bits()) << 8);
-            self.craft.body_rates.wrench(&command, rates)
+        let wrench = self.settings.limits.saturate(&command).map(|(command, limited)| {
+            self.outcome.limited = MotorLimited::from_bits(u16::from(limited.bits()) << 8);
+            self.craft.body_rates.wrench(&command, &state.body_rates_rad_s)
         });
-        let is_finite = |wrench: &Wrench| {
-            let torque = &wrench.torque_n_m;
-            (wrench.thrust_n + torque.x + torque.y + torque.z).abs() <= f32::MAX
-        };
         match wrench.filter(is_finite) {
-            Some(wrench) => Ok(Output::Wrench(wrench)),
-            None => Err(state.validated().err().map_or(StepError::Singular, StepError::State)),
+            Some(wrench) => {
+                self.outcome.output = Output::Wrench(wrench);
+                Ok(())
+            }
+            None => Err(StepError::Singular),
         }
     }
 
     /// Motors off for this step: there is nothing to level by.
     #[cold]
     #[inline(never)]
-    fn blind(&mut self) -> Output {
+    fn blind(&mut self) {
         self.counters.bad_states = self.counters.bad_states.wrapping_add(1);
         self.bad_states_in_a_row = self.bad_states_in_a_row.saturating_add(1);
         if self.bad_states_in_a_row >= BAD_STATES_MAX {
             self.memory = ActuatorMemory::at_rest();
         }
-        OFF
+        self.outcome.output = Output::OFF;
     }
 
     /// Flies another table from the next control step on; in flight over [`FADE_STEPS`] of them.
+    #[inline(never)]
     pub fn change_table(&mut self, table: &Table) {
-        let limits = tightened(&table.limits, &self.settings);
         if self.flight.is_some() {
-            self.fade = Some(Fade { table: self.table, limits: self.limits, memory: self.memory, steps: 0 });
+            self.before = self.table;
+            (self.memory_before, self.fade_left) = (self.memory, FADE_STEPS);
         }
-        (self.table, self.limits) = (*table, limits);
+        self.table = *table;
+    }
+
+    /// Starts for a craft: motors off until a setpoint comes.
+    #[inline(never)]
+    pub fn change_craft(&mut self, craft: &Craft) {
+        self.craft = *craft;
+        (self.mode, self.flight, self.fade_left, self.last_step) = (Mode::Off, None, 0, None);
+        self.counters = Counters::default();
     }
 
     /// Takes over what the owner has set.
-    pub fn set(&mut self, settings: &Settings) {
-        if self.settings != *settings {
-            self.settings = *settings;
-            self.limits = tightened(&self.table.limits, settings);
-            self.craft = self.craft.with_motor_lag(settings.motor_lag_s);
-        }
-    }
-
-    /// The craft.
-    pub fn craft(&self) -> &Craft {
-        &self.craft
-    }
-
-    /// The table in use.
-    pub fn table(&self) -> &Table {
-        &self.table
+    #[inline(never)]
+    pub fn set(&mut self, settings: &Settings, craft: &Craft) {
+        self.settings = *settings;
+        self.craft.body_rates = craft.body_rates;
     }
 
     /// How the last setpoint is flown.
@@ -361,87 +357,105 @@ impl Controller {
         if self.flight.is_some() && self.bad_states_in_a_row > 0 { Mode::Blind } else { self.mode }
     }
 
+    /// The craft.
+    pub fn craft(&self) -> &Craft {
+        &self.craft
+    }
+
     /// What has been seen so far.
-    pub fn counters(&self) -> Counters {
-        self.counters
+    pub fn counters(&self) -> &Counters {
+        &self.counters
     }
 
-    /// What the last control step gave up.
-    pub fn limited(&self) -> MotorLimited {
-        self.limited
-    }
-
-    /// Position error of the last control step, world frame, m.
-    pub fn error_m(&self) -> Vector3<f32> {
-        self.error_m
+    /// What the last control step gave.
+    pub fn outcome(&self) -> &Outcome {
+        &self.outcome
     }
 
     /// Rotation vector from the reference's attitude to the measured one at the last control step, body frame, rad.
     pub fn rotation_error_rad(&self) -> Vector3<f32> {
-        let [target, measured] = self.attitudes;
-        let q = target.conjugate() * measured;
+        let q = self.outcome.target.conjugate() * self.measured;
         q.vector() * if q.w < 0.0 { -2.0 } else { 2.0 }
-    }
-
-    /// What the last control step put out.
-    pub fn output(&self) -> &Output {
-        &self.output
     }
 }
 
 /// One law's step.
 struct Run<'a> {
     craft: &'a Craft,
+    settings: &'a Settings,
     sample: &'a FifthOrderSample,
     state: &'a RigidState,
-    feed_forward: FeedForward,
 }
 
 impl Run<'_> {
-    /// Output, what it gave up, and the attitude that it wants.
     #[inline]
-    fn of(
-        &self,
-        table: &Table,
-        limits: &Limits,
-        memory: &mut ActuatorMemory,
-    ) -> Result<(Output, MotorLimited, Quaternion), StepError> {
+    fn step(&self, table: &Table, memory: &mut ActuatorMemory, outcome: &mut Outcome) -> Result<(), StepError> {
+        let feed_forward = self.settings.feed_forward;
         match &table.gains {
+            // References are looked at where they lie: to move one out costs as much as the product with a gain.
             Gains::ActuatorAware(motors) => {
                 let airframe = &motors.airframe;
-                let reference = match MotorReference::from_flat(self.sample, airframe) {
-                    Ok(reference) => reference,
-                    Err(_) => MotorReference::from_flat(&self.upright(), airframe).map_err(|_| StepError::Singular)?,
-                };
                 let tracker = MotorTracker::new(MotorLaw::ActuatorAware(motors.law()), airframe);
-                let step = tracker.step(memory, self.state, &reference)?;
-                Ok((Output::Forces(step.forces_n), step.limited, reference.state().attitude))
+                match &MotorReference::from_flat(self.sample, airframe) {
+                    Ok(reference) => self.straight(&tracker, reference, memory, outcome),
+                    Err(_) => {
+                        let upright = MotorReference::from_flat(&self.upright(), airframe);
+                        self.straight(&tracker, &upright.map_err(|_| StepError::Singular)?, memory, outcome)
+                    }
+                }
             }
             Gains::Equilibrium(gain) => {
-                let law = Equilibrium { feed_forward: self.feed_forward, ..Equilibrium::new(gain) };
-                self.through_rates(&Tracker::new(law, *limits))
+                let law = Equilibrium { feed_forward, ..Equilibrium::new(gain) };
+                self.through_rates(&Tracker::new(law, self.settings.limits), outcome)
             }
             Gains::FlatOutput(gain) => {
-                let law = FlatOutput { gain, feed_forward: self.feed_forward };
-                self.through_rates(&Tracker::new(law, *limits))
+                let law = FlatOutput { gain, feed_forward };
+                self.through_rates(&Tracker::new(law, self.settings.limits), outcome)
             }
         }
     }
 
     #[inline]
-    fn through_rates(&self, tracker: &Tracker<'_>) -> Result<(Output, MotorLimited, Quaternion), StepError> {
-        let reference = match Reference::from_flat(&self.sample.flat) {
-            Ok(reference) => reference,
-            Err(_) => Reference::from_flat(&self.upright().flat).map_err(|_| StepError::Singular)?,
-        };
-        let step = tracker.step(&self.state.state, &reference)?;
+    fn straight(
+        &self,
+        tracker: &MotorTracker<'_>,
+        reference: &MotorReference,
+        memory: &mut ActuatorMemory,
+        outcome: &mut Outcome,
+    ) -> Result<(), StepError> {
+        let step = tracker.step(memory, self.state, reference)?;
+        outcome.output = Output::Forces(step.forces_n);
+        (outcome.limited, outcome.target) = (step.limited, reference.state().attitude);
+        Ok(())
+    }
+
+    #[inline]
+    fn through_rates(&self, tracker: &Tracker<'_>, outcome: &mut Outcome) -> Result<(), StepError> {
+        match &Reference::from_flat(&self.sample.flat) {
+            Ok(reference) => self.to_wrench(tracker, reference, outcome),
+            Err(_) => {
+                let upright = Reference::from_flat(&self.upright().flat).map_err(|_| StepError::Singular)?;
+                self.to_wrench(tracker, &upright, outcome)
+            }
+        }
+    }
+
+    #[inline]
+    fn to_wrench(
+        &self,
+        tracker: &Tracker<'_>,
+        reference: &Reference,
+        outcome: &mut Outcome,
+    ) -> Result<(), StepError> {
+        let step = tracker.step(&self.state.state, reference)?;
         let wrench = self.craft.body_rates.wrench(&step.command, &self.state.body_rates_rad_s);
-        let torque = &wrench.torque_n_m;
-        if !((torque.x + torque.y + torque.z).abs() <= f32::MAX) {
+        if !is_finite(&wrench) {
             return Err(StepError::Singular);
         }
-        let limited = MotorLimited::from_bits(u16::from(step.limited.bits()) << 8);
-        Ok((Output::Wrench(wrench), limited, reference.state().attitude))
+        outcome.output = Output::Wrench(wrench);
+        outcome.limited = MotorLimited::from_bits(u16::from(step.limited.bits()) << 8);
+        outcome.target = reference.state().attitude;
+        Ok(())
     }
 
     /// Where the motion asks for what no thrust does (free fall, upside down): its position and velocity alone.
@@ -455,6 +469,13 @@ impl Run<'_> {
     }
 }
 
+/// The gyroscope's readings come in here; the thrust has been looked at.
+#[inline]
+fn is_finite(wrench: &Wrench) -> bool {
+    let torque = &wrench.torque_n_m;
+    (torque.x + torque.y + torque.z).abs() <= f32::MAX
+}
+
 /// An output as forces.
 fn forces(craft: &Craft, output: &Output) -> MotorForces {
     match output {
@@ -466,13 +487,4 @@ fn forces(craft: &Craft, output: &Output) -> MotorForces {
 /// `share` of the way from one to another.
 fn between([a1, a2, a3, a4]: MotorForces, [b1, b2, b3, b4]: MotorForces, share: f32) -> MotorForces {
     [a1 + (b1 - a1) * share, a2 + (b2 - a2) * share, a3 + (b3 - a3) * share, a4 + (b4 - a4) * share]
-}
-
-/// A table's limits within the owner's.
-fn tightened(limits: &Limits, settings: &Settings) -> Limits {
-    let most = limits.body_rates_max_rad_s();
-    let [roll_pitch, yaw] = settings.body_rates_rad_s;
-    let least = |a: f32, b: f32| if a < b { a } else { b };
-    let rates = Vector3::new(least(roll_pitch, most.x), least(roll_pitch, most.y), least(yaw, most.z));
-    Limits::new(limits.thrust_min_m_s2(), limits.thrust_max_m_s2(), rates).unwrap_or(*limits)
 }

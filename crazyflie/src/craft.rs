@@ -45,6 +45,8 @@ pub struct Craft {
     pub index: usize,
     /// Time constant of its motors as far as it is known, s.
     pub motor_lag_s: f32,
+    /// One over the largest force of a motor, 1/N.
+    pub per_force_max_1_n: f32,
 }
 
 /// A craft that the controller knows.
@@ -57,7 +59,7 @@ pub struct Known {
 }
 
 /// The crafts that the controller knows.
-pub static KNOWN: [Known; 3] = [
+pub const KNOWN: [Known; 3] = [
     known("crazyflie-2.1", 0, Airframe::CRAZYFLIE_2_1),
     known("crazyflie-2.1-kit", 0, Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
     known("crazyflie-2.1-brushless", 0, Airframe::CRAZYFLIE_2_1_BRUSHLESS),
@@ -88,8 +90,15 @@ impl Craft {
         // The mass as the owner has set it: the weight is fed forward.
         let figures = quatrack::AirframeFigures { mass_kg: platform.mass_kg, ..*known.airframe.figures() };
         let airframe = Airframe::new(figures).ok()?;
-        let (body_rates, motor_lag_s) = (BodyRateLoop::behind_lag(&airframe), figures.motor_lag_s);
-        Some(Self { airframe, body_rates, vehicle: known.vehicle, index, motor_lag_s })
+        Some(Self::with(airframe, known.vehicle, index))
+    }
+
+    /// From its parts.
+    pub const fn with(airframe: Airframe, vehicle: Vehicle, index: usize) -> Self {
+        let figures = airframe.figures();
+        let (motor_lag_s, per_force_max_1_n) = (figures.motor_lag_s, 1.0 / figures.force_max_n);
+        let body_rates = BodyRateLoop::behind_lag(&airframe);
+        Self { airframe, body_rates, vehicle, index, motor_lag_s, per_force_max_1_n }
     }
 
     /// The same whose owner knows the time constant of the motors; 0 for the longest that is published.

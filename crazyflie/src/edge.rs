@@ -10,6 +10,7 @@ use quatrack::{Quaternion, State};
 
 use crate::abi::{self, Mode};
 use crate::control::Output;
+use crate::craft::Craft;
 use crate::demand::{Demand, Flight, Horizontal, Motion, Turn, Vertical};
 
 const RAD_PER_DEG: f32 = core::f32::consts::PI / 180.0;
@@ -148,45 +149,58 @@ fn sum(v: &abi::Vector) -> f32 {
     v.x + v.y + v.z
 }
 
-/// Whether two setpoints ask for the same, bit by bit; when they were made does not count.
+/// Whether two setpoints ask for the same.
+///
+/// The commander stamps every setpoint that it takes; one with the same stamp can differ only in what supervisor and
+/// collision avoidance change: modes, position, velocity. Without a stamp all of it is looked at.
 #[inline]
 pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
     let vectors = |a: &abi::Vector, b: &abi::Vector| {
         a.x.to_bits() == b.x.to_bits() && a.y.to_bits() == b.y.to_bits() && a.z.to_bits() == b.z.to_bits()
     };
-    let angles = |a: &abi::Attitude, b: &abi::Attitude| {
-        a.roll.to_bits() == b.roll.to_bits()
-            && a.pitch.to_bits() == b.pitch.to_bits()
-            && a.yaw.to_bits() == b.yaw.to_bits()
-    };
-    let (p, q) = (&a.attitude_quaternion, &b.attitude_quaternion);
-    vectors(&a.position, &b.position)
+    a.timestamp == b.timestamp
+        && words(a) == words(b)
+        && vectors(&a.position, &b.position)
         && vectors(&a.velocity, &b.velocity)
-        && vectors(&a.acceleration, &b.acceleration)
-        && vectors(&a.jerk, &b.jerk)
-        && angles(&a.attitude, &b.attitude)
-        && angles(&a.attitude_rate, &b.attitude_rate)
-        && p.x.to_bits() == q.x.to_bits()
-        && p.y.to_bits() == q.y.to_bits()
-        && p.z.to_bits() == q.z.to_bits()
-        && p.w.to_bits() == q.w.to_bits()
-        && a.thrust.to_bits() == b.thrust.to_bits()
-        && a.velocity_body == b.velocity_body
-        && a.mode == b.mode
+        && (a.timestamp != 0 || is_all_the_same(a, b))
+}
+
+/// Modes and the frame of the velocity, as two words of the target.
+#[inline]
+fn words(setpoint: &abi::Setpoint) -> [u32; 2] {
+    let abi::Modes { x, y, z, roll, pitch, yaw, quat } = &setpoint.mode;
+    let word = |bytes: [u8; 4]| u32::from_ne_bytes(bytes);
+    [
+        word([setpoint.velocity_body, x.0 as u8, y.0 as u8, z.0 as u8]),
+        word([roll.0 as u8, pitch.0 as u8, yaw.0 as u8, quat.0 as u8]),
+    ]
+}
+
+#[cold]
+#[inline(never)]
+fn is_all_the_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
+    let bits = |s: &abi::Setpoint| {
+        let (r, w, q) = (&s.attitude, &s.attitude_rate, &s.attitude_quaternion);
+        let (a, j) = (&s.acceleration, &s.jerk);
+        [r.roll, r.pitch, r.yaw, w.roll, w.pitch, w.yaw, q.x, q.y, q.z, q.w, s.thrust, a.x, a.y, a.z, j.x, j.y, j.z]
+            .map(f32::to_bits)
+    };
+    bits(a).iter().eq(&bits(b))
 }
 
 /// An output as the firmware takes it: forces over the largest of a motor.
 #[inline]
-pub fn control(output: &Output, force_max_n: f32) -> abi::Control {
+pub fn put(output: &Output, craft: &Craft, control: &mut abi::Control) {
     match output {
         Output::Wrench(wrench) => {
             let torque = &wrench.torque_n_m;
-            let payload = [wrench.thrust_n, torque.x, torque.y, torque.z];
-            abi::Control { payload, control_mode: abi::Control::FORCE_TORQUE }
+            control.payload = [wrench.thrust_n, torque.x, torque.y, torque.z];
+            control.control_mode = abi::Control::FORCE_TORQUE;
         }
-        Output::Forces(forces) => {
-            let scale = 1.0 / force_max_n;
-            abi::Control { payload: forces.map(|force| force * scale), control_mode: abi::Control::FORCE }
+        Output::Forces([f1, f2, f3, f4]) => {
+            let scale = craft.per_force_max_1_n;
+            control.payload = [f1 * scale, f2 * scale, f3 * scale, f4 * scale];
+            control.control_mode = abi::Control::FORCE;
         }
     }
 }

@@ -7,31 +7,32 @@
 
 use core::sync::atomic::Ordering::Relaxed;
 
-use quatrack::gains::table::AcceptedTable;
-use quatrack::gains::table::Vehicle;
-
 use crate::abi::{Control, SensorData, Setpoint, State};
-use crate::craft::{Craft, DECIMATION, Platform};
+use crate::builtin;
+use crate::control::Controller;
+use crate::craft::Platform;
 use crate::cycles;
-use crate::service::{self, Service};
+use crate::edge;
+use crate::service::{self, Handover, Service};
 use crate::shared::Shared;
-use crate::tables::Refusal;
 use crate::try_cell::TryCell;
-use crate::upload::{Packet, Status, Uploads};
+use crate::upload::Packet;
 
 /// Parameters and log variables; `quatrack.h` has the same struct.
 #[unsafe(no_mangle)]
 pub static quatrack: Shared = Shared::new();
 
+/// The stabilizer task's.
+static CONTROLLER: TryCell<Controller> = TryCell::new(builtin::CONTROLLER);
+/// The app task's.
 static SERVICE: TryCell<Service> = TryCell::new(Service::new());
-static UPLOADS: TryCell<(Uploads, Option<Vehicle>)> = TryCell::new((Uploads::new(), None));
-static CRAFT: TryCell<Option<Craft>> = TryCell::new(None);
-static TABLE: TryCell<Option<AcceptedTable>> = TryCell::new(None);
+/// From the one to the other.
+static HANDOVER: TryCell<Handover> = TryCell::new(Handover::new());
 
 /// The firmware selects this controller: what it remembers of an earlier flight no longer holds.
 #[unsafe(no_mangle)]
 pub extern "C" fn controllerOutOfTreeInit() {
-    SERVICE.with(Service::restart);
+    CONTROLLER.with(Controller::forget);
 }
 
 /// Whether the controller can be selected: always. Without a known craft it keeps the motors off.
@@ -50,54 +51,36 @@ pub extern "C" fn controllerOutOfTree(
     step: u32,
 ) {
     let begun = cycles::now();
-    let output = SERVICE.with(|service| {
-        if step % DECIMATION != 0 {
-            take_what_the_app_has(service);
+    CONTROLLER.with(|controller| {
+        if controller.step(setpoint, sensors, state, step) {
+            edge::put(&controller.outcome().output, controller.craft(), control);
+            quatrack.log.cycles.store(cycles::since(begun), Relaxed);
+        } else {
+            service::show(&quatrack, controller);
+            HANDOVER.with(|handover| handover.take_over(controller));
         }
-        service.step(&quatrack, setpoint, sensors, state, step)
     });
-    if let Some(Some(output)) = output {
-        *control = output;
-        quatrack.log.cycles.store(cycles::since(begun), Relaxed);
-    }
 }
 
-/// The app says which craft the firmware was built for. Starts the controller anew, motors off.
+/// The app says which craft the firmware was built for, before anything else. Starts everything anew, motors off.
 ///
 /// Returns whether there are tables for it.
 #[unsafe(no_mangle)]
 pub extern "C" fn quatrackPlatform(platform: &Platform) -> bool {
-    let Some(craft) = Craft::of(platform) else { return false };
-    let told = UPLOADS.with(|(_, vehicle)| *vehicle = Some(craft.vehicle));
-    told.is_some() && CRAFT.with(|place| *place = Some(craft)).is_some()
+    SERVICE.with(|service| service.start(platform)).unwrap_or(false)
 }
 
 /// The app passes a packet of the app channel and gets the answer to send back.
 #[unsafe(no_mangle)]
 pub extern "C" fn quatrackPacket(packet: &Packet, answer: &mut Packet) {
-    let busy = |uploads: &Uploads| uploads.answer(packet.bytes[0], Status::Busy);
-    let taken = UPLOADS.with(|(uploads, vehicle)| {
-        let Some(vehicle) = vehicle else { return busy(uploads) };
-        let (answer, table) = uploads.take(packet, vehicle);
-        match table {
-            Some(table) if TABLE.with(|place| *place = Some(table)).is_none() => busy(uploads),
-            None if answer.bytes[1] >= Status::Table as u8 => {
-                service::refuse(&quatrack, Refusal::Table);
-                answer
-            }
-            _ => answer,
-        }
-    });
-    *answer = taken.unwrap_or(Packet { length: 0, ..*packet });
+    if let Some(taken) = SERVICE.with(|service| service.packet(packet, &quatrack)) {
+        *answer = taken;
+    }
 }
 
-/// A craft or a table that the app's task has put down.
-#[inline]
-fn take_what_the_app_has(service: &mut Service) {
-    if let Some(Some(craft)) = CRAFT.with(Option::take) {
-        service.start(&craft, &quatrack);
-    }
-    if let Some(Some(table)) = TABLE.with(Option::take) {
-        service.upload(&table);
-    }
+/// The app lets the parameters be looked at, a few times a second: a change of the table or of a scale is flown from then
+/// on.
+#[unsafe(no_mangle)]
+pub extern "C" fn quatrackService() {
+    SERVICE.with(|service| service.keep_house(&quatrack, &HANDOVER));
 }

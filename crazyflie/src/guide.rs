@@ -39,6 +39,21 @@ pub struct Guide {
     period_s: f32,
 }
 
+/// A flight at one step.
+#[derive(Clone, Copy, Debug)]
+pub struct Along<'a> {
+    /// How to fly.
+    pub flight: &'a Flight,
+    /// Along what.
+    pub stream: &'a Stream,
+    /// When.
+    pub now_ms: u32,
+    /// Whether the law looks beyond the jerk.
+    pub to_fifth: bool,
+    /// Of the craft.
+    pub mass_kg: f32,
+}
+
 impl Guide {
     /// At the origin; to be put somewhere by [`Self::begin`].
     pub const fn new(period_s: f32) -> Self {
@@ -53,33 +68,25 @@ impl Guide {
         self.heading_rad = heading_rad;
     }
 
-    /// What to follow at this step of a flight that goes along a stream; nothing where the horizontal asks for body rates,
-    /// which no flat sample has.
+    /// What to follow at this step of a flight that goes along a stream, into `sample`; not for a horizontal that asks for
+    /// body rates, which no flat sample has.
     #[inline]
-    pub fn sample(
-        &mut self,
-        flight: &Flight,
-        stream: &Stream,
-        now_ms: u32,
-        state: &State,
-        mass_kg: f32,
-        bounds: &Bounds,
-    ) -> FifthOrderSample {
-        let mut sample = stream.at(now_ms);
+    pub fn put(&mut self, along: &Along<'_>, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) {
+        let Along { flight, stream, now_ms, to_fifth, .. } = along;
+        stream.at(*now_ms, *to_fifth, sample);
         match flight.turn {
             Turn::Heading { heading_rad, body_rate_rad_s } => {
-                sample.flat.heading_rad = heading_rad;
+                (sample.flat.heading_rad, sample.flat.heading_rate_rad_s) = (heading_rad, 0.0);
                 if body_rate_rad_s != 0.0 {
-                    self.turn_along(&mut sample, body_rate_rad_s, stream.age_s(now_ms));
+                    self.turn_along(sample, body_rate_rad_s, stream.age_s(*now_ms));
                 }
             }
-            Turn::Rate(rate_rad_s) => self.turn(&mut sample, rate_rad_s),
+            Turn::Rate(rate_rad_s) => self.turn(sample, rate_rad_s),
         }
         if !matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position)) {
-            self.fill(&mut sample, flight, state, mass_kg, bounds);
+            self.fill(sample, flight, state, along.mass_kg, bounds);
         }
-        leash(&mut sample, state, bounds.leash_m);
-        sample
+        leash(sample, state, bounds.leash_m);
     }
 
     /// A heading that moves on between setpoints. The firmware's trajectories send the body rate, the heading's rate times

@@ -6,8 +6,7 @@
 //! two such snaps the crackle, which carries the snap on to the newest one. Nothing is differenced over a jump, over a gap
 //! of more than [`GAP_MAX_MS`], or from a stream that sends no jerk.
 
-use quatrack::FlatSample;
-use quatrack::motor_reference::FifthOrderSample;
+use quatrack::FifthOrderSample;
 use quatrack::nalgebra::Vector3;
 
 use crate::demand::Motion;
@@ -82,19 +81,37 @@ impl Stream {
         age_ms.min(EXTRAPOLATION_MAX_MS) as f32 * 1e-3
     }
 
-    /// The motion at a time, heading aside.
-    pub fn at(&self, now_ms: u32) -> FifthOrderSample {
+    /// The motion at a time, heading aside, into `sample`; with snap and crackle only where they are asked for.
+    #[inline]
+    pub fn at(&self, now_ms: u32, to_fifth: bool, sample: &mut FifthOrderSample) {
         let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
-        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
-        if age_ms == 0 {
-            return self.sample(*p, *v, *a, *j, self.snap_m_s4);
-        }
         if age_ms > EXTRAPOLATION_MAX_MS {
-            return self.end();
+            return self.end(sample);
         }
         let t = age_ms as f32 * 1e-3;
-        let (t2, t3, t4, t5) = (t * (1.0 / 2.0), t * (1.0 / 3.0), t * (1.0 / 4.0), t * (1.0 / 5.0));
+        if to_fifth { self.to_fifth(t, sample) } else { self.to_jerk(t, sample) }
+    }
+
+    #[inline]
+    fn to_jerk(&self, t: f32, sample: &mut FifthOrderSample) {
+        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
+        let (t2, t3) = (t * (1.0 / 2.0), t * (1.0 / 3.0));
+        let along = |p: f32, v: f32, a: f32, j: f32| {
+            (p + t * (v + t2 * (a + t3 * j)), v + t * (a + t2 * j), a + t * j)
+        };
+        let (x, y, z) = (along(p.x, v.x, a.x, j.x), along(p.y, v.y, a.y, j.y), along(p.z, v.z, a.z, j.z));
+        let flat = &mut sample.flat;
+        flat.position_m = Vector3::new(x.0, y.0, z.0);
+        flat.velocity_m_s = Vector3::new(x.1, y.1, z.1);
+        flat.acceleration_m_s2 = Vector3::new(x.2, y.2, z.2);
+        flat.jerk_m_s3 = *j;
+    }
+
+    #[inline]
+    fn to_fifth(&self, t: f32, sample: &mut FifthOrderSample) {
+        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
         let (s, c) = (&self.snap_m_s4, &self.crackle_m_s5);
+        let (t2, t3, t4, t5) = (t * (1.0 / 2.0), t * (1.0 / 3.0), t * (1.0 / 4.0), t * (1.0 / 5.0));
         let along = |p: f32, v: f32, a: f32, j: f32, s: f32, c: f32| {
             (
                 p + t * (v + t2 * (a + t3 * (j + t4 * (s + t5 * c)))),
@@ -104,54 +121,32 @@ impl Stream {
                 s + t * c,
             )
         };
-        let (px, vx, ax, jx, sx) = along(p.x, v.x, a.x, j.x, s.x, c.x);
-        let (py, vy, ay, jy, sy) = along(p.y, v.y, a.y, j.y, s.y, c.y);
-        let (pz, vz, az, jz, sz) = along(p.z, v.z, a.z, j.z, s.z, c.z);
-        self.sample(
-            Vector3::new(px, py, pz),
-            Vector3::new(vx, vy, vz),
-            Vector3::new(ax, ay, az),
-            Vector3::new(jx, jy, jz),
-            Vector3::new(sx, sy, sz),
-        )
-    }
-
-    fn sample(
-        &self,
-        p: Vector3<f32>,
-        v: Vector3<f32>,
-        a: Vector3<f32>,
-        j: Vector3<f32>,
-        s: Vector3<f32>,
-    ) -> FifthOrderSample {
-        FifthOrderSample {
-            flat: FlatSample {
-                position_m: p,
-                velocity_m_s: v,
-                acceleration_m_s2: a,
-                jerk_m_s3: j,
-                heading_rad: 0.0,
-                heading_rate_rad_s: 0.0,
-            },
-            snap_m_s4: s,
-            crackle_m_s5: self.crackle_m_s5,
-            heading_acceleration_rad_s2: 0.0,
-            heading_jerk_rad_s3: 0.0,
-        }
+        let x = along(p.x, v.x, a.x, j.x, s.x, c.x);
+        let y = along(p.y, v.y, a.y, j.y, s.y, c.y);
+        let z = along(p.z, v.z, a.z, j.z, s.z, c.z);
+        let flat = &mut sample.flat;
+        flat.position_m = Vector3::new(x.0, y.0, z.0);
+        flat.velocity_m_s = Vector3::new(x.1, y.1, z.1);
+        flat.acceleration_m_s2 = Vector3::new(x.2, y.2, z.2);
+        flat.jerk_m_s3 = Vector3::new(x.3, y.3, z.3);
+        sample.snap_m_s4 = Vector3::new(x.4, y.4, z.4);
+        sample.crackle_m_s5 = *c;
     }
 
     /// Where a motion without successors has come to.
     #[cold]
-    fn end(&self) -> FifthOrderSample {
-        let since_ms = self.since_ms.unwrap_or_default();
-        let last = self.at(since_ms.wrapping_add(EXTRAPOLATION_MAX_MS));
-        FifthOrderSample::at_rest(last.flat.position_m, 0.0)
+    #[inline(never)]
+    fn end(&self, sample: &mut FifthOrderSample) {
+        self.to_fifth(EXTRAPOLATION_MAX_MS as f32 * 1e-3, sample);
+        *sample = FifthOrderSample::at_rest(sample.flat.position_m, 0.0);
     }
 
     /// Snap and crackle at a setpoint that continues the ones before, so many milliseconds after the last of them.
     fn difference(&mut self, motion: &Motion, gap_ms: u32) -> Arrival {
         let gap_s = gap_ms as f32 * 1e-3;
-        let expected = self.at(self.since_ms.unwrap_or_default().wrapping_add(gap_ms)).flat;
+        let mut expected = FifthOrderSample::at_rest(motion.position_m, 0.0);
+        self.to_fifth(gap_s, &mut expected);
+        let expected = &expected.flat;
         let is_near = |a: &Vector3<f32>, b: &Vector3<f32>, bound: f32| {
             (a.x - b.x).abs() <= bound && (a.y - b.y).abs() <= bound && (a.z - b.z).abs() <= bound
         };

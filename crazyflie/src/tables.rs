@@ -4,6 +4,7 @@
 use quatrack::gains::paper;
 use quatrack::gains::table::{AcceptedTable, Rows};
 use quatrack::law::{ActuatorAwareGain, EquilibriumGain, FlatOutputGain};
+use quatrack::nalgebra::Vector3;
 use quatrack::{ActuatorAware, Airframe, AirframeFigures, Limits};
 
 use crate::builtin;
@@ -70,11 +71,13 @@ impl MotorGains {
     ///
     /// # Errors
     /// [`Refusal::MotorLag`] for a lag that the control rate cannot follow.
-    pub fn new(gain: &ActuatorAwareGain, airframe: &Airframe, lag_s: f32) -> Result<Self, Refusal> {
+    pub const fn new(gain: &ActuatorAwareGain, airframe: &Airframe, lag_s: f32) -> Result<Self, Refusal> {
         let figures = AirframeFigures { motor_lag_s: lag_s, ..*airframe.figures() };
-        let airframe = Airframe::new(figures).map_err(|_| Refusal::MotorLag)?;
-        let law = ActuatorAware::new(&builtin::ANY, &airframe, RATE).map_err(|_| Refusal::MotorLag)?;
-        Ok(Self { gain: *gain, airframe, law })
+        let Ok(airframe) = Airframe::new(figures) else { return Err(Refusal::MotorLag) };
+        match ActuatorAware::new(&builtin::ANY, &airframe, RATE) {
+            Ok(law) => Ok(Self { gain: *gain, airframe, law }),
+            Err(_) => Err(Refusal::MotorLag),
+        }
     }
 
     /// The law.
@@ -136,8 +139,6 @@ pub struct Table {
     pub id: TableId,
     /// Its gain.
     pub gains: Gains,
-    /// What the paper's laws may command.
-    pub limits: Limits,
     /// The loop stays stable with each of its channels weakened or strengthened by this factor, all at once.
     pub margin: f32,
 }
@@ -176,7 +177,6 @@ impl Table {
     pub fn choose(number: u8, craft: &Craft, uploaded: Option<&AcceptedTable>) -> Result<Self, Refusal> {
         let motor_lag_s = craft.motor_lag_s;
         let id = TableId::numbered(number).ok_or(Refusal::Unknown)?;
-        let limits = limits(&craft.airframe);
         let (gains, margin, lag_max_s) = match id {
             TableId::ActuatorAware => return Self::actuator_aware(craft),
             TableId::LyapE => (Gains::Equilibrium(paper::LYAP_E), builtin::LYAP_E.0, builtin::LYAP_E.1),
@@ -186,7 +186,7 @@ impl Table {
             TableId::Uploaded => return Self::uploaded(uploaded.ok_or(Refusal::NothingUploaded)?, motor_lag_s),
         };
         let margin = behind_motors(margin, motor_lag_s, lag_max_s)?;
-        Ok(Self { id, gains, limits, margin })
+        Ok(Self { id, gains, margin })
     }
 
     /// The craft's own.
@@ -197,7 +197,7 @@ impl Table {
     pub fn actuator_aware(craft: &Craft) -> Result<Self, Refusal> {
         let (gain, lag_s, margin) = builtin::ACTUATOR_AWARE.get(craft.index).ok_or(Refusal::Unknown)?;
         let gains = Gains::ActuatorAware(MotorGains::new(gain, &craft.airframe, *lag_s)?);
-        Ok(Self { id: TableId::ActuatorAware, gains, limits: limits(&craft.airframe), margin: *margin })
+        Ok(Self { id: TableId::ActuatorAware, gains, margin: *margin })
     }
 
     #[inline(never)]
@@ -209,7 +209,7 @@ impl Table {
         }
         .map_err(|_| Refusal::Table)?;
         let margin = behind_motors(certificate.all_channels.gain_factor, motor_lag_s, certificate.motor_lag_max_s)?;
-        Ok(Self { id: TableId::Uploaded, gains, limits: table.limits(), margin })
+        Ok(Self { id: TableId::Uploaded, gains, margin })
     }
 
     /// The same with its feedback scaled, as far as its margin allows.
@@ -241,17 +241,13 @@ impl Scales {
     pub const ONE: Self = Self { position: 1.0, yaw: 1.0 };
 }
 
-/// What the motors of a craft can do in the paper's terms.
-pub fn limits(airframe: &Airframe) -> Limits {
+/// What the motors of a craft can do in the paper's terms, within body rates that its owner allows, rad/s.
+pub fn limits_within(airframe: &Airframe, body_rates_rad_s: Vector3<f32>) -> Limits {
     let figures = airframe.figures();
     let per_mass = 4.0 / figures.mass_kg;
-    let rates = quatrack::nalgebra::Vector3::new(BODY_RATE_MAX_RAD_S, BODY_RATE_MAX_RAD_S, YAW_RATE_MAX_RAD_S);
-    Limits::new(figures.force_min_n * per_mass, figures.force_max_n * per_mass, rates).unwrap_or(Limits::NONE)
+    let limits = Limits::new(figures.force_min_n * per_mass, figures.force_max_n * per_mass, body_rates_rad_s);
+    limits.unwrap_or(Limits::NONE)
 }
-
-/// Largest body rates of the paper's tables in the image, half of what the gyroscope measures; rad/s.
-const BODY_RATE_MAX_RAD_S: f32 = 20.0;
-const YAW_RATE_MAX_RAD_S: f32 = 10.0;
 
 /// What is left of a margin of the commands behind motors that lag, through the body-rate loop: half of what the lag
 /// leaves on its way to the longest that is stable.

@@ -42,6 +42,7 @@ mod image {
                 step: u32,
             );
             pub(super) safe fn controllerOutOfTreeInit();
+            pub(super) safe fn quatrackService();
             pub(super) safe fn quatrackPlatform(platform: &[f32; 4]) -> bool;
             pub(super) static mut quatrack: [u8; 160];
         }
@@ -79,6 +80,7 @@ mod image {
             object::set(MOTOR_LAG_AT, &lag.to_le_bytes());
             object::set(TABLE_AT, &table.to_le_bytes()[..1]);
             object::quatrackPlatform(&[mass, arm, thrust, torque].map(f32::from_bits)).then_some(())?;
+            object::quatrackService();
             let mut control = Bytes([0; CONTROL_BYTES]);
             for _ in 0..number {
                 let [step, is_selected] = read_words::<2>(&mut calls)?;

@@ -91,6 +91,7 @@ impl Firmware {
         parameters.position_scale.set(1.0);
         parameters.yaw_scale.set(1.0);
         ffi::quatrackPlatform(&platform(vehicle));
+        ffi::quatrackService();
         let mut firmware = Self {
             control: abi::Control::default(),
             setpoint: abi::Setpoint::default(),
