@@ -113,11 +113,12 @@ pub struct Controller {
     stream: Stream,
     guide: Guide,
     sample: FifthOrderSample,
-    last_step: Option<u32>,
+    last_step: u32,
+    /// The controller has just been selected.
+    is_selected: bool,
     bad_states_in_a_row: u16,
     mode: Mode,
     outcome: Outcome,
-    measured: Quaternion,
     counters: Counters,
 }
 
@@ -140,11 +141,11 @@ impl Controller {
             stream: Stream::new(),
             guide: Guide::new(PERIOD_S),
             sample: FifthOrderSample::at_rest(ZERO, 0.0),
-            last_step: None,
+            last_step: 0,
+            is_selected: true,
             bad_states_in_a_row: 0,
             mode: Mode::NoCraft,
             outcome: Outcome { output, limited, target: Quaternion::IDENTITY, error_m: ZERO },
-            measured: Quaternion::IDENTITY,
             counters: Counters { bad_states: 0, bad_setpoints: 0, limited_steps: 0, jumps: 0 },
         }
     }
@@ -165,14 +166,13 @@ impl Controller {
             self.outcome.output = Output::OFF;
             return true;
         }
-        let is_late = self.last_step.is_none_or(|last| step.wrapping_sub(last) > GAP_MAX_MS);
-        self.last_step = Some(step);
         let state = RigidState { state: edge::state(state), body_rates_rad_s: edge::body_rates_rad_s(sensors) };
-        self.measured = state.state.attitude;
+        let is_late = step.wrapping_sub(self.last_step) > GAP_MAX_MS || self.is_selected;
+        self.last_step = step;
         if is_late {
             self.restart();
         }
-        if is_late || !edge::is_same(&self.setpoint, setpoint) {
+        if is_late || edge::is_urgent(&self.setpoint, setpoint) {
             self.take(setpoint, &state.state, step);
         }
         self.outcome.limited = MotorLimited::NOTHING;
@@ -189,18 +189,30 @@ impl Controller {
         true
     }
 
+    /// Between control steps: takes a setpoint that continues a flight, so that no control step has to. Whether there was
+    /// one. Until then the one before is carried on, which leads to the same place unless it jumps.
+    #[inline]
+    pub fn between(&mut self, setpoint: &abi::Setpoint, state: &abi::State, step: u32) -> bool {
+        let is_new = self.flight.is_some() && !edge::is_same(&self.setpoint, setpoint);
+        if is_new {
+            // It has come with the control step before.
+            self.take(setpoint, &edge::state(state), step.wrapping_sub(1));
+        }
+        is_new
+    }
+
     /// Another controller has flown in the meantime, or nobody: nothing that was remembered holds. The motors are
     /// taken to carry the craft until a setpoint says that they are off.
     #[cold]
     #[inline(never)]
     fn restart(&mut self) {
         self.memory = ActuatorMemory::hovering(&self.craft.airframe);
-        (self.flight, self.fade_left, self.bad_states_in_a_row) = (None, 0, 0);
+        (self.flight, self.fade_left, self.bad_states_in_a_row, self.is_selected) = (None, 0, 0, false);
     }
 
     /// Forgets what it remembers, at the next control step.
     pub fn forget(&mut self) {
-        self.last_step = None;
+        self.is_selected = true;
     }
 
     /// Takes a setpoint whose contents have changed.
@@ -341,7 +353,7 @@ impl Controller {
     #[inline(never)]
     pub fn change_craft(&mut self, craft: &Craft) {
         self.craft = *craft;
-        (self.mode, self.flight, self.fade_left, self.last_step) = (Mode::Off, None, 0, None);
+        (self.mode, self.flight, self.fade_left, self.is_selected) = (Mode::Off, None, 0, true);
         self.counters = Counters::default();
     }
 
@@ -372,9 +384,9 @@ impl Controller {
         &self.outcome
     }
 
-    /// Rotation vector from the reference's attitude to the measured one at the last control step, body frame, rad.
-    pub fn rotation_error_rad(&self) -> Vector3<f32> {
-        let q = self.outcome.target.conjugate() * self.measured;
+    /// Rotation vector from the last control step's reference to an attitude, body frame, rad.
+    pub fn rotation_error_rad(&self, attitude: Quaternion) -> Vector3<f32> {
+        let q = self.outcome.target.conjugate() * attitude;
         q.vector() * if q.w < 0.0 { -2.0 } else { 2.0 }
     }
 }
@@ -388,7 +400,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    #[inline]
+    #[inline(always)]
     fn step(&self, table: &Table, memory: &mut ActuatorMemory, outcome: &mut Outcome) -> Result<(), StepError> {
         let feed_forward = self.settings.feed_forward;
         match &table.gains {
@@ -415,7 +427,7 @@ impl Run<'_> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn straight(
         &self,
         tracker: &MotorTracker<'_>,
@@ -429,7 +441,7 @@ impl Run<'_> {
         Ok(())
     }
 
-    #[inline]
+    #[inline(always)]
     fn through_rates(&self, tracker: &Tracker<'_>, outcome: &mut Outcome) -> Result<(), StepError> {
         match &Reference::from_flat(&self.sample.flat) {
             Ok(reference) => self.to_wrench(tracker, reference, outcome),
@@ -440,7 +452,7 @@ impl Run<'_> {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     fn to_wrench(
         &self,
         tracker: &Tracker<'_>,

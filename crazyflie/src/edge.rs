@@ -149,20 +149,36 @@ fn sum(v: &abi::Vector) -> f32 {
     v.x + v.y + v.z
 }
 
-/// Whether two setpoints ask for the same.
-///
-/// The commander stamps every setpoint that it takes; one with the same stamp can differ only in what supervisor and
-/// collision avoidance change: modes, position, velocity. Without a stamp all of it is looked at.
+/// Whether a setpoint is of another kind than the one before: not to be put off.
 #[inline]
+pub fn is_urgent(before: &abi::Setpoint, setpoint: &abi::Setpoint) -> bool {
+    words(before) != words(setpoint)
+}
+
+/// Whether two setpoints ask for the same; when they were made does not count.
+#[inline(never)]
 pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
     let vectors = |a: &abi::Vector, b: &abi::Vector| {
         a.x.to_bits() == b.x.to_bits() && a.y.to_bits() == b.y.to_bits() && a.z.to_bits() == b.z.to_bits()
     };
-    a.timestamp == b.timestamp
-        && words(a) == words(b)
-        && vectors(&a.position, &b.position)
+    let angles = |a: &abi::Attitude, b: &abi::Attitude| {
+        a.roll.to_bits() == b.roll.to_bits()
+            && a.pitch.to_bits() == b.pitch.to_bits()
+            && a.yaw.to_bits() == b.yaw.to_bits()
+    };
+    let (p, q) = (&a.attitude_quaternion, &b.attitude_quaternion);
+    vectors(&a.position, &b.position)
         && vectors(&a.velocity, &b.velocity)
-        && (a.timestamp != 0 || is_all_the_same(a, b))
+        && vectors(&a.acceleration, &b.acceleration)
+        && vectors(&a.jerk, &b.jerk)
+        && angles(&a.attitude, &b.attitude)
+        && angles(&a.attitude_rate, &b.attitude_rate)
+        && p.x.to_bits() == q.x.to_bits()
+        && p.y.to_bits() == q.y.to_bits()
+        && p.z.to_bits() == q.z.to_bits()
+        && p.w.to_bits() == q.w.to_bits()
+        && a.thrust.to_bits() == b.thrust.to_bits()
+        && words(a) == words(b)
 }
 
 /// Modes and the frame of the velocity, as two words of the target.
@@ -174,18 +190,6 @@ fn words(setpoint: &abi::Setpoint) -> [u32; 2] {
         word([setpoint.velocity_body, x.0 as u8, y.0 as u8, z.0 as u8]),
         word([roll.0 as u8, pitch.0 as u8, yaw.0 as u8, quat.0 as u8]),
     ]
-}
-
-#[cold]
-#[inline(never)]
-fn is_all_the_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
-    let bits = |s: &abi::Setpoint| {
-        let (r, w, q) = (&s.attitude, &s.attitude_rate, &s.attitude_quaternion);
-        let (a, j) = (&s.acceleration, &s.jerk);
-        [r.roll, r.pitch, r.yaw, w.roll, w.pitch, w.yaw, q.x, q.y, q.z, q.w, s.thrust, a.x, a.y, a.z, j.x, j.y, j.z]
-            .map(f32::to_bits)
-    };
-    bits(a).iter().eq(&bits(b))
 }
 
 /// An output as the firmware takes it: forces over the largest of a motor.

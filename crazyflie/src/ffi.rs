@@ -55,10 +55,12 @@ pub extern "C" fn controllerOutOfTree(
         if controller.step(setpoint, sensors, state, step) {
             edge::put(&controller.outcome().output, controller.craft(), control);
             quatrack.log.cycles.store(cycles::since(begun), Relaxed);
-        } else {
-            service::show(&quatrack, controller);
-            HANDOVER.with(|handover| handover.take_over(controller));
+            return;
         }
+        if !controller.between(setpoint, state, step) {
+            service::show(&quatrack, controller, state);
+        }
+        HANDOVER.with(|handover| handover.take_over(controller));
     });
 }
 

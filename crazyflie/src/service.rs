@@ -7,6 +7,8 @@ use quatrack::FeedForward;
 use quatrack::gains::table::AcceptedTable;
 use quatrack::nalgebra::Vector3;
 
+use crate::abi;
+use crate::edge;
 use crate::control::{Controller, Output, Settings};
 use crate::craft::{Craft, Platform};
 use crate::guide::Bounds;
@@ -192,13 +194,14 @@ fn settings(shared: &Shared, craft: &Craft) -> Settings {
 }
 
 /// What the last control step did, into the log; in the stabilizer's task, between control steps.
-pub fn show(shared: &Shared, controller: &Controller) {
+#[inline(never)]
+pub fn show(shared: &Shared, controller: &Controller, state: &abi::State) {
     let log = &shared.log;
     // A conversion from a float cuts to the range, and takes NaN for 0.
     let thousandths = |v: &Vector3<f32>| [(v.x * 1e3) as i16, (v.y * 1e3) as i16, (v.z * 1e3) as i16];
     let outcome = controller.outcome();
     log.error_mm.iter().zip(thousandths(&outcome.error_m)).for_each(|(to, value)| to.store(value, Relaxed));
-    let rotation = thousandths(&controller.rotation_error_rad());
+    let rotation = thousandths(&controller.rotation_error_rad(edge::state(state).attitude));
     log.rotation_mrad.iter().zip(rotation).for_each(|(to, value)| to.store(value, Relaxed));
     let scale = 1e3 / controller.craft().airframe.figures().force_max_n;
     let forces = match &outcome.output {

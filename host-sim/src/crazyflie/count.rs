@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
+use quatrack::checksum::crc32c;
 use serde::Serialize;
 
 use super::course::Course;
@@ -135,7 +136,11 @@ fn compare(flights: &[(&'static str, &'static str, Tune, Recording)], counted: &
 fn build_object(checkout: &Path) -> Result<PathBuf, PilError> {
     let object = checkout.join("target").join("quatrack-crazyflie.o");
     run(Command::new(checkout.join("crazyflie/build")).arg(&object).current_dir(checkout), "crazyflie/build")?;
-    Ok(object)
+    // Cargo links again only where an argument changes: the name says what is in it.
+    let bytes = fs::read(&object).map_err(PilError::io("reading the object"))?;
+    let named = object.with_file_name(format!("quatrack-crazyflie-{:08x}.o", crc32c(&bytes)));
+    fs::rename(&object, &named).map_err(PilError::io("naming the object"))?;
+    Ok(named)
 }
 
 fn build_image(checkout: &Path, object: &Path) -> Result<PathBuf, PilError> {
