@@ -15,7 +15,9 @@
 
 use core::fmt;
 
+use crate::clock::Rate;
 use crate::flatness::GRAVITY_M_S2;
+use crate::motor_lag::MotorLag;
 
 /// What is measured of a craft; checked by [`Airframe::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +45,8 @@ pub struct AirframeFigures {
 pub struct Airframe {
     figures: AirframeFigures,
     pub(crate) mixing: Mixing,
+    /// How far a command is to be ahead of the force, s.
+    pub(crate) lead_s: f32,
 }
 
 /// Motor forces per unit of what is asked for.
@@ -106,37 +110,36 @@ pub enum AirframeError {
 }
 
 impl Airframe {
-    /// Crazyflie 2.1; inertia from Förster, System Identification of the Crazyflie 2.0 Nano Quadrocopter (2015); motor lag at
-    /// the top of the published 63 to 126 ms.
+    /// Crazyflie 2.1. The sources of these figures stand in its vehicle file, `gains/vehicles/crazyflie-2.1.toml`, as do those
+    /// of the others in theirs.
     pub const CRAZYFLIE_2_1: Self = Self::constant(AirframeFigures {
         mass_kg: 0.029,
         inertia_kg_m2: [16.571_71e-6, 16.655_602e-6, 29.261_652e-6],
-        lever_arm_m: 0.0325,
-        torque_per_thrust_m: 0.006_992_9,
-        force_min_n: 0.012_818,
+        lever_arm_m: 0.032_526_91,
+        torque_per_thrust_m: 0.006_992_894_7,
+        force_min_n: 0.012_817_578,
         force_max_n: 0.12,
         motor_lag_s: 0.126,
     });
 
-    /// Crazyflie 2.1 with the thrust upgrade kit. Inertia estimated: that of the 2.1 scaled by mass.
+    /// Crazyflie 2.1 with the thrust upgrade kit.
     pub const CRAZYFLIE_2_1_UPGRADE_KIT: Self = Self::constant(AirframeFigures {
         mass_kg: 0.0325,
-        inertia_kg_m2: [18.571_744e-6, 18.665_761e-6, 32.793_23e-6],
-        lever_arm_m: 0.0325,
-        torque_per_thrust_m: 0.005_164_9,
-        force_min_n: 0.019_226,
+        inertia_kg_m2: [20.275e-6, 20.359e-6, 36.668e-6],
+        lever_arm_m: 0.032_526_91,
+        torque_per_thrust_m: 0.005_164_862_6,
+        force_min_n: 0.019_226_369,
         force_max_n: 0.18,
-        motor_lag_s: 0.126,
+        motor_lag_s: 0.09,
     });
 
-    /// Crazyflie 2.1 Brushless; lag at the top of the published 50 to 66 ms. Inertia estimated: that of the 2.1 scaled by
-    /// mass and by the square of the arm.
+    /// Crazyflie 2.1 Brushless.
     pub const CRAZYFLIE_2_1_BRUSHLESS: Self = Self::constant(AirframeFigures {
         mass_kg: 0.0393,
-        inertia_kg_m2: [26.533_2e-6, 26.667_5e-6, 46.851_2e-6],
-        lever_arm_m: 0.035_355,
-        torque_per_thrust_m: 0.005_692_8,
-        force_min_n: 0.021_363,
+        inertia_kg_m2: [33.0e-6, 36.0e-6, 59.0e-6],
+        lever_arm_m: 0.035_355_34,
+        torque_per_thrust_m: 0.005_692_788_4,
+        force_min_n: 0.021_362_63,
         force_max_n: 0.2,
         motor_lag_s: 0.066,
     });
@@ -182,7 +185,7 @@ impl Airframe {
             inertia: [ix * lever, iy * lever, iz * yaw],
             gyroscopic: [(iz - iy) * lever, (ix - iz) * lever, (iy - ix) * yaw],
         };
-        Ok(Self { figures, mixing })
+        Ok(Self { figures, mixing, lead_s: motor_lag_s })
     }
 
     /// The same craft with motors that answer faster or slower: for a gain that was designed for another lag.
@@ -191,6 +194,18 @@ impl Airframe {
     /// [`AirframeError::OutOfRange`].
     pub const fn with_motor_lag(&self, motor_lag_s: f32) -> Result<Self, AirframeError> {
         Self::new(AirframeFigures { motor_lag_s, ..self.figures })
+    }
+
+    /// The same craft under commands that are held over the period of `rate`: they take effect half a period late, on average,
+    /// and references made for it are ahead by as much.
+    pub const fn commanded_at(&self, rate: Rate) -> Self {
+        Self { lead_s: self.figures.motor_lag_s + 0.5 / rate.hz() as f32, ..*self }
+    }
+
+    /// Both, for a lag that is known to be one.
+    pub(crate) const fn reckoning_with(&self, lag: &MotorLag) -> Self {
+        let figures = AirframeFigures { motor_lag_s: lag.lag_s(), ..self.figures };
+        Self { figures, lead_s: lag.lag_s() + 0.5 * lag.period_s(), ..*self }
     }
 
     const fn constant(figures: AirframeFigures) -> Self {

@@ -1,6 +1,8 @@
 //! The command: thrust and body rates in, the same within the vehicle's limits out, with a report of what was limited.
 
 use core::fmt;
+use core::hint::cold_path;
+use core::num::NonZeroU8;
 
 use nalgebra::Vector3;
 
@@ -17,6 +19,13 @@ pub struct Command {
 impl Command {
     /// No thrust, no rotation: what a stopped craft is given.
     pub const ZERO: Self = Self { thrust_m_s2: 0.0, body_rates_rad_s: Vector3::new(0.0, 0.0, 0.0) };
+
+    /// Whether all four numbers are finite.
+    #[cold]
+    pub fn is_finite(&self) -> bool {
+        let Self { thrust_m_s2: thrust, body_rates_rad_s: rates } = self;
+        is_finite(*thrust) && is_finite(rates.x) && is_finite(rates.y) && is_finite(rates.z)
+    }
 }
 
 /// What a vehicle can be asked for; built with [`Limits::new`].
@@ -60,41 +69,62 @@ impl fmt::Display for LimitsError {
 impl core::error::Error for LimitsError {}
 
 /// Which parts of a command were cut to the limits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "u8", into = "u8"))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Limited {
-    /// Bit i for the i-th of `T p q r`.
-    bits: u8,
+    /// Twice [`Self::bits`], and one: never zero, so that a `Result` needs no discriminant of its own to be written.
+    marked: NonZeroU8,
 }
 
 impl Limited {
     /// Nothing was cut.
-    pub const NOTHING: Self = Self { bits: 0 };
+    pub const NOTHING: Self = Self { marked: NonZeroU8::MIN };
 
     /// Whether anything was cut.
     pub const fn any(self) -> bool {
-        self.bits != 0
+        self.bits() != 0
     }
 
     /// Whether the thrust was cut.
     pub const fn thrust(self) -> bool {
-        self.bits & 1 != 0
+        self.bits() & 1 != 0
     }
 
     /// Whether the body rates `p q r` were cut, each.
     pub const fn body_rates(self) -> [bool; 3] {
-        [self.bits & 2 != 0, self.bits & 4 != 0, self.bits & 8 != 0]
+        let bits = self.bits();
+        [bits & 2 != 0, bits & 4 != 0, bits & 8 != 0]
     }
 
-    /// One bit for each of `T p q r`, lowest first; for a log or a link.
+    /// Bit i for the i-th of `T p q r`; for a log or a link.
     pub const fn bits(self) -> u8 {
-        self.bits
+        self.marked.get() >> 1
     }
 
     /// From [`Self::bits`]; higher bits are dropped.
     pub const fn from_bits(bits: u8) -> Self {
-        Self { bits: bits & 0b1111 }
+        match NonZeroU8::new((bits & 0b1111) << 1 | 1) {
+            Some(marked) => Self { marked },
+            None => Self::NOTHING,
+        }
+    }
+
+    #[inline(always)]
+    fn note(&mut self, bit: u8) {
+        self.marked |= bit << 1;
+    }
+}
+
+impl Default for Limited {
+    fn default() -> Self {
+        Self::NOTHING
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for Limited {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "Limited({=u8:#06b})", self.bits());
     }
 }
 
@@ -106,7 +136,7 @@ impl From<u8> for Limited {
 
 impl From<Limited> for u8 {
     fn from(limited: Limited) -> Self {
-        limited.bits
+        limited.bits()
     }
 }
 
@@ -156,43 +186,56 @@ impl Limits {
     #[inline]
     pub fn saturate(&self, command: &Command) -> Option<(Command, Limited)> {
         let Command { thrust_m_s2: thrust, body_rates_rad_s: rates } = *command;
+        // A sum is finite only if all of its terms are; the converse fails only near the end of f32.
+        if !is_finite((thrust + rates.x) + (rates.y + rates.z)) && !command.is_finite() {
+            return None;
+        }
         let max = &self.body_rates_max_rad_s;
         let mut limited = Limited::NOTHING;
-        let thrust = within(thrust, self.thrust_min_m_s2, self.thrust_max_m_s2, 1, &mut limited)?;
-        let p = within_size(rates.x, max.x, 2, &mut limited)?;
-        let q = within_size(rates.y, max.y, 4, &mut limited)?;
-        let r = within_size(rates.z, max.z, 8, &mut limited)?;
+        let thrust = within(thrust, self.thrust_min_m_s2, self.thrust_max_m_s2, 1, &mut limited);
+        let p = within_size(rates.x, max.x, 2, &mut limited);
+        let q = within_size(rates.y, max.y, 4, &mut limited);
+        let r = within_size(rates.z, max.z, 8, &mut limited);
         Some((Command { thrust_m_s2: thrust, body_rates_rad_s: Vector3::new(p, q, r) }, limited))
     }
 }
 
-// Both tests below fail for NaN, and what fails is looked at again. `f32::min` and `max` would be library calls on the
-// Cortex-M4, and turn NaN into a limit.
+// `f32::min` and `max` would be library calls on the Cortex-M4.
 
-/// A value cut to `[min, max]`, noted as `bit` where it was; nothing where it is not finite.
+/// A finite value cut to `[min, max]`, noted as `bit` where it was.
 #[inline(always)]
-fn within(value: f32, min: f32, max: f32, bit: u8, limited: &mut Limited) -> Option<f32> {
-    if value >= min && value <= max {
-        return Some(value);
-    }
-    limited.bits |= bit;
-    is_finite(value).then_some(if value > max { max } else { min })
+fn within(value: f32, min: f32, max: f32, bit: u8, limited: &mut Limited) -> f32 {
+    let bound = if value > max {
+        max
+    } else if value < min {
+        min
+    } else {
+        return value;
+    };
+    cold_path();
+    limited.note(bit);
+    bound
 }
 
-/// A value cut to `[-max, max]`, likewise.
+/// A finite value cut to `[-max, max]`, likewise; on the bits, in the integer unit, where it takes fewer instructions.
 #[inline(always)]
-fn within_size(value: f32, max: f32, bit: u8, limited: &mut Limited) -> Option<f32> {
-    if value.abs() <= max {
-        return Some(value);
+fn within_size(value: f32, max: f32, bit: u8, limited: &mut Limited) -> f32 {
+    let (bits, max) = (value.to_bits(), max.to_bits());
+    if bits << 1 <= max << 1 {
+        return value;
     }
-    limited.bits |= bit;
-    is_finite(value).then_some(if value > 0.0 { max } else { -max })
+    cold_path();
+    limited.note(bit);
+    f32::from_bits(bits & SIGN | max & !SIGN)
 }
 
-/// By a comparison, as the rest of the step: the integer test of `f32::is_finite` moves the value out of the FPU.
+/// The sign bit.
+const SIGN: u32 = 1 << 31;
+
+/// The bits without the sign against those of infinity.
 #[inline(always)]
 fn is_finite(value: f32) -> bool {
-    value.abs() <= f32::MAX
+    value.to_bits() << 1 < f32::INFINITY.to_bits() << 1
 }
 
 #[cfg(test)]

@@ -6,10 +6,12 @@
 use nalgebra::Vector3;
 
 use crate::command::{Command, Limited};
+use crate::controller::{Controller, Memory};
 use crate::error::StepError;
 use crate::reference::Reference;
 use crate::state::State;
 use crate::tracker::{Step, Tracker};
+use crate::trajectory::Progress;
 
 /// How far the way from one tracker to the other is. Each step of it takes as long as both trackers' steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,13 +45,35 @@ impl Crossfade {
         reference: &Reference,
     ) -> Result<Step, StepError> {
         let to = new.step(state, reference)?;
+        Ok(self.towards(to, || old.step(state, reference)))
+    }
+
+    /// The same for laws that remember. What is remembered is one: the new law is given it and moves it on, the old one
+    /// reads it. Begin the way from a law that remembers nothing with [`Memory::new`].
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    pub fn step_controllers(
+        &mut self,
+        (old, new): (&Controller<'_>, &Controller<'_>),
+        memory: &mut Memory,
+        progress: Option<Progress>,
+        state: &State,
+        reference: &Reference,
+    ) -> Result<Step, StepError> {
+        let mut before = *memory;
+        let to = new.step(memory, progress, state, reference)?;
+        Ok(self.towards(to, || old.step(&mut before, progress, state, reference)))
+    }
+
+    /// The next step on the way to `to`.
+    fn towards(&mut self, to: Step, from: impl FnOnce() -> Result<Step, StepError>) -> Step {
         self.done = self.done.saturating_add(1);
         if self.is_over() {
             self.done = self.steps;
-            return Ok(to);
+            return to;
         }
-        let Ok(from) = old.step(state, reference) else { return Ok(to) };
-        Ok(between(&from, &to, f32::from(self.done) / f32::from(self.steps)))
+        from().map_or(to, |from| between(&from, &to, f32::from(self.done) / f32::from(self.steps)))
     }
 }
 

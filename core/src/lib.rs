@@ -22,12 +22,17 @@
 //! ```text
 //! link                        frames, uploads (feature `link`)
 //!   crossfade                 from one tracker to another
-//!   tracker, supervisor       one step: normalise, law, saturate; whether its command may pass
-//!     law                     equilibrium (E) and flat output (F)
+//!     motor_tracker           any law, down to four motor forces
+//!     controller              any law, and what it remembers
+//!       tracker, supervisor   one step: normalise, law, saturate; whether its command may pass
+//!     law                     equilibrium (E), flat output (F), integral action, gains along a trajectory, actuator-aware
 //!       trajectory, gains     pieces played by ticks; tables
+//!         motor_reference     flat output -> motor forces and commands
+//!           body_rate, mixer  command -> wrench -> motor forces
+//!             airframe        mass, inertia, levers, range and lag of the motors
 //!         reference           flat output -> state and input, checked
 //!           flatness          the flat map and its inverse
-//!             state, command, gain, clock
+//!             state, rigid_state, command, gain, motor_lag, clock
 //!               quaternion, error
 //!                 math        square root, sine and cosine; checksum
 //! ```
@@ -47,6 +52,7 @@ pub mod body_rate;
 pub mod checksum;
 pub mod clock;
 pub mod command;
+pub mod controller;
 pub mod crossfade;
 #[cfg(feature = "defmt")]
 mod defmt_formats;
@@ -76,10 +82,12 @@ pub use airframe::{Airframe, AirframeFigures};
 pub use body_rate::BodyRateLoop;
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};
+pub use controller::{Controller, Memory};
 pub use crossfade::Crossfade;
 pub use error::{ReferenceError, StateError, StepError};
 pub use law::{
-    ActuatorAware, ActuatorAwareGain, ActuatorMemory, AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput,
+    ActuatorAware, ActuatorAwareGain, ActuatorMemory, AlongTrajectory, AnyLaw, Equilibrium, ErrorForm, FeedForward,
+    FlatOutput, FlightLaw, IntegralAction,
 };
 pub use mixer::{MotorLimited, Wrench};
 pub use motor_lag::{MotorForces, MotorLag};
@@ -90,4 +98,4 @@ pub use reference::{FlatSample, Reference};
 pub use rigid_state::RigidState;
 pub use state::State;
 pub use tracker::{Step, Tracker};
-pub use trajectory::{Bookmark, Piece, Player, Trajectory};
+pub use trajectory::{Bookmark, Piece, Player, Progress, Trajectory};

@@ -7,7 +7,7 @@ use core::fmt;
 
 use crate::clock::Rate;
 
-/// The forces of the four motors M1 to M4 of [`crate::airframe`], N.
+/// The forces of the four motors M1 to M4 of [`mod@crate::airframe`], N.
 pub type MotorForces = [f32; 4];
 
 /// A first-order lag at a control rate.

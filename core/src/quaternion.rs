@@ -113,6 +113,12 @@ impl Heading {
     /// From the angle psi in radians, within +-2000; turns are kept apart (psi and psi + 2 pi give `q` and `-q`).
     #[inline(never)]
     pub fn from_angle(psi_rad: f32) -> Self {
+        Self::from_angle_inlined(psi_rad)
+    }
+
+    /// The same, for who is in a hurry.
+    #[inline(always)]
+    pub(crate) fn from_angle_inlined(psi_rad: f32) -> Self {
         let (s, c) = sin_cos(0.5 * psi_rad);
         Self { cos_half: c, sin_half: s, cos: c * c - s * s, sin: 2.0 * c * s }
     }

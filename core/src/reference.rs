@@ -126,6 +126,13 @@ impl Reference {
         &self.input
     }
 
+    /// This reference with the input of one that lies ahead: a command that is held for a period moves the craft like the
+    /// input of the middle of the period, so that feeding forward the input half a period ahead leaves the hold's error
+    /// one order smaller. For the equilibrium laws; the flat output law's acceleration is error and input in one.
+    pub fn with_input_of(self, ahead: &Self) -> Self {
+        Self { input: ahead.input, ..self }
+    }
+
     /// Acceleration without gravity, world frame, m/s^2.
     pub fn acceleration_m_s2(&self) -> Vector3<f32> {
         self.acceleration_m_s2

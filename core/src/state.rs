@@ -112,15 +112,15 @@ impl Measured<'_> {
 /// Written so that NaN fails it.
 #[inline]
 fn is_near_one(norm_squared: f32) -> bool {
-    (norm_squared - 1.0).abs() <= NORM_SQUARED_TOLERANCE
+    (1.0 - norm_squared).abs() <= NORM_SQUARED_TOLERANCE
 }
 
-/// `1 / sqrt(norm_squared)` near 1, by the series of `1 / sqrt(1 + e)`: its next term, 35/128 e^4, is below 4.4e-8 within
+/// `1 / sqrt(norm_squared)` near 1, by the series of `1 / sqrt(1 - d)`: its next term, 35/128 d^4, is below 4.4e-8 within
 /// [`NORM_SQUARED_TOLERANCE`], less than the spacing of f32 at 1. No root, no division.
 #[inline]
 fn inverse_norm(norm_squared: f32) -> f32 {
-    let e = norm_squared - 1.0;
-    1.0 - e * (0.5 - e * (0.375 - e * 0.3125))
+    let d = 1.0 - norm_squared;
+    1.0 + d * (0.5 + d * (0.375 + d * 0.3125))
 }
 
 #[cfg(test)]

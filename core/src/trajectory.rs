@@ -8,9 +8,10 @@ use core::fmt;
 use nalgebra::Vector3;
 
 use crate::airframe::Airframe;
+use crate::checksum::Crc32c;
 use crate::clock::{Rate, Tick, TickClock};
 use crate::error::ReferenceError;
-use crate::motor_reference::{FifthOrderSample, MotorReference};
+use crate::motor_reference::{FifthOrderSample, Motion, MotorReference, Turn};
 use crate::reference::{FlatSample, Reference};
 
 /// Coefficients of a polynomial of degree at most 7, ascending powers of the seconds since the piece began.
@@ -166,6 +167,20 @@ impl<'a> Trajectory<'a> {
         self.summary.duration_ns
     }
 
+    /// CRC-32C of the pieces, one after the other: duration in ns (`u64`), then the coefficients of x, y, z and heading
+    /// (`f32`, ascending powers), lowest byte first. It tells one trajectory from another: gains over time name theirs by
+    /// it. Goes over every byte: once a flight, not once a step.
+    #[cold]
+    pub fn checksum(&self) -> u32 {
+        let mut crc = Crc32c::new();
+        for piece in core::iter::once(self.first).chain(self.following) {
+            piece.duration_ns.to_le_bytes().into_iter().for_each(|byte| crc.update(byte));
+            let coefficients = [&piece.x, &piece.y, &piece.z, &piece.heading].into_iter().flatten();
+            coefficients.flat_map(|c| c.to_le_bytes()).for_each(|byte| crc.update(byte));
+        }
+        crc.value()
+    }
+
     /// What the check found.
     #[cfg_attr(not(feature = "link"), expect(dead_code, reason = "for trajectories that come over the link"))]
     pub(crate) fn summary(&self) -> Summary {
@@ -202,32 +217,22 @@ impl Piece {
         }
     }
 
-    /// The flat output and its derivatives to the fifth, those of the heading to the third.
+    /// Position, velocity and the derivatives behind them to the fifth.
     #[inline(always)]
-    fn at_fifth_order(&self, time_ns: u64, shape: Shape) -> FifthOrderSample {
-        let t = seconds(time_ns);
+    fn motion(&self, t: f32, shape: Shape) -> (Vector3<f32>, Vector3<f32>, Motion) {
         let [x, y, z] = if shape.quintic {
             [&self.x, &self.y, &self.z].map(|axis| quintic_derivatives_to_fifth(axis, t))
         } else {
             [&self.x, &self.y, &self.z].map(|axis| derivatives_to_fifth(axis, t))
         };
         let [[x, vx, ax, jx, sx, cx], [y, vy, ay, jy, sy, cy], [z, vz, az, jz, sz, cz]] = [x, y, z];
-        let [heading_rad, heading_rate_rad_s, heading_acceleration_rad_s2, heading_jerk_rad_s3] =
-            if shape.straight { [0.0; 4] } else { derivatives(&self.heading, t) };
-        FifthOrderSample {
-            flat: FlatSample {
-                position_m: Vector3::new(x, y, z),
-                velocity_m_s: Vector3::new(vx, vy, vz),
-                acceleration_m_s2: Vector3::new(ax, ay, az),
-                jerk_m_s3: Vector3::new(jx, jy, jz),
-                heading_rad,
-                heading_rate_rad_s,
-            },
-            snap_m_s4: Vector3::new(sx, sy, sz),
-            crackle_m_s5: Vector3::new(cx, cy, cz),
-            heading_acceleration_rad_s2,
-            heading_jerk_rad_s3,
-        }
+        let motion = Motion {
+            acceleration: Vector3::new(ax, ay, az),
+            jerk: Vector3::new(jx, jy, jz),
+            snap: Vector3::new(sx, sy, sz),
+            crackle: Vector3::new(cx, cy, cz),
+        };
+        (Vector3::new(x, y, z), Vector3::new(vx, vy, vz), motion)
     }
 
     /// The rest at which it begins.
@@ -376,6 +381,16 @@ pub struct Player<'a> {
     start_ns: u64,
 }
 
+/// Where on which trajectory a step is, for laws whose gains belong to one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Progress {
+    /// [`Trajectory::checksum`].
+    pub trajectory: u32,
+    /// Ticks of the player since its start.
+    pub tick: Tick,
+}
+
 /// Where a player is, without its trajectory: for who cannot keep a trajectory borrowed between two steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Bookmark {
@@ -444,22 +459,41 @@ impl<'a> Player<'a> {
     /// # Errors
     /// [`ReferenceError`] where the trajectory asks for what cannot be flown.
     pub fn motor_reference(&mut self, tick: Tick, airframe: &Airframe) -> Result<MotorReference, ReferenceError> {
-        MotorReference::of_finite(&self.fifth_order(tick), airframe)
+        let Summary { end, shape, .. } = self.trajectory.summary;
+        if tick >= self.end_tick {
+            return MotorReference::of_finite(&FifthOrderSample::of_jerk(end), airframe);
+        }
+        let t = seconds(self.seek(tick));
+        // First, while there is little else to be kept.
+        let turn = (!shape.straight).then(|| Turn::new(derivatives(&self.piece.heading, t)));
+        let (position_m, velocity_m_s, motion) = self.piece.motion(t, shape);
+        MotorReference::of_motion(&position_m, &velocity_m_s, &motion, turn.as_ref(), airframe)
     }
 
     /// The flat output and its derivatives to the fifth `tick` ticks after the start.
     pub fn at_fifth_order(&mut self, tick: Tick) -> FifthOrderSample {
-        self.fifth_order(tick)
-    }
-
-    #[inline(always)]
-    fn fifth_order(&mut self, tick: Tick) -> FifthOrderSample {
         let Summary { end, shape, .. } = self.trajectory.summary;
         if tick >= self.end_tick {
             return FifthOrderSample::of_jerk(end);
         }
-        let time_ns = self.seek(tick);
-        self.piece.at_fifth_order(time_ns, shape)
+        let t = seconds(self.seek(tick));
+        let [heading_rad, heading_rate_rad_s, heading_acceleration_rad_s2, heading_jerk_rad_s3] =
+            derivatives(&self.piece.heading, t);
+        let (position_m, velocity_m_s, motion) = self.piece.motion(t, shape);
+        FifthOrderSample {
+            flat: FlatSample {
+                position_m,
+                velocity_m_s,
+                acceleration_m_s2: motion.acceleration,
+                jerk_m_s3: motion.jerk,
+                heading_rad,
+                heading_rate_rad_s,
+            },
+            snap_m_s4: motion.snap,
+            crackle_m_s5: motion.crackle,
+            heading_acceleration_rad_s2,
+            heading_jerk_rad_s3,
+        }
     }
 
     /// The flat output `tick` ticks after the start.

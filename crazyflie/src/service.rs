@@ -4,7 +4,6 @@
 use core::sync::atomic::Ordering::Relaxed;
 
 use quatrack::FeedForward;
-use quatrack::gains::table::AcceptedTable;
 use quatrack::nalgebra::Vector3;
 
 use crate::abi;
@@ -15,7 +14,7 @@ use crate::guide::Bounds;
 use crate::shared::{AtomicF32, Shared};
 use crate::tables::{Refusal, Scales, Table, limits_within};
 use crate::try_cell::TryCell;
-use crate::upload::{Packet, Status, Uploads};
+use crate::upload::{Packet, Sent, Status, Uploads};
 
 /// What the app's task keeps.
 pub struct Service {
@@ -23,7 +22,7 @@ pub struct Service {
     /// The craft is new, and has to be handed over.
     is_new: bool,
     uploads: Uploads,
-    uploaded: Option<AcceptedTable>,
+    uploaded: Option<Sent>,
     uploads_taken: u8,
     asked: Option<Asked>,
 }

@@ -2,7 +2,7 @@
 //! out.
 
 use quatrack::gains::paper;
-use quatrack::gains::table::{AcceptedTable, Rows};
+use quatrack::gains::table::Rows;
 use quatrack::law::{ActuatorAwareGain, EquilibriumGain, FlatOutputGain};
 use quatrack::nalgebra::Vector3;
 use quatrack::{ActuatorAware, Airframe, AirframeFigures, Limits};
@@ -10,6 +10,7 @@ use quatrack::{ActuatorAware, Airframe, AirframeFigures, Limits};
 use crate::builtin;
 use crate::craft::{Craft, RATE};
 use crate::shared::GAINS;
+use crate::upload::Sent;
 
 /// Which table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,6 +167,8 @@ pub enum Refusal {
     Table = 4,
     /// It is for another vehicle or control rate.
     Vehicle = 5,
+    /// It is for a law that is not flown here.
+    Law = 6,
 }
 
 impl Table {
@@ -174,7 +177,7 @@ impl Table {
     /// # Errors
     /// [`Refusal`].
     #[inline(never)]
-    pub fn choose(number: u8, craft: &Craft, uploaded: Option<&AcceptedTable>) -> Result<Self, Refusal> {
+    pub fn choose(number: u8, craft: &Craft, uploaded: Option<&Sent>) -> Result<Self, Refusal> {
         let motor_lag_s = craft.motor_lag_s;
         let id = TableId::numbered(number).ok_or(Refusal::Unknown)?;
         let (gains, margin, lag_max_s) = match id {
@@ -183,7 +186,7 @@ impl Table {
             TableId::LqrE => (Gains::Equilibrium(paper::LQR_E), builtin::LQR_E.0, builtin::LQR_E.1),
             TableId::LyapF => (Gains::FlatOutput(paper::LYAP_F), builtin::LYAP_F.0, builtin::LYAP_F.1),
             TableId::LqrF => (Gains::FlatOutput(paper::LQR_F), builtin::LQR_F.0, builtin::LQR_F.1),
-            TableId::Uploaded => return Self::uploaded(uploaded.ok_or(Refusal::NothingUploaded)?, motor_lag_s),
+            TableId::Uploaded => return Self::uploaded(uploaded.ok_or(Refusal::NothingUploaded)?, craft),
         };
         let margin = behind_motors(margin, motor_lag_s, lag_max_s)?;
         Ok(Self { id, gains, margin })
@@ -201,14 +204,22 @@ impl Table {
     }
 
     #[inline(never)]
-    fn uploaded(table: &AcceptedTable, motor_lag_s: f32) -> Result<Self, Refusal> {
-        let certificate = &table.head().certificate;
-        let gains = match table.table().rows() {
-            Rows::Equilibrium(rows) => EquilibriumGain::new(rows).map(Gains::Equilibrium),
-            Rows::FlatOutput(rows) => FlatOutputGain::new(rows).map(Gains::FlatOutput),
-        }
-        .map_err(|_| Refusal::Table)?;
-        let margin = behind_motors(certificate.all_channels.gain_factor, motor_lag_s, certificate.motor_lag_max_s)?;
+    fn uploaded(sent: &Sent, craft: &Craft) -> Result<Self, Refusal> {
+        let (certificate, gains) = match sent {
+            Sent::BodyRates(table) => {
+                let gains = match table.table().rows() {
+                    Rows::Equilibrium(rows) => EquilibriumGain::new(rows).map(Gains::Equilibrium),
+                    Rows::FlatOutput(rows) => FlatOutputGain::new(rows).map(Gains::FlatOutput),
+                    Rows::Integral(_) => return Err(Refusal::Law),
+                };
+                (&table.head().certificate, gains.map_err(|_| Refusal::Table)?)
+            }
+            Sent::Motors(table) => {
+                let gains = MotorGains::new(table.table().gain(), &craft.airframe, table.table().lag().lag_s())?;
+                (&table.table().head().certificate, Gains::ActuatorAware(gains))
+            }
+        };
+        let margin = behind_motors(certificate.all_channels.gain_factor, craft.motor_lag_s, certificate.motor_lag_max_s)?;
         Ok(Self { id: TableId::Uploaded, gains, margin })
     }
 

@@ -9,7 +9,9 @@
 //! Little-endian. Every packet is answered with its own first byte, a [`Status`] and the offset of the next bytes (u16).
 //! The table is the file of docs/gain-tables.md; nothing of it is used before all of it has come and been checked.
 
-use quatrack::gains::table::{AcceptedTable, LoadError, TABLE_BYTES_MAX, Vehicle};
+use quatrack::gains::table::{
+    ACTUATOR_TABLE_BYTES, AcceptedActuatorTable, AcceptedTable, ActuatorTable, LoadError, TableError, TableKind, Vehicle,
+};
 use quatrack::link::{BlobKind, BlobReceiver, Chunk, UploadBegin, UploadError};
 
 use crate::craft::RATE;
@@ -53,9 +55,18 @@ pub enum Status {
     Busy = 9,
 }
 
+/// A table as it has come, for this craft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sent {
+    /// For thrust and body rates.
+    BodyRates(AcceptedTable),
+    /// For motor forces.
+    Motors(AcceptedActuatorTable),
+}
+
 /// The receiving end.
 pub struct Uploads {
-    receiver: BlobReceiver<TABLE_BYTES_MAX>,
+    receiver: BlobReceiver<ACTUATOR_TABLE_BYTES>,
 }
 
 impl Uploads {
@@ -65,7 +76,7 @@ impl Uploads {
     }
 
     /// Takes a packet; with the last one comes the table.
-    pub fn take(&mut self, packet: &Packet, vehicle: &Vehicle) -> (Packet, Option<AcceptedTable>) {
+    pub fn take(&mut self, packet: &Packet, vehicle: &Vehicle) -> (Packet, Option<Sent>) {
         let bytes = packet.bytes.get(..usize::from(packet.length)).unwrap_or_default();
         let (status, table) = match bytes {
             [1, l0, l1, c0, c1, c2, c3] => {
@@ -98,17 +109,27 @@ impl Uploads {
         self.receiver.chunk(&chunk).map_or_else(status_of, |_| Status::Taken)
     }
 
-    fn commit(&mut self, vehicle: &Vehicle) -> (Status, Option<AcceptedTable>) {
+    fn commit(&mut self, vehicle: &Vehicle) -> (Status, Option<Sent>) {
         let Ok(progress) = self.receiver.progress() else { return (Status::NotBegun, None) };
         let blob = match self.receiver.finish(progress.id) {
             Ok((_, blob)) => blob,
             Err(error) => return (status_of(error), None),
         };
-        match AcceptedTable::from_bytes(blob, vehicle, RATE) {
+        match read(blob, vehicle) {
             Ok(table) => (Status::Taken, Some(table)),
             Err(LoadError::Table(_)) => (Status::Table, None),
             Err(LoadError::Accept(_)) => (Status::Vehicle, None),
         }
+    }
+}
+
+fn read(blob: &[u8], vehicle: &Vehicle) -> Result<Sent, LoadError> {
+    match AcceptedTable::from_bytes(blob, vehicle, RATE) {
+        Err(LoadError::Table(TableError::OtherKind { kind: TableKind::ActuatorAware })) => {
+            let table = ActuatorTable::from_bytes(blob)?.accept_for(vehicle, RATE)?;
+            Ok(Sent::Motors(table))
+        }
+        other => other.map(Sent::BodyRates),
     }
 }
 

@@ -261,16 +261,20 @@ struct Errors {
 }
 
 impl<'a> ActuatorAware<'a> {
-    /// The law for a craft at a control rate, those of the gain's design. References are to be made for the same airframe:
-    /// they too depend on its motor lag.
+    /// The law for a craft at a control rate, those of the gain's design. References are to be made for the same airframe,
+    /// [`Airframe::commanded_at`] that rate: they too depend on its motor lag.
     ///
     /// # Errors
     /// [`MotorLagError`] for a lag shorter than two control periods.
     pub const fn new(gain: &'a ActuatorAwareGain, airframe: &Airframe, rate: Rate) -> Result<Self, MotorLagError> {
         match MotorLag::new(airframe.figures().motor_lag_s, rate) {
-            Ok(lag) => Ok(Self { gain, lag, range: ForceRange::of(airframe) }),
+            Ok(lag) => Ok(Self::with_lag(gain, airframe, lag)),
             Err(error) => Err(error),
         }
+    }
+
+    pub(crate) const fn with_lag(gain: &'a ActuatorAwareGain, airframe: &Airframe, lag: MotorLag) -> Self {
+        Self { gain, lag, range: ForceRange::of(airframe) }
     }
 
     /// The lag that it reckons with.

@@ -4,12 +4,16 @@
 //! as a command that is not finite, which [`crate::tracker`] refuses.
 
 mod actuator_aware;
+mod along_trajectory;
 mod equilibrium;
 mod flat_output;
+mod integral_action;
 
 pub use actuator_aware::{ActuatorAware, ActuatorAwareGain, ActuatorMemory};
+pub use along_trajectory::{AlongTrajectory, GainSchedule, Knot, ScheduleError};
 pub use equilibrium::{Equilibrium, EquilibriumGain, ErrorForm};
 pub use flat_output::{FlatOutput, FlatOutputGain};
+pub use integral_action::{IntegralAction, IntegralGain};
 
 use nalgebra::Vector3;
 
@@ -63,6 +67,46 @@ impl<'a> From<Equilibrium<'a>> for AnyLaw<'a> {
 impl<'a> From<FlatOutput<'a>> for AnyLaw<'a> {
     fn from(law: FlatOutput<'a>) -> Self {
         Self::FlatOutput(law)
+    }
+}
+
+/// Any law that gives thrust and body rates, those included that need more than a state and a reference; flown by
+/// [`crate::Controller`].
+#[derive(Clone, Copy, Debug)]
+pub enum FlightLaw<'a> {
+    /// The same gains all the time, nothing remembered.
+    Fixed(AnyLaw<'a>),
+    /// With the integral of the position error.
+    Integral(IntegralAction<'a>),
+    /// Gains over time along a trajectory.
+    Along(AlongTrajectory<'a>),
+}
+
+impl<'a> FlightLaw<'a> {
+    /// The law, if it is one for [`crate::Tracker`], which remembers nothing.
+    pub const fn fixed(self) -> Option<AnyLaw<'a>> {
+        match self {
+            Self::Fixed(law) => Some(law),
+            Self::Integral(_) | Self::Along(_) => None,
+        }
+    }
+}
+
+impl<'a, L: Into<AnyLaw<'a>>> From<L> for FlightLaw<'a> {
+    fn from(law: L) -> Self {
+        Self::Fixed(law.into())
+    }
+}
+
+impl<'a> From<IntegralAction<'a>> for FlightLaw<'a> {
+    fn from(law: IntegralAction<'a>) -> Self {
+        Self::Integral(law)
+    }
+}
+
+impl<'a> From<AlongTrajectory<'a>> for FlightLaw<'a> {
+    fn from(law: AlongTrajectory<'a>) -> Self {
+        Self::Along(law)
     }
 }
 

@@ -19,7 +19,7 @@ use super::law_choice::{LawChoice, Table};
 use super::trajectory_store::BlobError;
 use crate::clock::Rate;
 use crate::gains::table::{AcceptError, AcceptedTable, LoadError, Vehicle};
-use crate::law::AnyLaw;
+use crate::law::{AnyLaw, FlightLaw};
 
 /// Two slots: the table in use, and the one before it, which makes room for the next.
 #[derive(Clone, Debug)]
@@ -94,12 +94,17 @@ impl GainStore {
         }
     }
 
-    /// The chosen law, of a table in the image or of a loaded one.
-    pub fn law(&self, choice: &LawChoice) -> Option<AnyLaw<'_>> {
+    /// The chosen law, of a table in the image or of a loaded one, for [`crate::Controller`].
+    pub fn flight_law(&self, choice: &LawChoice) -> Option<FlightLaw<'_>> {
         match choice.table {
             Table::Loaded(slot) => Some(self.table(slot)?.law(choice.feed_forward, choice.error_form)),
-            _ => choice.built_in(),
+            _ => choice.built_in().map(FlightLaw::Fixed),
         }
+    }
+
+    /// The same for [`crate::Tracker`]: nothing where the law remembers anything.
+    pub fn law(&self, choice: &LawChoice) -> Option<AnyLaw<'_>> {
+        self.flight_law(choice).and_then(FlightLaw::fixed)
     }
 
     fn put_to_use(&mut self, table: &AcceptedTable) {

@@ -32,16 +32,35 @@ use crate::flatness::{GRAVITY_M_S2, MIN_AXIS_Z, MIN_THRUST_M_S2};
 use crate::math::sqrt;
 use crate::quaternion::{Heading, Quaternion};
 
-/// Derivatives of the flat output that the map takes.
+/// Derivatives of the position that the map takes, from the second on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Motion {
-    pub(super) acceleration: Vector3<f32>,
-    pub(super) jerk: Vector3<f32>,
-    pub(super) snap: Vector3<f32>,
-    pub(super) crackle: Vector3<f32>,
-    pub(super) heading: f32,
-    /// First to third derivative.
-    pub(super) heading_rates: [f32; 3],
+pub(crate) struct Motion {
+    pub(crate) acceleration: Vector3<f32>,
+    pub(crate) jerk: Vector3<f32>,
+    pub(crate) snap: Vector3<f32>,
+    pub(crate) crackle: Vector3<f32>,
+}
+
+/// A heading with its first three derivatives. Most craft do not turn: none stands for heading 0 throughout.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn {
+    heading: Heading,
+    rates: [f32; 3],
+}
+
+impl Turn {
+    /// From the heading and its derivatives.
+    #[inline(always)]
+    pub(crate) fn new([heading_rad, h1, h2, h3]: [f32; 4]) -> Self {
+        Self { heading: Heading::from_angle_inlined(heading_rad), rates: [h1, h2, h3] }
+    }
+
+    /// Rate of the heading.
+    #[inline(always)]
+    pub(crate) fn rate_rad_s(&self) -> f32 {
+        let [rate, ..] = self.rates;
+        rate
+    }
 }
 
 /// What the map gives; rates, accelerations and jerks in the body frame.
@@ -63,7 +82,7 @@ impl Turning {
     /// # Errors
     /// [`ReferenceError`] at the singularities of the flat map.
     #[inline(always)]
-    pub(super) fn of(motion: &Motion) -> Result<Self, ReferenceError> {
+    pub(super) fn of(motion: &Motion, turn: Option<&Turn>) -> Result<Self, ReferenceError> {
         let (a, j, s, c) = (&motion.acceleration, &motion.jerk, &motion.snap, &motion.crackle);
         let hz = a.z + GRAVITY_M_S2;
         let thrust = sqrt(a.x * a.x + a.y * a.y + hz * hz);
@@ -102,44 +121,32 @@ impl Turning {
         let r2 = scale * (nx * p2 + ny * q2 + (p1 * q - q1 * p));
 
         let half_axis = root * scale;
-        let tilted = [root, -(ny * half_axis), nx * half_axis];
-        let turned = Self {
-            attitude: Quaternion::new(tilted[0], tilted[1], tilted[2], 0.0),
-            heading: Heading::ZERO,
+        let (tilt_x, tilt_y) = (-(ny * half_axis), nx * half_axis);
+        let Some(&Turn { heading, rates: [h1, h2, h3] }) = turn else {
+            return Ok(Self {
+                attitude: Quaternion::new(root, tilt_x, tilt_y, 0.0),
+                heading: Heading::ZERO,
+                thrust,
+                thrust_rate,
+                rates: [p, q, r],
+                acceleration: [p1, q1, r1],
+                jerk: [p2, q2, r2],
+            });
+        };
+        let ((cos, sin), (c, s)) = (heading.cos_sin(), (heading.cos_half(), heading.sin_half()));
+        let turned = |x: f32, y: f32| (cos * x + sin * y, cos * y - sin * x);
+        let ((p, q), (p1, q1), (p2, q2)) = (turned(p, q), turned(p1, q1), turned(p2, q2));
+        let (p1_seen, q1_seen) = (p1 + h1 * q, q1 - h1 * p);
+        Ok(Self {
+            // `q_tilt q_z(psi)`, whose tilt has no third component.
+            attitude: Quaternion::new(root * c, tilt_x * c + tilt_y * s, tilt_y * c - tilt_x * s, root * s),
+            heading,
             thrust,
             thrust_rate,
-            rates: [p, q, r],
-            acceleration: [p1, q1, r1],
-            jerk: [p2, q2, r2],
-        };
-        let [h1, h2, h3] = motion.heading_rates;
-        // Most flights do not turn.
-        if motion.heading == 0.0 && h1 == 0.0 && h2 == 0.0 && h3 == 0.0 {
-            return Ok(turned);
-        }
-        Ok(turned.with_heading(motion.heading, [h1, h2, h3]))
-    }
-
-    /// From heading 0 to any.
-    #[inline(never)]
-    fn with_heading(&self, heading_rad: f32, heading_rates: [f32; 3]) -> Self {
-        let heading = Heading::from_angle(heading_rad);
-        let (cos, sin) = heading.cos_sin();
-        let [h1, h2, h3] = heading_rates;
-        let turn = |[x, y, _]: [f32; 3]| (cos * x + sin * y, cos * y - sin * x);
-        let ((p, q), (p1, q1), (p2, q2)) = (turn(self.rates), turn(self.acceleration), turn(self.jerk));
-        let (tilt, (c, s)) = (self.attitude, (heading.cos_half(), heading.sin_half()));
-        let (twice, squared) = (h1 + h1, h1 * h1);
-        Self {
-            // `q_tilt q_z(psi)`, whose tilt has no third component.
-            attitude: Quaternion::new(tilt.w * c, tilt.x * c + tilt.y * s, tilt.y * c - tilt.x * s, tilt.w * s),
-            heading,
-            thrust: self.thrust,
-            thrust_rate: self.thrust_rate,
-            rates: [p, q, self.rates[2] + h1],
-            acceleration: [p1 + h1 * q, q1 - h1 * p, self.acceleration[2] + h2],
-            jerk: [p2 + twice * q1 + h2 * q - squared * p, q2 - twice * p1 - h2 * p - squared * q, self.jerk[2] + h3],
-        }
+            rates: [p, q, r + h1],
+            acceleration: [p1_seen, q1_seen, r1 + h2],
+            jerk: [p2 + h1 * (q1 + q1_seen) + h2 * q, q2 - h1 * (p1 + p1_seen) - h2 * p, r2 + h3],
+        })
     }
 }
 

@@ -8,7 +8,8 @@ mod angular;
 
 use nalgebra::Vector3;
 
-use self::angular::{Motion, Turning};
+use self::angular::Turning;
+pub(crate) use self::angular::{Motion, Turn};
 use crate::airframe::Airframe;
 use crate::command::Command;
 use crate::error::{Field, ReferenceError, first_non_finite};
@@ -97,17 +98,30 @@ impl MotorReference {
     }
 
     /// The same for a sample whose position and velocity are known to be finite.
-    #[inline(always)]
+    #[inline(never)]
     pub(crate) fn of_finite(sample: &FifthOrderSample, airframe: &Airframe) -> Result<Self, ReferenceError> {
         let flat = &sample.flat;
-        let turning = Turning::of(&Motion {
+        let motion = Motion {
             acceleration: flat.acceleration_m_s2,
             jerk: flat.jerk_m_s3,
             snap: sample.snap_m_s4,
             crackle: sample.crackle_m_s5,
-            heading: flat.heading_rad,
-            heading_rates: [flat.heading_rate_rad_s, sample.heading_acceleration_rad_s2, sample.heading_jerk_rad_s3],
-        })?;
+        };
+        let (second, third) = (sample.heading_acceleration_rad_s2, sample.heading_jerk_rad_s3);
+        let turn = Turn::new([flat.heading_rad, flat.heading_rate_rad_s, second, third]);
+        Self::of_motion(&flat.position_m, &flat.velocity_m_s, &motion, Some(&turn), airframe)
+    }
+
+    /// The same from its parts. Inlined, so that none of them has to stand in memory.
+    #[inline(always)]
+    pub(crate) fn of_motion(
+        position_m: &Vector3<f32>,
+        velocity_m_s: &Vector3<f32>,
+        motion: &Motion,
+        turn: Option<&Turn>,
+        airframe: &Airframe,
+    ) -> Result<Self, ReferenceError> {
+        let turning = Turning::of(motion, turn)?;
         let ([p, q, r], [p1, q1, r1], [p2, q2, r2]) = (turning.rates, turning.acceleration, turning.jerk);
         // Euler's equations and their derivative, with inertia over four levers.
         let mixing = &airframe.mixing;
@@ -124,12 +138,12 @@ impl MotorReference {
             pitch: iy * q2 + gy * (p1 * r + p * r1),
             yaw: iz * r2 + gz * (p1 * q + p * q1),
         };
-        let lag_s = airframe.figures().motor_lag_s;
+        let lead_s = airframe.lead_s;
         let commands = Parts {
-            thrust: forces.thrust + lag_s * rates.thrust,
-            roll: forces.roll + lag_s * rates.roll,
-            pitch: forces.pitch + lag_s * rates.pitch,
-            yaw: forces.yaw + lag_s * rates.yaw,
+            thrust: forces.thrust + lead_s * rates.thrust,
+            roll: forces.roll + lead_s * rates.roll,
+            pitch: forces.pitch + lead_s * rates.pitch,
+            yaw: forces.yaw + lead_s * rates.yaw,
         };
         // Every derivative is in one of the commands; what is not finite stays so in their sum.
         let sum = (commands.thrust + commands.roll) + (commands.pitch + commands.yaw);
@@ -139,16 +153,12 @@ impl MotorReference {
         }
         Ok(Self {
             reference: Reference {
-                state: State {
-                    position_m: flat.position_m,
-                    attitude: turning.attitude,
-                    velocity_m_s: flat.velocity_m_s,
-                },
+                state: State { position_m: *position_m, attitude: turning.attitude, velocity_m_s: *velocity_m_s },
                 input: Command { thrust_m_s2: turning.thrust, body_rates_rad_s: Vector3::new(p, q, r) },
-                acceleration_m_s2: flat.acceleration_m_s2,
-                jerk_m_s3: flat.jerk_m_s3,
+                acceleration_m_s2: motion.acceleration,
+                jerk_m_s3: motion.jerk,
                 heading: turning.heading,
-                heading_rate_rad_s: flat.heading_rate_rad_s,
+                heading_rate_rad_s: turn.map_or(0.0, Turn::rate_rad_s),
             },
             angular_acceleration_rad_s2: Vector3::new(p1, q1, r1),
             forces_n: forces.forces(),
@@ -181,7 +191,8 @@ impl MotorReference {
         self.forces_n
     }
 
-    /// Commands that give these forces behind the lag of the airframe that the reference was made for, `f + tau df/dt`, N.
+    /// Commands that give these forces behind the motor lag of the airframe that the reference was made for, `f + tau df/dt`, N;
+    /// with half a control period beside tau where that is [`Airframe::commanded_at`] a rate.
     pub fn commands_n(&self) -> MotorForces {
         self.commands_n
     }

@@ -1,9 +1,19 @@
 //! Counts instructions: recorded states in, from a file of the host; per step, counts and the command out, to another.
 //!
 //! Both files are in the folder in which the emulator runs, all numbers little-endian, 32 bits.
-//! `states.bin`: for each flight, course (0 mild, 1 aggressive), controller, number of steps; then ten floats a step.
+//!
+//! `states.bin`: the rows of a dense gain; three limits (least and most thrust, rates); then, for each flight, course (0
+//! mild, 1 aggressive), controller (4 is the dense gain), whether it is flown at its worst, number of steps; then ten
+//! floats a step.
+//!
 //! `counts.bin`: cost of reading the counter, counts of two loops of known length; then, for each step of each flight,
-//! counts of reference, law and tick, and the four floats of the command.
+//! counts of the reference, of the law (least, sum, most) and of the tick, the four floats of the tick's command, and a hash
+//! of all commands of the law.
+//!
+//! As recorded, the law is the paper's, within the first limits. At its worst it has every form that costs more: errors in
+//! the heading frame of a reference that turns, without feed-forward and with it, within each of the limits, the measured
+//! quaternion of either sign. The tick is then that of the stored trajectory, which does not turn, with feed-forward
+//! within the last limits.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -11,11 +21,12 @@ mod image {
     use core::hint::black_box;
 
     use cortex_m_rt::entry;
+    use quatrack::law::EquilibriumGain;
     use quatrack::link::{LawChoice, LimitsSetting, StateIn, Table, TrajectoryId};
     use quatrack::nalgebra::Vector3;
     use quatrack::{
-        Command, ErrorForm, Piece, Player, Quaternion, Reference, ReferenceError, State, Step, StepError, Tick,
-        Tracker, Trajectory,
+        Command, Equilibrium, ErrorForm, FeedForward, Piece, Player, Quaternion, Reference, ReferenceError, State,
+        Step, Tick, Tracker, Trajectory,
     };
     use quatrack_firmware::counter::Counter;
     use quatrack_firmware::flight::{DECIMATION as TICKS_PER_STEP, Flight, TICK_RATE};
@@ -25,20 +36,22 @@ mod image {
     use quatrack_firmware::{stored, tick};
     use stm32f4::stm32f405::Peripherals;
 
-    /// The whole range of f32, as in the reproduction of the paper.
-    const NO_LIMITS: LimitsSetting =
-        LimitsSetting { thrust_min_m_s2: f32::MIN, thrust_max_m_s2: f32::MAX, body_rates_max_rad_s: [f32::MAX; 3] };
-
     /// Rounds of `delay`, a loop of two instructions: the costs differ by 2000, however long call and return are.
     const LOOPS: [u32; 2] = [100, 1100];
+
+    /// Heading at the start of a turning course and its rate, rad and rad/s.
+    const TURN: [f32; 2] = [0.3, 0.5];
 
     #[entry]
     fn main() -> ! {
         static mut STORE: Store = Store::new();
-        exit(run(STORE).is_some())
+        // Too large for the stack.
+        static mut MILD: [Piece; stored::MILD.len()] = stored::MILD;
+        static mut AGGRESSIVE: [Piece; stored::AGGRESSIVE.len()] = stored::AGGRESSIVE;
+        exit(run(STORE, [MILD, AGGRESSIVE]).is_some())
     }
 
-    fn run(store: &'static mut Store) -> Option<()> {
+    fn run(store: &'static mut Store, turning: [&'static mut [Piece]; 2]) -> Option<()> {
         let peripherals = Peripherals::take()?;
         let counter = Counter::start(peripherals.TIM2, &peripherals.RCC);
         let mut states = File::open(c"states.bin", Mode::Read)?;
@@ -50,21 +63,58 @@ mod image {
             counter.now().wrapping_sub(start).wrapping_sub(overhead)
         });
         write_words(&mut counts, [overhead, loops[0], loops[1]])?;
-        let mut bench = Bench { counter, overhead, timing: Timing::new(1), flight: Flight::new(store, None) };
+        let turning = turning.map(turn);
+        let mut rows = [[0.0; 9]; 4];
+        for row in &mut rows {
+            *row = read_words(&mut states)?.map(f32::from_bits);
+        }
+        let dense = EquilibriumGain::new(rows).ok()?;
+        let limits = [setting(&mut states)?, setting(&mut states)?, setting(&mut states)?];
+        let flight = Flight::new(store, None);
+        let mut bench = Bench { counter, overhead, timing: Timing::new(1), flight, dense, limits, states, counts };
         bench.timing.set_decimation(1);
-        bench.flight.set_limits(NO_LIMITS).ok()?;
-        while let Some(header) = read_words::<3>(&mut states) {
-            bench.fly(header, &mut states, &mut counts)?;
+        while let Some([course, controller, is_worst, steps]) = read_words(&mut bench.states) {
+            let (id, stored, turning): (_, &[Piece], _) = match (course, turning) {
+                (0, [mild, _]) => (TrajectoryId::Mild, &stored::MILD, mild),
+                (_, [_, aggressive]) => (TrajectoryId::Aggressive, &stored::AGGRESSIVE, aggressive),
+            };
+            let course = Course { id, stored: Trajectory::new(stored).ok()?, turning: Trajectory::new(turning).ok()? };
+            let table = [Table::LyapF, Table::LyapE, Table::LqrF, Table::LqrE].get(controller as usize).copied();
+            match (is_worst, table) {
+                (0, Some(table)) => bench.fly_recorded(&course, table, steps)?,
+                _ => bench.fly_worst(&course, table, steps)?,
+            }
         }
         Some(())
     }
 
-    /// What is measured and what with.
+    /// The same pieces with a heading that grows all the while.
+    fn turn(pieces: &'static mut [Piece]) -> &'static [Piece] {
+        let [mut heading, rate] = TURN;
+        for piece in &mut *pieces {
+            piece.heading = [heading, rate, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            heading += rate * (piece.duration_ns as f32 * 1e-9);
+        }
+        pieces
+    }
+
+    /// A trajectory as the board has it and as it turns.
+    struct Course {
+        id: TrajectoryId,
+        stored: Trajectory<'static>,
+        turning: Trajectory<'static>,
+    }
+
+    /// What is measured, on what and what with.
     struct Bench {
         counter: Counter,
         overhead: u32,
         timing: Timing,
         flight: Flight,
+        dense: EquilibriumGain,
+        limits: [LimitsSetting; 3],
+        states: File,
+        counts: File,
     }
 
     /// Out of line, so that both loops are the same one, with the same padding before it.
@@ -79,54 +129,128 @@ mod image {
         counter.now().wrapping_sub(start)
     }
 
-    impl Bench {
-        fn fly(&mut self, header: [u32; 3], states: &mut File, counts: &mut File) -> Option<()> {
-            let [course, controller, steps] = header;
-            let (id, pieces): (_, &[Piece]) = match course {
-                0 => (TrajectoryId::Mild, &stored::MILD),
-                _ => (TrajectoryId::Aggressive, &stored::AGGRESSIVE),
+    /// Counts of calls, and a hash of the commands that came of them.
+    struct Calls {
+        least: u32,
+        sum: u32,
+        most: u32,
+        hash: u32,
+    }
+
+    impl Calls {
+        const NONE: Self = Self { least: u32::MAX, sum: 0, most: 0, hash: 0x811c_9dc5 };
+
+        fn add(&mut self, count: u32, step: &Step) {
+            *self = Self {
+                least: self.least.min(count),
+                sum: self.sum.wrapping_add(count),
+                most: self.most.max(count),
+                hash: words(&step.command).iter().fold(self.hash, |h, word| (h ^ word).wrapping_mul(0x0100_0193)),
             };
-            let table = [Table::LyapF, Table::LyapE, Table::LqrF, Table::LqrE].get(controller as usize).copied()?;
+        }
+    }
+
+    impl Bench {
+        /// The paper's law on the stored trajectory, as on the host.
+        fn fly_recorded(&mut self, course: &Course, table: Table, steps: u32) -> Option<()> {
             let law = LawChoice { error_form: ErrorForm::Paper, ..LawChoice::new(table) };
-            let tracker = black_box(Tracker::new(law.built_in()?, NO_LIMITS.check().ok()?));
-            let mut player = Player::new(Trajectory::new(pieces).ok()?, TICK_RATE);
-            self.flight.disarm();
-            self.flight.select(law).then_some(())?;
-            self.flight.playback.start(stored::player(id)?);
-            self.flight.hear(self.timing.now());
-            self.flight.arm(self.timing.now()).ok()?;
+            let [limits, ..] = self.limits;
+            let tracker = black_box(Tracker::new(law.built_in()?, limits.check().ok()?));
+            let mut player = Player::new(course.stored, TICK_RATE);
+            self.take_off(course, law, limits)?;
             for step in 0..steps {
-                let state = black_box(state(read_words::<10>(states)?.map(f32::from_bits)));
-                let tick = step * TICKS_PER_STEP;
-
-                let start = self.counter.now();
-                let reference = reference(&mut player, tick);
-                let of_reference = self.since(start);
-                let reference = black_box(reference.ok()?);
-
-                let start = self.counter.now();
-                let expected = law_step(&tracker, &state, &reference);
-                let of_law = self.since(start);
-                let expected = black_box(expected.ok()?);
-
-                // Ticks between two steps, which only count.
-                (1..TICKS_PER_STEP).for_each(|_| self.pass());
-                self.flight.hear(self.timing.now());
-                self.flight.accept(StateIn { tick, state }, self.timing.now());
-                self.timing.on_timer(self.counter.now());
-                let start = self.counter.now();
-                control(&mut self.flight, &self.timing, self.counter);
-                let of_tick = self.since(start);
-                let answer = self.flight.take_answer()?;
-                if answer.result != Ok(expected) {
-                    return None;
-                }
-
-                let Command { thrust_m_s2: thrust, body_rates_rad_s: rates } = self.flight.command();
-                let [thrust, p, q, r] = [*thrust, rates.x, rates.y, rates.z].map(f32::to_bits);
-                write_words(counts, [of_reference, of_law, of_tick, thrust, p, q, r])?;
+                let state = black_box(self.read_state()?);
+                let (of_reference, reference) = self.reference(&mut player, step * TICKS_PER_STEP)?;
+                let mut calls = Calls::NONE;
+                let expected = self.law(&mut calls, &tracker, &state, &reference)?;
+                let of_tick = self.tick(step, state, &expected)?;
+                self.write(of_reference, &calls, of_tick)?;
             }
             Some(())
+        }
+
+        /// Everything that costs more; of the dense gain where no table is named.
+        fn fly_worst(&mut self, course: &Course, table: Option<Table>, steps: u32) -> Option<()> {
+            let [_, _, last] = self.limits;
+            if let Some(table) = table {
+                self.take_off(course, worst(table), last)?;
+            }
+            let dense = self.dense;
+            let mut stored = Player::new(course.stored, TICK_RATE);
+            let mut turning = Player::new(course.turning, TICK_RATE);
+            for step in 0..steps {
+                let recorded = self.read_state()?;
+                let sign = |q: Quaternion| if step % 2 == 0 { q } else { -q };
+                let (of_reference, reference) = self.reference(&mut turning, step * TICKS_PER_STEP)?;
+                let turned = recorded.attitude * reference.heading().quaternion();
+                let state = black_box(State { attitude: sign(turned), ..recorded });
+                let mut calls = Calls::NONE;
+                for limits in self.limits {
+                    for feed_forward in [FeedForward::Without, FeedForward::With] {
+                        let law = match table {
+                            Some(table) => LawChoice { feed_forward, ..LawChoice::new(table) }.built_in()?,
+                            None => Equilibrium { feed_forward, ..Equilibrium::new(&dense) }.into(),
+                        };
+                        let tracker = black_box(Tracker::new(law, limits.check().ok()?));
+                        self.law(&mut calls, &tracker, &state, &reference)?;
+                    }
+                }
+                let mut of_tick = 0;
+                if let Some(table) = table {
+                    let tracker = Tracker::new(worst(table).built_in()?, last.check().ok()?);
+                    let reference = stored.reference(step * TICKS_PER_STEP).ok()?;
+                    let state = State { attitude: sign(recorded.attitude), ..recorded };
+                    of_tick = self.tick(step, state, &tracker.step(&state, &reference).ok()?)?;
+                }
+                self.write(of_reference, &calls, of_tick)?;
+            }
+            Some(())
+        }
+
+        /// Armed, at the start of a stored trajectory.
+        fn take_off(&mut self, course: &Course, law: LawChoice, limits: LimitsSetting) -> Option<()> {
+            self.flight.disarm();
+            self.flight.set_limits(limits).ok()?;
+            self.flight.select(law).then_some(())?;
+            self.flight.playback.start(stored::player(course.id)?);
+            self.flight.hear(self.timing.now());
+            self.flight.arm(self.timing.now()).ok()
+        }
+
+        fn reference(&self, player: &mut Player<'_>, tick: Tick) -> Option<(u32, Reference)> {
+            let start = self.counter.now();
+            let reference = reference(player, tick);
+            let count = self.since(start);
+            Some((count, black_box(reference.ok()?)))
+        }
+
+        /// One step of the law with validation, sign handling and saturation: a call of the core's own function.
+        fn law(&self, calls: &mut Calls, tracker: &Tracker<'_>, state: &State, reference: &Reference) -> Option<Step> {
+            let start = self.counter.now();
+            let step = tracker.step(state, reference);
+            let count = self.since(start);
+            let step = black_box(step.ok()?);
+            calls.add(count, &step);
+            Some(step)
+        }
+
+        /// A tick that steps on a state and is to answer as expected.
+        fn tick(&mut self, step: u32, state: State, expected: &Step) -> Option<u32> {
+            // Ticks between two steps, which only count.
+            (1..TICKS_PER_STEP).for_each(|_| self.pass());
+            self.flight.hear(self.timing.now());
+            self.flight.accept(StateIn { tick: step * TICKS_PER_STEP, state }, self.timing.now());
+            self.timing.on_timer(self.counter.now());
+            let start = self.counter.now();
+            control(&mut self.flight, &self.timing, self.counter);
+            let count = self.since(start);
+            (self.flight.take_answer()?.result == Ok(*expected)).then_some(count)
+        }
+
+        fn write(&mut self, of_reference: u32, calls: &Calls, of_tick: u32) -> Option<()> {
+            let [thrust, p, q, r] = words(self.flight.command());
+            let Calls { least, sum, most, hash } = *calls;
+            write_words(&mut self.counts, [of_reference, least, sum, most, of_tick, thrust, p, q, r, hash])
         }
 
         fn since(&self, start: u32) -> u32 {
@@ -139,6 +263,20 @@ mod image {
             self.timing.on_timer(self.counter.now());
             self.timing.set_decimation(1);
         }
+
+        fn read_state(&mut self) -> Option<State> {
+            let [x, y, z, q0, q1, q2, q3, vx, vy, vz] = read_words(&mut self.states)?.map(f32::from_bits);
+            Some(State {
+                position_m: Vector3::new(x, y, z),
+                attitude: Quaternion::new(q0, q1, q2, q3),
+                velocity_m_s: Vector3::new(vx, vy, vz),
+            })
+        }
+    }
+
+    /// What costs most of a table, on a reference that does not turn.
+    fn worst(table: Table) -> LawChoice {
+        LawChoice { feed_forward: FeedForward::With, ..LawChoice::new(table) }
     }
 
     /// What the control interrupt runs.
@@ -153,18 +291,14 @@ mod image {
         player.reference(tick)
     }
 
-    /// One step of the law with validation, sign handling and saturation.
-    #[inline(never)]
-    fn law_step(tracker: &Tracker<'_>, state: &State, reference: &Reference) -> Result<Step, StepError> {
-        tracker.step(state, reference)
+    fn words(command: &Command) -> [u32; 4] {
+        let rates = &command.body_rates_rad_s;
+        [command.thrust_m_s2, rates.x, rates.y, rates.z].map(f32::to_bits)
     }
 
-    fn state([x, y, z, q0, q1, q2, q3, vx, vy, vz]: [f32; 10]) -> State {
-        State {
-            position_m: Vector3::new(x, y, z),
-            attitude: Quaternion::new(q0, q1, q2, q3),
-            velocity_m_s: Vector3::new(vx, vy, vz),
-        }
+    fn setting(file: &mut File) -> Option<LimitsSetting> {
+        let [thrust_min_m_s2, thrust_max_m_s2, p, q, r] = read_words(file)?.map(f32::from_bits);
+        Some(LimitsSetting { thrust_min_m_s2, thrust_max_m_s2, body_rates_max_rad_s: [p, q, r] })
     }
 
     fn read_words<const N: usize>(file: &mut File) -> Option<[u32; N]> {

@@ -11,6 +11,10 @@ use super::{Failure, output};
 /// Counts instructions on the emulated target, over both of the paper's flights with all four controllers: each law's
 /// step, the reference, the whole tick; and what the firmware takes in flash and RAM.
 ///
+/// Every state is counted as it was flown and at its worst: errors in the heading frame of a turning reference, with and
+/// without feed-forward, nothing limited and everything, either sign of the quaternion; and with a gain without a zero.
+/// Every command is compared with the host's.
+///
 /// Builds its three images inside a checkout. An instruction is not a cycle: the counts compare programs, not clocks.
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -52,5 +56,5 @@ fn counted(args: &Args) -> Result<Report, PilError> {
             }
         }
     };
-    measure::count(&images)
+    measure::count(&images, None)
 }

@@ -7,6 +7,7 @@ use quatrack_sim::figures::{Curve, TrackingFigure};
 use quatrack_sim::flight::closed_loop::Flight;
 use quatrack_sim::model::position;
 use quatrack_sim::plan::{self, Plan, PlanError};
+use quatrack_sim::reproduction::beyond::Beyond;
 use quatrack_sim::reproduction::report::Reproduction;
 use quatrack_sim::reproduction::table::{Controller, Course};
 use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
@@ -25,9 +26,15 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Write the table as JSON as well: iae.{mild,aggressive}.CONTROLLER.{paper, as_published, exact, core_f32.HZ,
-    /// feed_forward} in m s, and min_z of the flights at mu = 1 in m.
+    /// feed_forward} in m s, and min_z of the flights at mu = 1 in m; with --beyond also beyond.{mild,aggressive}.METHOD.HZ.
+    /// {feedback, feed_forward, half_period_ahead} in m s.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Go past the paper as well: sampled LQR, LQI and time-varying LQR beside the paper's designs, flown by the f32 core at
+    /// 25, 100 and 500 Hz with feedback alone ("feedback"), with the reference's input fed forward ("+ input"), and with the
+    /// input of half a period later ("+ ahead"), which is that of the middle of the time a command is held.
+    #[arg(long)]
+    beyond: bool,
 }
 
 /// Number of the figure, its title, the course and the controllers that it shows.
@@ -47,9 +54,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (mild, aggressive) = (planned(plan::paper::mild())?, planned(plan::paper::aggressive())?);
     let reproduction = Reproduction::fly(&mild, &aggressive).map_err(Failure::verdict)?;
     output::print(&format!("{reproduction}\n"))?;
+    let beyond = args.beyond.then(|| Beyond::fly(&mild, &aggressive)).transpose().map_err(Failure::verdict)?;
+    if let Some(beyond) = &beyond {
+        output::print(&format!("{beyond}\n"))?;
+    }
     write_figures(&reproduction, &args.out)?;
     if let Some(path) = &args.json {
-        output::write_json(path, &reproduction.report())?;
+        output::write_json(path, &reproduction.report().with(beyond.as_ref()))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     if reproduction.is_reproduced() {

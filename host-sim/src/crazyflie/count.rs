@@ -128,9 +128,18 @@ fn compare(flights: &[(&'static str, &'static str, Tune, Recording)], counted: &
             let counts = if step.is_multiple_of(2) { &mut control_steps } else { &mut others };
             counts.push(word(record, 0));
         }
-        rows.push(Row { table, setpoints, control_step: Count::of(&control_steps), other_step: Count::of(&others) });
+        rows.push(Row { table, setpoints, control_step: of(&control_steps), other_step: of(&others) });
     }
     Ok(Counts { rows, steps })
+}
+
+fn of(counts: &[u32]) -> Count {
+    let sum: u64 = counts.iter().copied().map(u64::from).sum();
+    Count {
+        min: counts.iter().copied().min().unwrap_or_default(),
+        mean: (sum as f64 / counts.len().max(1) as f64 * 100.0).round() / 100.0,
+        max: counts.iter().copied().max().unwrap_or_default(),
+    }
 }
 
 fn build_object(checkout: &Path) -> Result<PathBuf, PilError> {

@@ -11,15 +11,15 @@
 //! dv' = -psi' z x dv + R_h (2 T_r q x z + z dT)        R_h: the reference's attitude seen from its heading frame
 //! ```
 //!
-//! At hover this is (E-LTI). Over each control period the pair at its middle is held and discretised exactly; the
-//! Riccati recursion then runs backwards from the end, where the stationary solution for the last pair stands in for what
+//! At hover this is (E-LTI). Over each control period the pair at its middle is held and discretised exactly, in the digits
+//! of an f64: there are thousands of periods, and the gain is not solved for but run towards. The Riccati recursion then runs backwards from the end, where the stationary solution for the last pair stands in for what
 //! follows: trajectories end at rest.
 
 use nalgebra::{DMatrix, Matrix3, Rotation3, SMatrix, Vector3};
 
 use super::DesignError;
-use super::discretise::zero_order_hold;
-use super::sampled::{CostForm, SampledCost, Sampling, optimal, sampled_cost, shaped};
+use super::discretise::Held;
+use super::sampled::{CostForm, SampledCost, Sampling, motion_and_cost, optimal, shaped};
 use super::synthesis::{EquilibriumWeights, diagonal};
 use crate::model::attitude;
 use crate::model::flat::{ReferencePoint, unit};
@@ -94,19 +94,18 @@ pub fn gains_along(
     let steps = ((duration_s / h).ceil() as usize).div_ceil(steps_per_knot) * steps_per_knot;
     let discretised = |time_s: f64| {
         let (a, b) = error_dynamics(&reference(time_s.min(duration_s)));
-        let held = zero_order_hold(&a, &b, h)?;
-        let cost = match sampling.cost {
-            CostForm::Integral => sampled_cost(&a, &b, &q, &r, h)?,
-            CostForm::Sum => SampledCost { q: q.clone(), s: DMatrix::zeros(9, 4), r: r.clone() },
-        };
-        Ok::<_, DesignError>((held, cost))
+        let (held, cost) = held_with_cost(&a, &b, &q, &r, h);
+        match sampling.cost {
+            CostForm::Integral => (held, cost),
+            CostForm::Sum => (held, SampledCost { q: q.clone(), s: DMatrix::zeros(9, 4), r: r.clone() }),
+        }
     };
-    let (held, cost) = discretised(duration_s)?;
+    let (held, cost) = discretised(duration_s);
     let end = optimal(&held, &cost, 0)?;
     let mut p = end.p;
     let mut backwards = vec![fixed(&end.gain)];
     for step in (0..steps).rev() {
-        let (held, cost) = discretised((step as f64 + 0.5) * h)?;
+        let (held, cost) = discretised((step as f64 + 0.5) * h);
         let pb = &p * &held.b;
         let middle = &cost.r + held.b.transpose() * &pb;
         let driven = pb.transpose() * &held.a + cost.s.transpose();
@@ -129,6 +128,29 @@ pub fn gains_along(
         .map(|(step, gain)| (table.at(step as f64 * h) - gain).norm() / gain.norm())
         .fold(0.0, f64::max);
     Ok(table)
+}
+
+/// The pair under held inputs and its cost between two samples, as [`super::discretise::zero_order_hold`] and
+/// [`super::sampled::sampled_cost`] have them, from one exponential.
+fn held_with_cost(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    q: &DMatrix<f64>,
+    r: &DMatrix<f64>,
+    period_s: f64,
+) -> (Held, SampledCost) {
+    let (n, m) = b.shape();
+    let size = n + m;
+    let whole = (motion_and_cost(a, b, q, r) * period_s).exp();
+    let moved = whole.view((size, size), (size, size));
+    let cost = moved.transpose() * whole.view((0, size), (size, size));
+    let cost = (&cost + cost.transpose()) * 0.5;
+    let block =
+        |row: usize, column: usize, rows: usize, columns: usize| cost.view((row, column), (rows, columns)).into_owned();
+    (
+        Held { a: moved.view((0, 0), (n, n)).into_owned(), b: moved.view((0, n), (n, m)).into_owned(), period_s },
+        SampledCost { q: block(0, 0, n, n), s: block(0, n, n, m), r: block(n, n, m, m) },
+    )
 }
 
 /// A gain of the recursion, which is 4 x 9 by construction.

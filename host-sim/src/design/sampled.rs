@@ -104,16 +104,7 @@ pub fn sampled_cost(
     let q = require_symmetric("Q", q, n)?;
     let r = require_symmetric("R", r, m)?;
     let size = n + m;
-    // exp([-M' W; 0 M] h) = [. G; 0 E]: the cost of [x u] over a period is E' G.
-    let mut motion = DMatrix::zeros(size, size);
-    motion.view_mut((0, 0), (n, n)).copy_from(a);
-    motion.view_mut((0, n), (n, m)).copy_from(b);
-    let mut doubled = DMatrix::zeros(2 * size, 2 * size);
-    doubled.view_mut((0, 0), (size, size)).copy_from(&-motion.transpose());
-    doubled.view_mut((size, size), (size, size)).copy_from(&motion);
-    doubled.view_mut((0, size), (n, n)).copy_from(&q);
-    doubled.view_mut((n, size + n), (m, m)).copy_from(&r);
-    let whole = precise_exponential(&doubled, period_s)?;
+    let whole = precise_exponential(&motion_and_cost(a, b, &q, &r), period_s)?;
     let block = |row: usize| DoubleMatrix {
         hi: whole.hi.view((row, size), (size, size)).into_owned(),
         lo: whole.lo.view((row, size), (size, size)).into_owned(),
@@ -124,6 +115,22 @@ pub fn sampled_cost(
         s: cost.view((0, n), (n, m)).into_owned(),
         r: cost.view((n, n), (m, m)).into_owned(),
     })
+}
+
+/// `[-M' W; 0 M]` with M the motion of `[x u]` under a held input and W its weights. Its exponential over a period is
+/// `[. G; 0 E]`, where `E' G` is the cost of `[x u]` over the period (Van Loan 1978).
+pub(super) fn motion_and_cost(a: &DMatrix<f64>, b: &DMatrix<f64>, q: &DMatrix<f64>, r: &DMatrix<f64>) -> DMatrix<f64> {
+    let (n, m) = b.shape();
+    let size = n + m;
+    let mut motion = DMatrix::zeros(size, size);
+    motion.view_mut((0, 0), (n, n)).copy_from(a);
+    motion.view_mut((0, n), (n, m)).copy_from(b);
+    let mut doubled = DMatrix::zeros(2 * size, 2 * size);
+    doubled.view_mut((0, 0), (size, size)).copy_from(&-motion.transpose());
+    doubled.view_mut((size, size), (size, size)).copy_from(&motion);
+    doubled.view_mut((0, size), (n, n)).copy_from(q);
+    doubled.view_mut((n, size + n), (m, m)).copy_from(r);
+    doubled
 }
 
 /// The optimal held feedback for a continuous pair and weights Q >= 0, R > 0.

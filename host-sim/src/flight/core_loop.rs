@@ -5,7 +5,7 @@
 
 use nalgebra::{Vector3, Vector4};
 use quatrack::trajectory::TrajectoryError;
-use quatrack::{AnyLaw, Command, Limits, Piece, Player, Quaternion, Rate, State, Tracker};
+use quatrack::{Command, Controller, FlightLaw, Limits, Memory, Piece, Player, Progress, Quaternion, Rate, State};
 
 use super::closed_loop::HeldCommand;
 use crate::model::{InputVector, StateVector, attitude, position, velocity};
@@ -61,7 +61,11 @@ pub fn pieces(trajectory: &PiecewisePolynomial) -> Vec<Piece> {
 /// The core's step at a rate, with the trajectory evaluated on board.
 pub struct CoreLoop<'a> {
     player: Player<'a>,
-    tracker: Tracker<'a>,
+    /// At twice the rate, where the input is that of half a period ahead.
+    ahead: Option<Player<'a>>,
+    trajectory: u32,
+    controller: Controller<'a>,
+    memory: Memory,
 }
 
 impl<'a> CoreLoop<'a> {
@@ -72,11 +76,33 @@ impl<'a> CoreLoop<'a> {
     pub fn new(
         pieces: &'a [Piece],
         rate: Rate,
-        law: impl Into<AnyLaw<'a>>,
+        law: impl Into<FlightLaw<'a>>,
         limits: Limits,
     ) -> Result<Self, TrajectoryError> {
         let trajectory = quatrack::Trajectory::new(pieces)?;
-        Ok(Self { player: Player::new(trajectory, rate), tracker: Tracker::new(law, limits) })
+        Ok(Self {
+            player: Player::new(trajectory, rate),
+            ahead: None,
+            trajectory: trajectory.checksum(),
+            controller: Controller::new(law, limits),
+            memory: Memory::new(),
+        })
+    }
+
+    /// The same with the reference's input taken half a period ahead of its state: that of the middle of the time over
+    /// which the command is held. Nothing where the core has no clock of twice the rate.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_input_ahead(
+        pieces: &'a [Piece],
+        rate: Rate,
+        law: impl Into<FlightLaw<'a>>,
+        limits: Limits,
+    ) -> Result<Option<Self>, TrajectoryError> {
+        let Some(double) = Rate::from_hz(2 * rate.hz()) else { return Ok(None) };
+        let ahead = Player::new(quatrack::Trajectory::new(pieces)?, double);
+        Ok(Some(Self { ahead: Some(ahead), ..Self::new(pieces, rate, law, limits)? }))
     }
 
     /// One control step.
@@ -84,8 +110,16 @@ impl<'a> CoreLoop<'a> {
     /// # Errors
     /// The core's own words, where it gives no command.
     pub fn step(&mut self, tick: u32, x: &StateVector) -> Result<HeldCommand, String> {
-        let reference = self.player.reference(tick).map_err(|error| error.to_string())?;
-        let step = self.tracker.step(&state(x), &reference).map_err(|error| error.to_string())?;
+        let mut reference = self.player.reference(tick).map_err(|error| error.to_string())?;
+        if let Some(player) = &mut self.ahead {
+            let ahead = player.reference(2 * tick + 1).map_err(|error| error.to_string())?;
+            reference = reference.with_input_of(&ahead);
+        }
+        let progress = Some(Progress { trajectory: self.trajectory, tick });
+        let step = self
+            .controller
+            .step(&mut self.memory, progress, &state(x), &reference)
+            .map_err(|error| error.to_string())?;
         Ok(HeldCommand { input: input(&step.command), limited: step.limited.any() })
     }
 }

@@ -164,13 +164,17 @@ fn fly_one(
 }
 
 fn law(controller: Controller) -> LawChoice {
-    let table = match controller {
+    LawChoice { error_form: ErrorForm::Paper, ..LawChoice::new(table(controller)) }
+}
+
+/// The board's name for a controller's gains.
+pub(super) fn table(controller: Controller) -> Table {
+    match controller {
         Controller::LyapF => Table::LyapF,
         Controller::LyapE => Table::LyapE,
         Controller::LqrF => Table::LqrF,
         Controller::LqrE => Table::LqrE,
-    };
-    LawChoice { error_form: ErrorForm::Paper, ..LawChoice::new(table) }
+    }
 }
 
 struct Comparison {

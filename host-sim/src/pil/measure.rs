@@ -1,4 +1,7 @@
 //! Instructions a step on the target: the paper's flights in; least, mean and most of each part out.
+//!
+//! Every state is counted as it was flown and at its worst (see [`worst`]), and every command that the target computes on the
+//! way is compared with the host's.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -16,6 +19,7 @@ use super::flights::{COURSES, HostCore, Plans, fly};
 use super::image;
 use super::interrupt::Interrupt;
 use super::lock_step;
+use super::worst;
 use crate::reproduction::table::{Controller, Course};
 
 /// Longest time for an emulator to count all flights.
@@ -35,27 +39,42 @@ pub struct Count {
     pub max: u32,
 }
 
-impl Count {
-    pub(crate) fn of(counts: &[u32]) -> Self {
-        let sum: u64 = counts.iter().copied().map(u64::from).sum();
-        Self {
-            min: counts.iter().copied().min().unwrap_or_default(),
-            mean: (sum as f64 / counts.len().max(1) as f64 * 100.0).round() / 100.0,
-            max: counts.iter().copied().max().unwrap_or_default(),
-        }
+/// Counts as they come in.
+#[derive(Clone, Copy, Debug)]
+struct Tally {
+    min: u32,
+    sum: u64,
+    max: u32,
+    calls: u64,
+}
+
+impl Tally {
+    const NONE: Self = Self { min: u32::MAX, sum: 0, max: 0, calls: 0 };
+
+    fn add(&mut self, [min, sum, max]: [u32; 3], calls: u64) {
+        (self.min, self.max) = (self.min.min(min), self.max.max(max));
+        (self.sum, self.calls) = (self.sum + u64::from(sum), self.calls + calls);
+    }
+
+    fn count(&self) -> Count {
+        let mean = self.sum as f64 / self.calls.max(1) as f64;
+        Count { min: self.min.min(self.max), mean: (mean * 100.0).round() / 100.0, max: self.max }
     }
 }
 
 /// What the control path costs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// A step of each law, with validation, sign handling and saturation.
-    pub law: BTreeMap<Controller, Count>,
+    /// A step of each law, with validation, sign handling and saturation: each controller's, and [`worst::ANY_TABLE`].
+    pub law: BTreeMap<String, Count>,
     /// The reference of a tick: polynomial to jerk, and the flat map.
     pub reference: Count,
-    /// A whole tick.
+    /// The same on a trajectory that turns.
+    #[serde(rename = "reference turning")]
+    pub reference_turning: Count,
+    /// A whole tick on a trajectory that does not turn.
     pub tick: Count,
-    /// Steps counted.
+    /// Steps flown.
     pub steps: usize,
     /// Code and tables of the control path, without stored trajectories: all that its own image puts in flash, start-up
     /// code and vector table included.
@@ -85,7 +104,8 @@ struct Recorded {
     steps: Vec<(State, Command)>,
 }
 
-fn record() -> Result<Vec<Recorded>, PilError> {
+/// All flights, or the first `limit` steps of each.
+fn record(limit: Option<usize>) -> Result<Vec<Recorded>, PilError> {
     let plans = Plans::solve()?;
     let mut flights = Vec::new();
     for course in COURSES {
@@ -93,6 +113,9 @@ fn record() -> Result<Vec<Recorded>, PilError> {
             let mut core = HostCore::new(course, controller)?;
             let mut steps = Vec::new();
             fly(plans.of(course), |tick, state| {
+                if limit.is_some_and(|limit| steps.len() >= limit) {
+                    return Err("as far as was asked for".to_owned());
+                }
                 let command = core.step(tick, state)?;
                 steps.push((*state, command));
                 Ok(command)
@@ -109,10 +132,10 @@ fn state_words(state: &State) -> [f32; 10] {
 }
 
 fn states_file(flights: &[Recorded]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    for flight in flights {
-        let controller = Controller::ALL.iter().position(|c| *c == flight.controller).unwrap_or_default();
-        for word in [flight.course as u32, controller as u32, flight.steps.len() as u32] {
+    let mut bytes = worst::head();
+    for (flight, controller, is_worst) in runs(flights) {
+        let controller = Controller::ALL.iter().position(|c| Some(*c) == controller).unwrap_or(Controller::ALL.len());
+        for word in [flight.course as u32, controller as u32, u32::from(is_worst), flight.steps.len() as u32] {
             bytes.extend(word.to_le_bytes());
         }
         for value in flight.steps.iter().flat_map(|(state, _)| state_words(state)) {
@@ -122,18 +145,29 @@ fn states_file(flights: &[Recorded]) -> Vec<u8> {
     bytes
 }
 
+/// What the target flies, in order: each flight as recorded and at its worst, and those of LQR-E once more at the worst of
+/// the dense gain, which is no controller of the paper's.
+fn runs(flights: &[Recorded]) -> impl Iterator<Item = (&Recorded, Option<Controller>, bool)> {
+    flights.iter().flat_map(|flight| {
+        let dense = (flight.controller == Controller::LqrE).then_some((flight, None, true));
+        let own = Some(flight.controller);
+        [(flight, own, false), (flight, own, true)].into_iter().chain(dense)
+    })
+}
+
 /// Steps that are flown on the target for its stack.
 const STACK_STEPS: u32 = 500;
 
-/// Flies the paper's flights on the host and counts every step of them on the emulated target.
+/// Flies the paper's flights on the host and counts every step of them on the emulated target; the first `limit` steps of
+/// each flight where one is given.
 ///
 /// # Errors
 /// [`PilError`].
-pub fn count(images: &Images) -> Result<Report, PilError> {
+pub fn count(images: &Images, limit: Option<usize>) -> Result<Report, PilError> {
     let (control_path, flying) = (image::size(&images.control_path)?, image::size(&images.flying)?);
     image::size(&images.counting)?;
     let interrupt = Interrupt::listen()?;
-    let flights = record()?;
+    let flights = record(limit)?;
     let folder = Folder::create()?;
     let states = folder.path().join("states.bin");
     fs::write(&states, states_file(&flights)).map_err(PilError::io("writing the recorded states"))?;
@@ -155,27 +189,41 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<Report, PilError> {
     if long.wrapping_sub(*short) != LOOP_INSTRUCTIONS {
         return Err(PilError::Miscounts { counted: long.wrapping_sub(*short), instructions: LOOP_INSTRUCTIONS });
     }
-    let (rows, _) = words.as_chunks::<7>();
-    let flown: Vec<(Controller, &Command)> =
-        flights.iter().flat_map(|f| f.steps.iter().map(|(_, command)| (f.controller, command))).collect();
-    if rows.len() != flown.len() {
-        return Err(too_short());
-    }
-    let (mut law, mut reference, mut tick) = (BTreeMap::<_, Vec<u32>>::new(), Vec::new(), Vec::new());
-    for (step, ((controller, command), row)) in flown.iter().zip(rows).enumerate() {
-        let [of_reference, of_law, of_tick, bits @ ..] = *row;
-        if bits != lock_step::words(command) {
-            return Err(PilError::Answer(format!("{controller}, step {step}: another command than the host's")));
+    let (rows, _) = words.as_chunks::<10>();
+    let mut rows = rows.iter();
+    let mut law = BTreeMap::<String, Tally>::new();
+    let [mut reference, mut turning, mut tick] = [Tally::NONE; 3];
+    for (flight, controller, is_worst) in runs(flights) {
+        let name = controller.map_or_else(|| worst::ANY_TABLE.to_owned(), |controller| controller.to_string());
+        let law = law.entry(name.clone()).or_insert(Tally::NONE);
+        let mut host = worst::Host::new(flight.course, controller)?;
+        for (step, (state, recorded)) in flight.steps.iter().enumerate() {
+            let [of_reference, least, sum, most, of_tick, t, p, q, r, hash] = *rows.next().ok_or_else(too_short)?;
+            let found = [t, p, q, r];
+            let is_same = if is_worst {
+                turning.add([of_reference; 3], 1);
+                law.add([least, sum, most], worst::CALLS);
+                let expected = host.step(step as u32, state)?;
+                hash == expected.hash && expected.command.is_none_or(|command| found == lock_step::words(&command))
+            } else {
+                reference.add([of_reference; 3], 1);
+                law.add([least, sum, most], 1);
+                found == lock_step::words(recorded)
+            };
+            if !is_same {
+                return Err(PilError::Answer(format!("{name}, step {step}: another command than the host's")));
+            }
+            if controller.is_some() {
+                tick.add([of_tick; 3], 1);
+            }
         }
-        law.entry(*controller).or_default().push(of_law);
-        reference.push(of_reference);
-        tick.push(of_tick);
     }
     Ok(Report {
-        law: law.iter().map(|(controller, counts)| (*controller, Count::of(counts))).collect(),
-        reference: Count::of(&reference),
-        tick: Count::of(&tick),
-        steps: rows.len(),
+        law: law.into_iter().map(|(name, tally)| (name, tally.count())).collect(),
+        reference: reference.count(),
+        reference_turning: turning.count(),
+        tick: tick.count(),
+        steps: flights.iter().map(|flight| flight.steps.len()).sum(),
         flash_bytes: 0,
         ram_bytes: 0,
         stack_bytes: 0,
@@ -193,10 +241,11 @@ impl fmt::Display for Report {
         writeln!(f, "\n{:<24}{:>8}{:>10}{:>8}", "", "min", "mean", "max")?;
         let mut row =
             |name: &str, count: &Count| writeln!(f, "{name:<24}{:>8}{:>10.1}{:>8}", count.min, count.mean, count.max);
-        for (controller, count) in &self.law {
-            row(&format!("law, {controller}"), count)?;
+        for (name, count) in &self.law {
+            row(&format!("law, {name}"), count)?;
         }
         row("reference", &self.reference)?;
+        row("reference, turning", &self.reference_turning)?;
         row("whole tick", &self.tick)?;
         writeln!(f, "\ncontrol path   flash {:>6} bytes, without stored trajectories", self.flash_bytes)?;
         let Self { image_flash_bytes, ram_bytes, stack_bytes, .. } = self;

@@ -3,6 +3,7 @@
 //! ```text
 //! lock_step        the paper's flights under the target's commands, compared with the host's
 //! measure          instructions a step, flash, RAM
+//!   worst          what makes a step cost most, on the host
 //!   flights        the paper's flights, flown by the core on the host
 //!     emulated     a board in an emulator
 //!     client       a board behind its line
@@ -22,6 +23,7 @@ pub mod line;
 pub mod lock_step;
 pub mod measure;
 pub mod stored;
+mod worst;
 
 use std::io;
 use std::path::PathBuf;

@@ -7,6 +7,7 @@ use std::thread;
 
 use serde::Serialize;
 
+use super::beyond::Beyond;
 use super::table::{CORE_RATES_HZ, CRASH_MU, Controller, Course, Gains, Outcome, fly_cell, fly_crash};
 use crate::design::DesignError;
 use crate::design::synthesis::PAPER_MU;
@@ -26,6 +27,15 @@ pub struct Reproduction {
 pub struct Report<'a> {
     iae: BTreeMap<Course, BTreeMap<Controller, &'a super::table::Cell>>,
     min_z: BTreeMap<Controller, f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    beyond: Option<&'a Beyond>,
+}
+
+impl<'a> Report<'a> {
+    /// The same with what lies past the paper.
+    pub fn with(self, beyond: Option<&'a Beyond>) -> Self {
+        Self { beyond, ..self }
+    }
 }
 
 impl Reproduction {
@@ -80,6 +90,7 @@ impl Reproduction {
                 .map(|(course, outcomes)| (*course, outcomes.iter().map(|(c, o)| (*c, &o.cell)).collect()))
                 .collect(),
             min_z: self.crash.iter().map(|(controller, metrics)| (*controller, metrics.min_z_m)).collect(),
+            beyond: None,
         }
     }
 

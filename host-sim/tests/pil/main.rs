@@ -1,5 +1,6 @@
 //! `quatrack pil`: the image on the emulated board, and everything that can be wrong with either.
 
+mod counts;
 mod emulated;
 mod failures;
 mod hard_fault;

@@ -1,8 +1,9 @@
-//! Tables of the paper's gains, as files for a vehicle of the tests.
+//! Tables of the paper's gains, and of those past it, as files for a vehicle of the tests.
 
 use quatrack::gains::paper;
 use quatrack::gains::table::{
-    Certificate, GainTable, Hash, Margins, Name, Rows, TABLE_BYTES_MAX, TableHead, TableKind, Vehicle,
+    Certificate, GainTable, Hash, Margins, Name, Rows, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable,
+    TABLE_BYTES_MAX, TableHead, TableKind, Vehicle,
 };
 use quatrack::nalgebra::Vector3;
 use quatrack::{Limits, Rate};
@@ -42,8 +43,24 @@ pub(crate) fn paper_tables() -> [(&'static str, Rows); 4] {
     ]
 }
 
+/// LQR-E with what its integrals of the position would answer; 50.9 and 20.7 are those of the design with weights 50.
+pub(crate) fn integral_rows() -> [[f32; 12]; 4] {
+    let answers = [[0.0, 0.0, 50.9], [0.0, -20.7, 0.0], [20.7, 0.0, 0.0], [0.0; 3]];
+    let mut rows = [[0.0; 12]; 4];
+    for ((row, gains), answers) in rows.iter_mut().zip(paper::LQR_E.gain().rows()).zip(answers) {
+        row[..9].copy_from_slice(gains);
+        row[9..].copy_from_slice(&answers);
+    }
+    rows
+}
+
+/// All tables of one gain, by name.
+pub(crate) fn tables() -> Vec<(&'static str, Rows)> {
+    paper_tables().into_iter().chain([("lqi-e", Rows::Integral(integral_rows()))]).collect()
+}
+
 pub(crate) fn table(name: &str) -> GainTable {
-    let (_, rows) = paper_tables().into_iter().find(|(known, _)| *known == name).unwrap();
+    let (_, rows) = tables().into_iter().find(|(known, _)| *known == name).unwrap();
     GainTable::new(head(name), &rows).unwrap()
 }
 
@@ -59,15 +76,28 @@ pub(crate) fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes
 }
 
-/// Entries of a table's gain, by rows.
-pub(crate) fn entries(rows: &Rows) -> Vec<f32> {
-    match rows {
-        Rows::Equilibrium(rows) => rows.as_flattened().to_vec(),
-        Rows::FlatOutput(rows) => rows.as_flattened().to_vec(),
-    }
-}
-
 pub(crate) fn dimensions(kind: TableKind) -> (usize, usize) {
     let (rows, columns) = kind.dimensions();
     (usize::from(rows), usize::from(columns))
+}
+
+/// The checksum of no trajectory in particular.
+pub(crate) const TRAJECTORY: u32 = 0x1122_3344;
+
+/// LQR-E, a little stiffer from knot to knot and with an entry that the stationary one does not have.
+pub(crate) fn gains_over_time(knots: usize) -> Vec<[[f32; 9]; 4]> {
+    let gain = paper::LQR_E.gain();
+    (0..knots)
+        .map(|knot| {
+            let share = knot as f32 / 64.0;
+            let mut rows = gain.rows().map(|row| row.map(|entry| entry * (1.0 + share)));
+            rows[0][0] = share;
+            rows
+        })
+        .collect()
+}
+
+pub(crate) fn schedule_bytes(gains: &[[[f32; 9]; 4]]) -> Vec<u8> {
+    let rows = ScheduleRows { trajectory: TRAJECTORY, steps_per_knot: 25, gains };
+    ScheduleTable::write(&mut [0; SCHEDULE_BYTES_MAX], &head("along"), &rows).unwrap().bytes().to_vec()
 }

@@ -10,7 +10,7 @@ use quatrack::{
 };
 use quatrack_tests::halton;
 
-use super::fixture::{VEHICLE, bytes_of, entries, head, paper_tables, rate, table};
+use super::fixture::{VEHICLE, bytes_of, head, paper_tables, rate, table};
 
 const CASES: u32 = 5000;
 
@@ -19,7 +19,7 @@ fn loaded(name: &str) -> AcceptedTable {
 }
 
 fn tracker(table: &AcceptedTable, feed_forward: FeedForward, error_form: ErrorForm) -> Tracker<'_> {
-    Tracker::new(table.law(feed_forward, error_form), table.limits())
+    Tracker::new(table.law(feed_forward, error_form).fixed().unwrap(), table.limits())
 }
 
 fn bits(command: &Command) -> [u32; 4] {
@@ -119,7 +119,7 @@ proptest! {
         prop_assert_eq!(before, after);
         // On a tilted reference q_r^-1 q is rounded: three components, each off by two units in the last place of 1/2.
         let [before, after] = commands(&case(index).0);
-        let rounding = 3.0 * f32::EPSILON * entries(&old).iter().chain(&entries(&new)).fold(0.0, |a, k| k.abs().max(a));
+        let rounding = 3.0 * f32::EPSILON * old.entries().iter().chain(new.entries()).fold(0.0, |a, k| k.abs().max(a));
         let jump = (after.body_rates_rad_s - before.body_rates_rad_s).amax();
         prop_assert!(jump.max((after.thrust_m_s2 - before.thrust_m_s2).abs()) <= 2.0 * rounding + 2e-6, "{}", jump);
     }

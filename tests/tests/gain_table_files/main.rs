@@ -1,8 +1,10 @@
 //! Gain tables as files: written, read back, refused, flown, uploaded, swapped.
 
+mod actuator;
 mod fixture;
 mod flight;
 mod layout;
 mod properties;
 mod refusals;
+mod schedule;
 mod store;

@@ -8,7 +8,7 @@ use quatrack::gains::table::{
     AcceptError, BODY_RATE_MAX_RAD_S, Figure, GainTable, Name, NameError, TableError, TableKind, Vehicle,
 };
 
-use super::fixture::{VEHICLE, bytes_of, dimensions, paper_tables, rate, sealed, table};
+use super::fixture::{VEHICLE, bytes_of, dimensions, rate, sealed, table, tables};
 
 /// What a table is refused for after some of its bytes have been replaced, checksum made anew.
 fn refusal(name: &str, offset: usize, replacement: &[u8]) -> TableError {
@@ -23,7 +23,7 @@ fn refusal_of_f32(offset: usize, value: f32) -> TableError {
 
 #[test]
 fn every_flipped_bit_is_found() {
-    for (name, _) in paper_tables() {
+    for (name, _) in tables() {
         let bytes = bytes_of(&table(name));
         for bit in 0..bytes.len() * 8 {
             let mut broken = bytes.clone();
@@ -64,16 +64,23 @@ fn the_frame_is_looked_at_first() {
 
 #[test]
 fn a_payload_of_another_kind_or_size_is_refused() {
-    for found in [0, 3, 4, 255] {
+    for found in [0, 6, 7, 255] {
         assert_eq!(refusal("lqr-e", 8, &[found]), TableError::Kind { found });
     }
     let transposed = TableError::Dimensions { kind: TableKind::Equilibrium, rows: 9, columns: 4 };
     assert_eq!(refusal("lqr-e", 9, &[9, 4]), transposed);
     let mislabelled = TableError::Dimensions { kind: TableKind::FlatOutput, rows: 4, columns: 9 };
     assert_eq!(refusal("lqr-e", 8, &[2]), mislabelled);
+    let without_integrals = TableError::Dimensions { kind: TableKind::Integral, rows: 4, columns: 9 };
+    assert_eq!(refusal("lqr-e", 8, &[3]), without_integrals);
+    let along = TableError::OtherKind { kind: TableKind::AlongTrajectory };
+    assert_eq!(refusal("lqr-e", 8, &[4]), along, "loaded by another reader");
+    let without_motors = TableError::Dimensions { kind: TableKind::ActuatorAware, rows: 4, columns: 9 };
+    assert_eq!(refusal("lqr-e", 8, &[5]), without_motors);
     // Sound frames around payloads of other lengths: none, half a head, gains of the other kind.
-    for (kind, payload, wanted) in [(1, 0, 183), (1, 100, 183), (1, 451, 327), (1, 314, 327), (2, 315, 463)] {
-        let (m, n) = if kind == 1 { (4, 9) } else { (7, 10) };
+    let cases = [(1, 0, 183), (1, 100, 183), (1, 451, 327), (1, 314, 327), (2, 315, 463), (3, 315, 375), (3, 364, 375)];
+    for (kind, payload, wanted) in cases {
+        let (m, n) = [(4, 9), (7, 10), (4, 12)][kind as usize - 1];
         let mut bytes = bytes_of(&table("lqr-f"));
         bytes.resize(payload + 12, 0);
         bytes[6..8].copy_from_slice(&(payload as u16).to_le_bytes());
@@ -87,7 +94,7 @@ fn a_payload_of_another_kind_or_size_is_refused() {
 
 #[test]
 fn every_entry_is_looked_at() {
-    for name in ["lqr-e", "lqr-f"] {
+    for name in ["lqr-e", "lqr-f", "lqi-e"] {
         let (m, n) = dimensions(table(name).kind());
         for (row, column) in (0..m).flat_map(|row| (0..n).map(move |column| (row, column))) {
             let at = 179 + 4 * (row * n + column);

@@ -3,7 +3,7 @@
 use super::{GainTable, Gains, LoadError, TableHead, TableKind, Vehicle};
 use crate::clock::Rate;
 use crate::command::Limits;
-use crate::law::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput};
+use crate::law::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlightLaw, IntegralAction};
 
 /// A table for this board's vehicle and rate; made by [`GainTable::accept_for`] alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,13 +24,15 @@ impl AcceptedTable {
         Ok(GainTable::from_bytes(bytes)?.accept_for(vehicle, rate)?)
     }
 
-    /// The law. The flat output law has one form of the error and does not ask for it.
+    /// The law. Only the equilibrium law asks for the form of the error; the others have one.
     #[inline]
-    pub const fn law(&self, feed_forward: FeedForward, error_form: ErrorForm) -> AnyLaw<'_> {
-        match &self.table.gains {
+    pub fn law(&self, feed_forward: FeedForward, error_form: ErrorForm) -> FlightLaw<'_> {
+        let fixed = match &self.table.gains {
             Gains::Equilibrium(gain) => AnyLaw::Equilibrium(Equilibrium { gain, error_form, feed_forward }),
             Gains::FlatOutput(gain) => AnyLaw::FlatOutput(FlatOutput { gain, feed_forward }),
-        }
+            Gains::Integral(gain) => return IntegralAction::new(gain, self.table.head.rate, feed_forward).into(),
+        };
+        FlightLaw::Fixed(fixed)
     }
 
     /// Which law it is for.

@@ -96,6 +96,48 @@ pub enum TableError {
         /// What stands there.
         value: f32,
     },
+    /// A table of a kind that is loaded by another reader.
+    OtherKind {
+        /// Its kind.
+        kind: TableKind,
+    },
+    /// Gains over time with fewer than 2 knots or more than [`super::KNOTS_MAX`].
+    Knots {
+        /// Knots found.
+        found: u16,
+    },
+    /// Gains over time whose knots are no control step apart.
+    KnotSpacing,
+    /// The motor lag that a table was designed for is shorter than two control periods, longer than certified, or no number.
+    MotorLag {
+        /// What stands there, s.
+        lag_s: f32,
+    },
+    /// What is wrong with the gain at one knot of gains over time.
+    Knot {
+        /// The knot, from 0.
+        knot: u16,
+        /// What, within its gain.
+        fault: KnotFault,
+    },
+}
+
+/// What is wrong with a gain at a knot; rows and columns are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum KnotFault {
+    /// An entry is not finite, or an error goes unused.
+    Gain(GainError),
+    /// An entry is out of proportion, as in [`TableError::Entry`].
+    Entry {
+        /// Row.
+        row: u8,
+        /// Column.
+        column: u8,
+        /// What stands there.
+        value: f32,
+    },
 }
 
 /// Why a sound table is not flown on this board.
@@ -151,12 +193,7 @@ impl fmt::Display for TableError {
                 write!(f, "{rows} by {columns}, but {kind} is {m} by {n}; generate it again")
             }
             Self::Gain(error) => write!(f, "{error}; design it again"),
-            Self::Entry { row, column, value } => write!(
-                f,
-                "entry ({row}, {column}) is {value:e}; must be 0 or of a size from {:e} to {:e}",
-                super::ENTRY_MIN,
-                super::ENTRY_MAX
-            ),
+            Self::Entry { row, column, value } => entry_out_of_proportion(f, *row, *column, *value),
             Self::TableName(error) => write!(f, "its own {error}"),
             Self::VehicleName(error) => write!(f, "its vehicle's {error}"),
             Self::Rate { hz } => write!(f, "control rate {hz} Hz; state the rate it was certified at"),
@@ -174,8 +211,27 @@ impl fmt::Display for TableError {
             Self::Uncertified { figure, value } => {
                 write!(f, "certified {figure} is {value}, which certifies nothing; change the design")
             }
+            Self::OtherKind { kind } => write!(f, "{kind}, which is not loaded here; load it as what it is"),
+            Self::Knots { found } => {
+                write!(f, "{found} knots; must be 2 to {}: change their spacing", super::KNOTS_MAX)
+            }
+            Self::MotorLag { lag_s } => write!(
+                f,
+                "designed for a motor lag of {lag_s} s; must be from two control periods to the largest that is certified"
+            ),
+            Self::KnotSpacing => f.write_str("knots 0 control steps apart; must be at least 1"),
+            Self::Knot { knot, fault: KnotFault::Gain(error) } => write!(f, "knot {knot}: {error}; design it again"),
+            Self::Knot { knot, fault: KnotFault::Entry { row, column, value } } => {
+                write!(f, "knot {knot}: ")?;
+                entry_out_of_proportion(f, *row, *column, *value)
+            }
         }
     }
+}
+
+fn entry_out_of_proportion(f: &mut fmt::Formatter<'_>, row: u8, column: u8, value: f32) -> fmt::Result {
+    let (min, max) = (super::ENTRY_MIN, super::ENTRY_MAX);
+    write!(f, "entry ({row}, {column}) is {value:e}; must be 0 or of a size from {min:e} to {max:e}")
 }
 
 impl fmt::Display for AcceptError {

@@ -5,28 +5,36 @@
 //! [`GainTable::accept_for`] what is not for this vehicle or this control rate. Only the [`AcceptedTable`] behind the
 //! second one has a law to fly.
 //!
+//! Gains over time along a trajectory are too many to copy: [`ScheduleTable`] borrows them from their bytes, through the
+//! same two gates. [`ActuatorTable`] is for the law that commands motor forces, and has their lag beside its gain.
+//! [`TableKind::of`] says which of the three reads a file.
+//!
 //! ```
 //! use quatrack::gains::table::{GainTable, LoadError, Vehicle};
-//! use quatrack::{Equilibrium, FeedForward, ErrorForm, Rate, Tracker};
+//! use quatrack::{Controller, ErrorForm, FeedForward, Rate};
 //!
-//! fn tracker_of(file: &[u8], vehicle: &Vehicle, rate: Rate) -> Result<f32, LoadError> {
+//! fn controller_of(file: &[u8], vehicle: &Vehicle, rate: Rate) -> Result<f32, LoadError> {
 //!     let table = GainTable::from_bytes(file)?.accept_for(vehicle, rate)?;
-//!     let tracker = Tracker::new(table.law(FeedForward::With, ErrorForm::HeadingFrame), table.limits());
-//!     # let _ = tracker;
+//!     let controller = Controller::new(table.law(FeedForward::With, ErrorForm::HeadingFrame), table.limits());
+//!     # let _ = controller;
 //!     Ok(table.head().certificate.delay_max_s)
 //! }
 //! ```
 
 mod accepted;
+mod actuator;
 mod certificate;
 mod error;
 mod name;
+mod schedule;
 mod wire;
 
 pub use accepted::AcceptedTable;
+pub use actuator::{ACTUATOR_TABLE_BYTES, AcceptedActuatorTable, ActuatorTable};
 pub use certificate::{Certificate, Figure, Hash, Margins, Vehicle};
-pub use error::{AcceptError, LoadError, TableError};
+pub use error::{AcceptError, KnotFault, LoadError, TableError};
 pub use name::{Name, NameError};
+pub use schedule::{AcceptedSchedule, KNOTS_MAX, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable};
 pub use wire::{FORMAT_VERSION, MAGIC};
 
 use core::fmt;
@@ -34,7 +42,7 @@ use core::fmt;
 use crate::clock::Rate;
 use crate::command::Limits;
 use crate::flatness::GRAVITY_M_S2;
-use crate::law::{EquilibriumGain, FlatOutputGain};
+use crate::law::{EquilibriumGain, FlatOutputGain, IntegralGain};
 
 /// Largest entry of a gain, in the units of its row and column: ten times what the stiffest design so far asks.
 pub const ENTRY_MAX: f32 = 1e4;
@@ -49,11 +57,11 @@ pub const THRUST_MAX_M_S2: f32 = 200.0;
 /// Largest body rate limit, rad/s: almost three times what a gyroscope of 2000 degrees a second measures.
 pub const BODY_RATE_MAX_RAD_S: f32 = 100.0;
 
-/// Bytes of the longest table.
-pub const TABLE_BYTES_MAX: usize = wire::FRAME_BYTES + TableKind::FlatOutput.payload_bytes() as usize;
+/// Bytes of the longest [`GainTable`]; gains over time have [`SCHEDULE_BYTES_MAX`], those of motor forces
+/// [`ACTUATOR_TABLE_BYTES`].
+pub const TABLE_BYTES_MAX: usize = wire::FRAME_BYTES + wire::HEAD_BYTES + TableKind::FlatOutput.gain_bytes();
 
-/// Which law a table is for. Numbers 3 (equilibrium with the integral of the position error, 4 by 12) and 4 (gains over
-/// time) are taken for laws to come.
+/// Which law a table is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -62,6 +70,12 @@ pub enum TableKind {
     Equilibrium,
     /// [`crate::FlatOutput`], 7 by 10.
     FlatOutput,
+    /// [`crate::IntegralAction`], 4 by 12.
+    Integral,
+    /// [`crate::AlongTrajectory`], 4 by 9 at each knot; read by [`ScheduleTable`].
+    AlongTrajectory,
+    /// [`crate::ActuatorAware`], 4 by 19; read by [`ActuatorTable`].
+    ActuatorAware,
 }
 
 /// The entries of a gain, by rows.
@@ -71,6 +85,20 @@ pub enum Rows {
     Equilibrium([[f32; 9]; 4]),
     /// Outputs `[a(3) j(3) q3']` from errors `[r(3) v(3) a(3) q3]`.
     FlatOutput([[f32; 10]; 7]),
+    /// Outputs `[T p q r]` from errors `[x y z q1 q2 q3 vx vy vz ix iy iz]`, the last three their integrals, metre
+    /// seconds.
+    Integral([[f32; 12]; 4]),
+}
+
+impl Rows {
+    /// The entries one row after the other.
+    pub const fn entries(&self) -> &[f32] {
+        match self {
+            Self::Equilibrium(rows) => rows.as_flattened(),
+            Self::FlatOutput(rows) => rows.as_flattened(),
+            Self::Integral(rows) => rows.as_flattened(),
+        }
+    }
 }
 
 /// What a table says beside its gains.
@@ -101,6 +129,7 @@ pub struct GainTable {
 enum Gains {
     Equilibrium(EquilibriumGain),
     FlatOutput(FlatOutputGain),
+    Integral(IntegralGain),
 }
 
 impl GainTable {
@@ -124,22 +153,18 @@ impl GainTable {
         let (head, entries) = payload.split_first_chunk::<{ wire::HEAD_BYTES }>().ok_or(cut)?;
         let mut fields = wire::Reader::new(head, cut);
         let kind = fields.kind()?;
-        if payload.len() != usize::from(kind.payload_bytes()) {
-            return Err(wire::wrong_length(bytes, usize::from(kind.payload_bytes())));
+        // Other readers' kinds have fields of their own.
+        if !kind.is_read_elsewhere() && entries.len() != kind.gain_bytes() {
+            return Err(wire::wrong_length(bytes, wire::HEAD_BYTES + kind.gain_bytes()));
         }
         let gains = Gains::read(kind, entries)?;
-        let head = fields.head()?;
-        head.check()?;
-        Ok(Self { head, gains })
+        Ok(Self { head: TableHead::read(fields)?, gains })
     }
 
     /// Writes the table over the start of `buffer` and returns that part; nothing if it is too short. The same table
     /// gives the same bytes; [`TABLE_BYTES_MAX`] are enough for any.
     pub fn to_bytes<'b>(&self, buffer: &'b mut [u8]) -> Option<&'b [u8]> {
-        match &self.gains {
-            Gains::Equilibrium(gain) => wire::write(buffer, self.kind(), &self.head, gain.gain().rows().as_flattened()),
-            Gains::FlatOutput(gain) => wire::write(buffer, self.kind(), &self.head, gain.gain().rows().as_flattened()),
-        }
+        wire::write(buffer, self.kind(), &self.head, &[], self.rows().entries())
     }
 
     /// The table as one that this board flies: it was designed for `vehicle` and certified at `rate`, that of the
@@ -157,6 +182,7 @@ impl GainTable {
         match &self.gains {
             Gains::Equilibrium(_) => TableKind::Equilibrium,
             Gains::FlatOutput(_) => TableKind::FlatOutput,
+            Gains::Integral(_) => TableKind::Integral,
         }
     }
 
@@ -170,11 +196,20 @@ impl GainTable {
         match &self.gains {
             Gains::Equilibrium(gain) => Rows::Equilibrium(*gain.gain().rows()),
             Gains::FlatOutput(gain) => Rows::FlatOutput(*gain.gain().rows()),
+            Gains::Integral(gain) => Rows::Integral(gain.rows()),
         }
     }
 }
 
 impl TableHead {
+    /// From the fields behind the kind. One function for all kinds of tables: it is long.
+    #[inline(never)]
+    fn read(mut fields: wire::Reader<'_>) -> Result<Self, TableError> {
+        let head = fields.head()?;
+        head.check()?;
+        Ok(head)
+    }
+
     fn check(&self) -> Result<(), TableError> {
         let (min_m_s2, max_m_s2) = (self.limits.thrust_min_m_s2(), self.limits.thrust_max_m_s2());
         if !(min_m_s2 < GRAVITY_M_S2 && max_m_s2 > GRAVITY_M_S2 && max_m_s2 <= THRUST_MAX_M_S2) || min_m_s2 < 0.0 {
@@ -208,6 +243,7 @@ impl Gains {
         match rows {
             Rows::Equilibrium(rows) => Self::equilibrium(rows),
             Rows::FlatOutput(rows) => Self::flat_output(rows),
+            Rows::Integral(rows) => Self::integral(rows),
         }
     }
 
@@ -224,6 +260,12 @@ impl Gains {
                 wire::read_entries(entries, rows.as_flattened_mut());
                 Self::flat_output(&rows)
             }
+            TableKind::Integral => {
+                let mut rows = [[0.0; 12]; 4];
+                wire::read_entries(entries, rows.as_flattened_mut());
+                Self::integral(&rows)
+            }
+            TableKind::AlongTrajectory | TableKind::ActuatorAware => Err(TableError::OtherKind { kind }),
         }
     }
 
@@ -238,30 +280,55 @@ impl Gains {
         in_proportion(rows.as_flattened(), 10)?;
         Ok(Self::FlatOutput(gain))
     }
+
+    fn integral(rows: &[[f32; 12]; 4]) -> Result<Self, TableError> {
+        let gain = IntegralGain::new(*rows).map_err(TableError::Gain)?;
+        in_proportion(rows.as_flattened(), 12)?;
+        Ok(Self::Integral(gain))
+    }
 }
 
-/// Whether every entry is 0 or of a size from [`ENTRY_MIN`] to [`ENTRY_MAX`].
-#[inline(never)]
 fn in_proportion(entries: &[f32], columns: u8) -> Result<(), TableError> {
+    match out_of_proportion(entries, columns) {
+        None => Ok(()),
+        Some((row, column, value)) => Err(TableError::Entry { row, column, value }),
+    }
+}
+
+/// The row, column and value of the first entry that is neither 0 nor of a size from [`ENTRY_MIN`] to [`ENTRY_MAX`].
+#[inline(never)]
+fn out_of_proportion(entries: &[f32], columns: u8) -> Option<(u8, u8, f32)> {
     let (mut row, mut column) = (0, 0);
     for value in entries.iter().copied() {
         if value != 0.0 && !(ENTRY_MIN..=ENTRY_MAX).contains(&value.abs()) {
-            return Err(TableError::Entry { row, column, value });
+            return Some((row, column, value));
         }
         column += 1;
         if column == columns {
             (row, column) = (row + 1, 0);
         }
     }
-    Ok(())
+    None
 }
 
 impl TableKind {
+    /// The kind of a table in a whole frame of this version, to choose who reads it; nothing else is looked at.
+    ///
+    /// # Errors
+    /// [`TableError`] about the frame, the kind and its dimensions.
+    pub fn of(bytes: &[u8]) -> Result<Self, TableError> {
+        let payload = wire::open(bytes)?;
+        wire::Reader::new(payload, wire::wrong_length(bytes, wire::HEAD_BYTES)).kind()
+    }
+
     /// Its number in the bytes.
     const fn number(self) -> u8 {
         match self {
             Self::Equilibrium => 1,
             Self::FlatOutput => 2,
+            Self::Integral => 3,
+            Self::AlongTrajectory => 4,
+            Self::ActuatorAware => 5,
         }
     }
 
@@ -269,21 +336,33 @@ impl TableKind {
         match number {
             1 => Some(Self::Equilibrium),
             2 => Some(Self::FlatOutput),
+            3 => Some(Self::Integral),
+            4 => Some(Self::AlongTrajectory),
+            5 => Some(Self::ActuatorAware),
             _ => None,
         }
     }
 
-    /// Rows and columns.
+    /// Rows and columns of a gain.
     pub const fn dimensions(self) -> (u8, u8) {
         match self {
             Self::Equilibrium => (4, 9),
             Self::FlatOutput => (7, 10),
+            Self::Integral => (4, 12),
+            Self::AlongTrajectory => (4, 9),
+            Self::ActuatorAware => (4, 19),
         }
     }
 
-    const fn payload_bytes(self) -> u16 {
+    /// Whether it is none of [`GainTable`]'s.
+    const fn is_read_elsewhere(self) -> bool {
+        matches!(self, Self::AlongTrajectory | Self::ActuatorAware)
+    }
+
+    /// Bytes of one gain.
+    const fn gain_bytes(self) -> usize {
         let (rows, columns) = self.dimensions();
-        wire::HEAD_BYTES as u16 + 4 * rows as u16 * columns as u16
+        4 * rows as usize * columns as usize
     }
 }
 
@@ -292,6 +371,9 @@ impl fmt::Display for TableKind {
         f.pad(match self {
             Self::Equilibrium => "equilibrium",
             Self::FlatOutput => "flat output",
+            Self::Integral => "equilibrium with integral action",
+            Self::AlongTrajectory => "equilibrium along a trajectory",
+            Self::ActuatorAware => "actuator-aware",
         })
     }
 }

@@ -93,7 +93,12 @@ impl<'b> Reader<'b> {
     }
 
     #[inline(always)]
-    fn u32(&mut self) -> Result<u32, TableError> {
+    pub(super) fn u16(&mut self) -> Result<u16, TableError> {
+        self.bytes().map(u16::from_le_bytes)
+    }
+
+    #[inline(always)]
+    pub(super) fn u32(&mut self) -> Result<u32, TableError> {
         self.bytes().map(u32::from_le_bytes)
     }
 
@@ -184,16 +189,25 @@ pub(super) fn wrong_length(bytes: &[u8], payload: usize) -> TableError {
     TableError::Length { bytes: count(bytes.len()), wanted: count(payload.saturating_add(FRAME_BYTES)) }
 }
 
-/// Writes a table over the start of `buffer` and returns that part; nothing if it is too short.
-pub(super) fn write<'b>(buffer: &'b mut [u8], kind: TableKind, head: &TableHead, entries: &[f32]) -> Option<&'b [u8]> {
-    let length = kind.payload_bytes();
-    let (frame, _) = buffer.split_at_mut_checked(FRAME_BYTES + usize::from(length))?;
+/// Writes a table over the start of `buffer` and returns that part; nothing if it is too short. `fields` are what a kind
+/// has between the head and the gains.
+pub(super) fn write<'b>(
+    buffer: &'b mut [u8],
+    kind: TableKind,
+    head: &TableHead,
+    fields: &[u8],
+    entries: &[f32],
+) -> Option<&'b [u8]> {
+    let length = HEAD_BYTES + fields.len() + 4 * entries.len();
+    let (frame, _) = buffer.split_at_mut_checked(FRAME_BYTES + length)?;
+    let length = u16::try_from(length).ok()?;
     let (content, checksum) = frame.split_last_chunk_mut()?;
     let mut writer = Writer { rest: content };
     writer.bytes(&MAGIC)?;
     writer.bytes(&FORMAT_VERSION.to_le_bytes())?;
     writer.bytes(&length.to_le_bytes())?;
     writer.head(kind, head)?;
+    writer.bytes(fields)?;
     writer.f32s(entries)?;
     *checksum = crc32c(content).to_le_bytes();
     Some(frame)

@@ -1,0 +1,43 @@
+//! Instructions a step: what the control path may cost at its worst.
+
+use quatrack_sim::pil::image::{self, Image};
+use quatrack_sim::pil::measure::{Images, Report, count};
+
+use crate::emulated::pipes_image;
+use crate::support::has_emulator;
+
+/// Steps of each flight: the costs do not depend on the values, but for what is limited and which sign a quaternion has.
+const STEPS: usize = 200;
+
+fn report() -> Report {
+    let build = |image| image::build(&image::checkout().unwrap(), image).unwrap();
+    let images =
+        Images { counting: build(Image::Measure), control_path: build(Image::ControlPath), flying: pipes_image() };
+    count(&images, Some(STEPS)).unwrap()
+}
+
+#[test]
+fn every_part_stays_within_its_bound_when_everything_is_turned_fed_forward_and_limited() {
+    if !has_emulator() {
+        return;
+    }
+    let report = report();
+    assert_eq!(report.steps, 8 * STEPS);
+    let most = |name: &str| report.law[name].max;
+    // Peers on the same processor, without a check: Mellinger's controller 468, a quaternion LQR in C 608.
+    for name in ["LYAP-E", "LQR-E"] {
+        assert!(most(name) <= 200, "{name}: {}", most(name));
+    }
+    for name in ["LYAP-F", "LQR-F"] {
+        assert!(most(name) <= 320, "{name}: {}", most(name));
+    }
+    // 27 more products than the paper's tables have, each with a load and an addition.
+    let (dense, structured) = (report.law["any E table"], report.law["LQR-E"]);
+    assert!(dense.max <= structured.max + 3 * 27, "{dense:?}, {structured:?}");
+    // What is not limited, in the heading frame or not, costs less: the counts do depend on the case.
+    assert!(structured.min + 30 <= structured.max, "{structured:?}");
+    assert!(report.reference.max <= 300, "{:?}", report.reference);
+    assert!(report.reference_turning.max <= report.reference.max + 130, "{:?}", report.reference_turning);
+    assert!(report.tick.max <= 800, "{:?}", report.tick);
+    assert!(report.flash_bytes <= 16 * 1024, "{} bytes", report.flash_bytes);
+}

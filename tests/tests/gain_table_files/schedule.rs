@@ -1,0 +1,181 @@
+//! Tables of gains over time: where every field stands, each reason for a refusal, any bytes.
+
+use proptest::collection::vec;
+use proptest::prelude::*;
+use quatrack::gain::GainError;
+use quatrack::gains::table::{
+    AcceptError, AcceptedSchedule, GainTable, KNOTS_MAX, KnotFault, LoadError, SCHEDULE_BYTES_MAX, ScheduleRows,
+    ScheduleTable, TableError, TableKind, Vehicle,
+};
+use quatrack::link::TRAJECTORY_BLOB_BYTES;
+use quatrack::{Piece, Rate, Trajectory};
+
+use super::fixture::{
+    TRAJECTORY, VEHICLE, bytes_of, gains_over_time, head, rate, schedule_bytes, sealed, table, tables,
+};
+
+/// What a table of four knots is refused for after some of its bytes have been replaced, checksum made anew.
+fn refusal(offset: usize, replacement: &[u8]) -> TableError {
+    let mut bytes = schedule_bytes(&gains_over_time(4));
+    bytes[offset..offset + replacement.len()].copy_from_slice(replacement);
+    ScheduleTable::from_bytes(&sealed(bytes)).unwrap_err()
+}
+
+#[test]
+fn every_field_stands_where_the_page_says_and_comes_back() {
+    for knots in [2, 33, KNOTS_MAX] {
+        let gains = gains_over_time(knots);
+        let bytes = schedule_bytes(&gains);
+        assert_eq!(bytes.len(), 191 + 144 * knots);
+        assert_eq!(bytes[4..11], [1, 0, (179 + 144 * knots) as u8, ((179 + 144 * knots) >> 8) as u8, 4, 4, 9]);
+        assert_eq!(bytes[179..187], [knots as u8, 0, 25, 0, 0x44, 0x33, 0x22, 0x11], "knots, spacing, trajectory");
+        let of_file: Vec<f32> =
+            bytes[187..bytes.len() - 4].chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
+        assert_eq!(of_file, gains.as_flattened().as_flattened());
+
+        let read = ScheduleTable::from_bytes(&bytes).unwrap();
+        assert_eq!((read.head(), read.bytes()), (&head("along"), &bytes[..]));
+        let schedule = read.schedule();
+        assert_eq!((schedule.knots(), schedule.steps_per_knot(), schedule.trajectory()), (knots, 25, TRAJECTORY));
+        assert_eq!((0..).map_while(|knot| schedule.gain(knot)).collect::<Vec<_>>(), gains);
+    }
+    // A compile-time fact of two constants, in different modules of the core.
+    const { assert!(SCHEDULE_BYTES_MAX <= TRAJECTORY_BLOB_BYTES, "goes where an uploaded trajectory goes") };
+}
+
+#[test]
+fn a_kind_is_read_by_its_own_reader_alone() {
+    let bytes = schedule_bytes(&gains_over_time(4));
+    assert_eq!(TableKind::of(&bytes), Ok(TableKind::AlongTrajectory));
+    let refused = TableError::OtherKind { kind: TableKind::AlongTrajectory };
+    assert_eq!(GainTable::from_bytes(&bytes), Err(refused));
+    for (name, _) in tables() {
+        let bytes = bytes_of(&table(name));
+        let kind = table(name).kind();
+        assert_eq!(TableKind::of(&bytes), Ok(kind));
+        assert_eq!(ScheduleTable::from_bytes(&bytes), Err(TableError::OtherKind { kind }), "{name}");
+    }
+    assert!(matches!(TableKind::of(&bytes[1..]), Err(TableError::Magic { .. })));
+}
+
+#[test]
+fn knots_and_their_spacing_are_possible_ones() {
+    for found in [0, 1, 61, u16::MAX] {
+        assert_eq!(refusal(179, &found.to_le_bytes()), TableError::Knots { found });
+        let gains = gains_over_time(usize::from(found));
+        let rows = ScheduleRows { trajectory: 0, steps_per_knot: 1, gains: &gains };
+        let written = ScheduleTable::write(&mut [0; SCHEDULE_BYTES_MAX], &head("along"), &rows).map(|_| ());
+        assert_eq!(written, Err(TableError::Knots { found }));
+    }
+    assert_eq!(refusal(181, &[0, 0]), TableError::KnotSpacing);
+    // Four knots have 767 bytes.
+    for found in [2_u16, 3, 5, 60] {
+        let wanted = 191 + 144 * u32::from(found);
+        assert_eq!(refusal(179, &found.to_le_bytes()), TableError::Length { bytes: 767, wanted });
+    }
+}
+
+#[test]
+fn every_entry_of_every_knot_is_looked_at() {
+    for (knot, row, column) in (0..4).flat_map(|k| (0..4).flat_map(move |row| (0..9).map(move |c| (k, row, c)))) {
+        let at = 187 + 4 * (36 * knot + 9 * row + column);
+        let knot = knot as u16;
+        for bad in [f32::NAN, f32::INFINITY] {
+            let fault = KnotFault::Gain(GainError::NonFinite { row, column });
+            assert_eq!(refusal(at, &bad.to_le_bytes()), TableError::Knot { knot, fault });
+        }
+        for value in [-1.1e4_f32, 0.9e-9] {
+            let fault = KnotFault::Entry { row: row as u8, column: column as u8, value };
+            assert_eq!(refusal(at, &value.to_le_bytes()), TableError::Knot { knot, fault });
+        }
+    }
+    let mut unused = gains_over_time(4);
+    unused[2][2][4] = 0.0;
+    let rows = ScheduleRows { trajectory: 0, steps_per_knot: 1, gains: &unused };
+    let written = ScheduleTable::write(&mut [0; SCHEDULE_BYTES_MAX], &head("along"), &rows).map(|_| ());
+    let fault = KnotFault::Gain(GainError::UnusedError { column: 4 });
+    assert_eq!(written, Err(TableError::Knot { knot: 2, fault }));
+    assert_eq!(
+        TableError::Knot { knot: 2, fault }.to_string(),
+        "gain table: knot 2: gain: column 4 is zero; every error must have an answer; design it again"
+    );
+}
+
+#[test]
+fn head_and_frame_are_looked_at_as_in_every_table() {
+    assert_eq!(refusal(87, &[0; 32]), TableError::NoDesign);
+    assert_eq!(refusal(119, &[0; 32]), TableError::NoCertificate);
+    assert_eq!(refusal(63, &[0; 4]), TableError::Rate { hz: 0 });
+    let bytes = schedule_bytes(&gains_over_time(4));
+    for length in 0..bytes.len() {
+        let refused = ScheduleTable::from_bytes(&bytes[..length]);
+        assert!(matches!(refused, Err(TableError::Length { .. })), "{length} bytes: {refused:?}");
+        let gains = gains_over_time(4);
+        let rows = ScheduleRows { trajectory: 0, steps_per_knot: 1, gains: &gains };
+        let written = ScheduleTable::write(&mut vec![0; length], &head("along"), &rows).map(|_| ());
+        assert_eq!(written, Err(TableError::Length { bytes: length as u32, wanted: 767 }));
+    }
+    for bit in 0..bytes.len() * 8 {
+        let mut broken = bytes.clone();
+        broken[bit / 8] ^= 1 << (bit % 8);
+        assert!(ScheduleTable::from_bytes(&broken).is_err(), "bit {bit}");
+    }
+}
+
+#[test]
+fn a_table_for_another_board_or_trajectory_is_told() {
+    let hover = |duration_ns| [Piece { duration_ns, x: [0.0; 8], y: [0.0; 8], z: [0.0; 8], heading: [0.0; 8] }];
+    let (flown, other) = (hover(1_000_000_000), hover(1_000_000_001));
+    let (flown, other) = (Trajectory::new(&flown).unwrap(), Trajectory::new(&other).unwrap());
+    let gains = gains_over_time(4);
+    let rows = ScheduleRows { trajectory: flown.checksum(), steps_per_knot: 25, gains: &gains };
+    let mut buffer = [0; SCHEDULE_BYTES_MAX];
+    let bytes = ScheduleTable::write(&mut buffer, &head("along"), &rows).unwrap().bytes();
+    let accepted = AcceptedSchedule::from_bytes(bytes, &VEHICLE, rate()).unwrap();
+    assert!(accepted.is_for(&flown) && !accepted.is_for(&other));
+
+    let heavier = Vehicle { id: 1, ..VEHICLE };
+    let refused = LoadError::Accept(AcceptError::Vehicle { table: VEHICLE });
+    assert_eq!(AcceptedSchedule::from_bytes(bytes, &heavier, rate()), Err(refused));
+    let refused = LoadError::Accept(AcceptError::Rate { table_hz: 500, loop_hz: 100 });
+    assert_eq!(AcceptedSchedule::from_bytes(bytes, &VEHICLE, Rate::from_hz(100).unwrap()), Err(refused));
+}
+
+/// What holds for every table that comes out of any bytes.
+fn holds_for_a_table(bytes: &[u8]) -> Result<bool, TestCaseError> {
+    let Ok(read) = ScheduleTable::from_bytes(bytes) else { return Ok(false) };
+    let schedule = read.schedule();
+    let gains: Vec<_> = (0..).map_while(|knot| schedule.gain(knot)).collect();
+    let rows =
+        ScheduleRows { trajectory: schedule.trajectory(), steps_per_knot: schedule.steps_per_knot(), gains: &gains };
+    let mut buffer = [0; SCHEDULE_BYTES_MAX];
+    let again = ScheduleTable::write(&mut buffer, read.head(), &rows).unwrap();
+    prop_assert_eq!(again.bytes(), bytes, "one table has one encoding");
+    Ok(true)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    #[test]
+    fn damage_under_a_good_checksum_gives_a_sound_table_or_none(
+        knots in 2..8_usize, changes in vec((any::<prop::sample::Index>(), any::<u8>()), 1..4)
+    ) {
+        let mut bytes = schedule_bytes(&gains_over_time(knots));
+        for (at, byte) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = byte;
+        }
+        holds_for_a_table(&sealed(bytes.clone()))?;
+        holds_for_a_table(&bytes)?;
+    }
+
+    #[test]
+    fn gains_of_a_usual_size_are_a_table(entries in vec(1e-3_f32..50.0, 36 * 3)) {
+        let mut bytes = schedule_bytes(&gains_over_time(3));
+        for (at, entry) in (187..).step_by(4).zip(entries) {
+            bytes[at..at + 4].copy_from_slice(&entry.to_le_bytes());
+        }
+        prop_assert!(holds_for_a_table(&sealed(bytes))?);
+    }
+}
