@@ -9,6 +9,7 @@
 //!   flight                        plants under laws in f64 and under the f32 core, metrics
 //!     plan                        waypoints and bounds -> B-spline, by second-order cone programming
 //!       trajectory                B-splines, polynomial pieces, their files
+//!   gains                         design files -> certified tables, their check, exchange with other tools
 //!   certify                       what a gain as flown promises: poles, margins, delay and lag
 //!     design                      Section IV: Lyapunov and Riccati equations, the four gains, gains for a control rate
 //!     analysis                    Section III: poles, Jordan blocks, controllability
@@ -26,6 +27,7 @@ pub mod crazyflie;
 pub mod design;
 pub mod figures;
 pub mod flight;
+pub mod gains;
 pub mod integrator;
 pub mod model;
 pub mod pil;

@@ -10,6 +10,11 @@ pub struct Readme;
 #[cfg(doctest)]
 pub struct GainTablesPage;
 
+/// And of the page on designs of one's own.
+#[doc = include_str!("../../docs/own-gains.md")]
+#[cfg(doctest)]
+pub struct OwnGainsPage;
+
 /// Point `index` of the Halton sequence in `N` dimensions, each coordinate in (0, 1): random enough to cover a box
 /// evenly, and the same on every machine.
 pub fn halton<const N: usize>(index: u32) -> [f64; N] {

@@ -1,27 +1,17 @@
 //! The Riccati solver on cases with a known answer, on random pairs by property, and on what it must refuse.
 
+mod design_problem;
+
 use nalgebra::{DMatrix, DVector};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use quatrack_sim::analysis::MatrixError;
 use quatrack_sim::design::{DesignError, RiccatiSolution, care, lqr, strong_care};
+
+use design_problem::{cases, identity, matrix, random_problem, relative_error};
 
 /// CAREX 2.2 with eps = 2^-24 and 2^-40: p11, p12, p22.
 const REFERENCE_2_2_A: (i32, [f64; 3]) = (24, [74.723_329_897_026_65, 830.150_239_126_018_5, 9_222.981_792_028_486]);
 const REFERENCE_2_2_B: (i32, [f64; 3]) = (40, [74.684_032_287_897_57, 829.822_154_444_812_1, 9_220.242_598_627_244]);
-
-fn matrix(rows: usize, columns: usize, entries: &[f64]) -> DMatrix<f64> {
-    DMatrix::from_row_slice(rows, columns, entries)
-}
-
-fn identity(n: usize) -> DMatrix<f64> {
-    DMatrix::identity(n, n)
-}
-
-/// The norm of the difference over the norm of what is right.
-fn relative_error(got: &DMatrix<f64>, want: &DMatrix<f64>) -> f64 {
-    (got - want).norm() / want.norm()
-}
 
 fn assert_stable(solution: &RiccatiSolution) {
     assert!(solution.poles.iter().all(|pole| pole.re < 0.0), "{:?}", solution.poles);
@@ -245,29 +235,6 @@ fn unusable_matrices_are_named_with_the_offending_entry() {
     assert!(refuse(&a, &identity(2), &q, &singular).starts_with("R is not positive definite: pivot 1"));
     let error = care(&with_nan, &b, &q, &r).expect_err("NaN");
     assert!(matches!(error, DesignError::Matrix(MatrixError::NotFinite { name: "A", row: 1, column: 0, .. })));
-}
-
-/// Random pair with entries of order 1, weights of full rank.
-fn random_problem() -> impl Strategy<Value = (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>, DMatrix<f64>)> {
-    (1_usize..8, 1_usize..4).prop_flat_map(|(n, m)| {
-        let entries = |count| prop::collection::vec(-2.0..2.0_f64, count);
-        (entries(n * n), entries(n * m), entries(n * n), entries(m * m)).prop_map(move |(a, b, c, d)| {
-            let (c, d) = (DMatrix::from_vec(n, n, c), DMatrix::from_vec(m, m, d));
-            let q = c.transpose() * &c + identity(n) * 1e-3;
-            let r = d.transpose() * &d + identity(m) * 1e-3;
-            (
-                DMatrix::from_vec(n, n, a),
-                DMatrix::from_vec(n, m, b),
-                (&q + q.transpose()) * 0.5,
-                (&r + r.transpose()) * 0.5,
-            )
-        })
-    })
-}
-
-/// The same cases on every run.
-fn cases(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, rng_seed: RngSeed::Fixed(20), failure_persistence: None, ..ProptestConfig::default() }
 }
 
 proptest! {

@@ -1,24 +1,15 @@
 //! Held inputs and the discrete Riccati and Lyapunov equations: closed forms, DAREX, properties, refusals.
 
+mod design_problem;
+
 use nalgebra::DMatrix;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 use quatrack_sim::analysis::eigenvalues;
 use quatrack_sim::design::discretise::{exponential, zero_order_hold, zero_order_hold_late};
 use quatrack_sim::design::sampled::{CostForm, Sampling, sampled_lqr};
 use quatrack_sim::design::{DesignError, dare, dlqr, dlqr_with_cross, stein};
 
-fn matrix(rows: usize, columns: usize, entries: &[f64]) -> DMatrix<f64> {
-    DMatrix::from_row_slice(rows, columns, entries)
-}
-
-fn identity(n: usize) -> DMatrix<f64> {
-    DMatrix::identity(n, n)
-}
-
-fn relative_error(got: &DMatrix<f64>, want: &DMatrix<f64>) -> f64 {
-    (got - want).norm() / want.norm()
-}
+use design_problem::{cases, identity, matrix, random_problem, relative_error};
 
 #[test]
 fn exponentials_are_right_to_the_last_digit() {
@@ -250,25 +241,6 @@ fn what_has_no_answer_is_refused_with_its_name() {
     let cross = dlqr_with_cross(&a, &b, &q, &r, &matrix(2, 1, &[5.0, 0.0])).expect_err("25 > 1");
     assert!(matches!(cross, DesignError::CrossWeight { eigenvalue } if eigenvalue < -23.0), "{cross}");
     assert!(dlqr_with_cross(&a, &b, &q, &r, &matrix(1, 1, &[0.0])).is_err(), "S must have the shape of B");
-}
-
-/// The same cases on every run.
-fn cases(cases: u32) -> ProptestConfig {
-    ProptestConfig { cases, rng_seed: RngSeed::Fixed(20), failure_persistence: None, ..ProptestConfig::default() }
-}
-
-/// Random pair with entries of order 1, weights of full rank.
-fn random_problem() -> impl Strategy<Value = (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>, DMatrix<f64>)> {
-    (1_usize..8, 1_usize..4).prop_flat_map(|(n, m)| {
-        let entries = |count| prop::collection::vec(-2.0..2.0_f64, count);
-        (entries(n * n), entries(n * m), entries(n * n), entries(m * m)).prop_map(move |(a, b, c, d)| {
-            let (c, d) = (DMatrix::from_vec(n, n, c), DMatrix::from_vec(m, m, d));
-            let q = c.transpose() * &c + identity(n) * 1e-3;
-            let r = d.transpose() * &d + identity(m) * 1e-3;
-            let symmetric = |m: DMatrix<f64>| (&m + m.transpose()) * 0.5;
-            (DMatrix::from_vec(n, n, a), DMatrix::from_vec(n, m, b), symmetric(q), symmetric(r))
-        })
-    })
 }
 
 proptest! {

@@ -1,14 +1,13 @@
 //! The least a design asks of its certificate; the first figure that falls short is named.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use thiserror::Error;
 
 use super::Certificate;
 use super::limits::StabilityLimit;
 
 /// What a design demands of the sampled loop. What is absent is not asked for.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Minimum {
     /// Balanced disk margin alpha of each channel alone.
     pub disk_each: Option<f64>,
@@ -24,22 +23,76 @@ pub struct Minimum {
     pub phase_all_rad: Option<f64>,
     /// Delay of all channels at once, s.
     pub delay_s: Option<f64>,
-    /// First-order lag of all channels at once, s.
+    /// Motor lag of all channels at once, s: first order, and inside the rate loop where that was certified.
     pub lag_s: Option<f64>,
     /// Decay of the slowest pole, `-ln(spectral radius) / period`, 1/s.
     pub decay_1_s: Option<f64>,
 }
 
+/// What a figure is a number of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// No unit.
+    Number,
+    /// rad; told in degrees.
+    Phase,
+    /// s; told in ms.
+    Duration,
+    /// 1/s.
+    Decay,
+}
+
+/// A figure of the certificate that a design may ask something of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// Name of the figure, with its channel.
+    pub figure: String,
+    /// What it is a number of.
+    pub quantity: Quantity,
+    /// Its value; infinite where there is no limit.
+    pub found: f64,
+    /// The least that was asked for.
+    pub asked: Option<f64>,
+}
+
 /// A figure of the certificate below what the design asks for.
 #[derive(Debug, Clone, PartialEq, Error)]
-#[error("{figure} is {found:.6}; the design asks for at least {asked}")]
+#[error("{figure} is {}; the design asks for at least {}", .quantity.told(*.found), .quantity.told(*.asked))]
 pub struct MarginTooSmall {
     /// Name of the figure, with its channel.
     pub figure: String,
+    /// What it is a number of.
+    pub quantity: Quantity,
     /// Its value.
     pub found: f64,
     /// What was asked for.
     pub asked: f64,
+}
+
+impl Quantity {
+    /// A value in the unit that people give it in, and that unit.
+    pub fn in_unit(self, value: f64) -> (f64, &'static str) {
+        let (value, unit) = match self {
+            Self::Number => (value, ""),
+            Self::Phase => (value.to_degrees(), "deg"),
+            Self::Duration => (value * 1e3, "ms"),
+            Self::Decay => (value, "1/s"),
+        };
+        // Millionths are more than anybody asks for; what is left of the conversion of units is less.
+        (if value.is_finite() { (value * 1e6).round() / 1e6 } else { value }, unit)
+    }
+
+    fn told(self, value: f64) -> String {
+        let (value, unit) = self.in_unit(value);
+        if unit.is_empty() { value.to_string() } else { format!("{value} {unit}") }
+    }
+}
+
+impl Judged {
+    /// Whether it reaches what was asked for; NaN on either side falls short.
+    pub fn holds(&self) -> bool {
+        self.asked.is_none_or(|asked| self.found >= asked)
+    }
 }
 
 /// Holds a certificate against the least that is asked for.
@@ -49,31 +102,45 @@ pub struct MarginTooSmall {
 /// # Errors
 /// [`MarginTooSmall`] with the first figure that falls short.
 pub fn require(certificate: &Certificate, minimum: &Minimum) -> Result<(), MarginTooSmall> {
-    let at_least = |figure: &str, found: f64, asked: Option<f64>| match asked {
-        // NaN on either side falls short.
-        Some(asked) if found < asked || found.is_nan() || asked.is_nan() => {
-            Err(MarginTooSmall { figure: figure.to_owned(), found, asked })
+    match judge(certificate, minimum).into_iter().find(|judged| !judged.holds()) {
+        Some(Judged { figure, quantity, found, asked }) => {
+            Err(MarginTooSmall { figure, quantity, found, asked: asked.unwrap_or(f64::NAN) })
         }
-        _ => Ok(()),
+        None => Ok(()),
+    }
+}
+
+/// Every figure that a design can ask something of, beside what this one asks, always in the same order.
+pub fn judge(certificate: &Certificate, minimum: &Minimum) -> Vec<Judged> {
+    let mut figures = Vec::new();
+    let mut add = |figure: String, quantity: Quantity, found: f64, asked: Option<f64>| {
+        figures.push(Judged { figure, quantity, found, asked });
     };
     let sampled = &certificate.sampled;
     let holds = sampled.decrease.holds && certificate.continuous.as_ref().is_none_or(lyapunov_holds);
-    at_least("decrease of the Lyapunov function (1 if it holds)", f64::from(u8::from(holds)), Some(1.0))?;
+    let decrease = "decrease of the Lyapunov function (1 if it holds)".to_owned();
+    add(decrease, Quantity::Number, f64::from(u8::from(holds)), Some(1.0));
     let decay_1_s = -sampled.spectral_radius.ln() * certificate.rate_hz;
-    at_least("decay of the slowest pole in 1/s", decay_1_s, minimum.decay_1_s)?;
+    add("decay of the slowest pole".to_owned(), Quantity::Decay, decay_1_s, minimum.decay_1_s);
     for margins in &sampled.margins.each {
         let (name, disk) = (&margins.channel, &margins.balanced);
-        at_least(&format!("disk margin of {name}"), disk.alpha, minimum.disk_each)?;
+        add(format!("disk margin of {name}"), Quantity::Number, disk.alpha, minimum.disk_each);
         let gain = disk.gain_max.unwrap_or(f64::INFINITY);
-        at_least(&format!("gain margin of {name}"), gain, minimum.gain_factor_each)?;
-        at_least(&format!("phase margin of {name} in rad"), disk.phase_rad, minimum.phase_each_rad)?;
+        add(format!("gain margin of {name}"), Quantity::Number, gain, minimum.gain_factor_each);
+        add(format!("phase margin of {name}"), Quantity::Phase, disk.phase_rad, minimum.phase_each_rad);
     }
     let all = &sampled.margins.all.balanced;
-    at_least("disk margin of all channels at once", all.alpha, minimum.disk_all)?;
-    at_least("gain margin of all channels at once", all.gain_max.unwrap_or(f64::INFINITY), minimum.gain_factor_all)?;
-    at_least("phase margin of all channels at once in rad", all.phase_rad, minimum.phase_all_rad)?;
-    at_least("largest delay of all channels at once in s", of_all(&certificate.delay), minimum.delay_s)?;
-    at_least("largest lag of all channels at once in s", of_all(&certificate.lag), minimum.lag_s)
+    let of_all = |what: &str| format!("{what} of all channels at once");
+    add(of_all("disk margin"), Quantity::Number, all.alpha, minimum.disk_all);
+    add(of_all("gain margin"), Quantity::Number, all.gain_max.unwrap_or(f64::INFINITY), minimum.gain_factor_all);
+    add(of_all("phase margin"), Quantity::Phase, all.phase_rad, minimum.phase_all_rad);
+    add(of_all("largest delay"), Quantity::Duration, of_all_channels(&certificate.delay), minimum.delay_s);
+    add(of_all("largest motor lag"), Quantity::Duration, of_all_channels(&certificate.lag), minimum.lag_s);
+    if let Some(limits) = &certificate.motors_in_rate_loop {
+        let name = "largest motor lag inside the rate loop".to_owned();
+        add(name, Quantity::Duration, of_all_channels(limits), minimum.lag_s);
+    }
+    figures
 }
 
 /// A loop that is unstable in continuous time is none that a Lyapunov function was asked of: its rate decides.
@@ -82,6 +149,6 @@ fn lyapunov_holds(figures: &super::ContinuousLoop) -> bool {
 }
 
 /// The limit of all channels at once stands last.
-fn of_all(limits: &[StabilityLimit]) -> f64 {
+fn of_all_channels(limits: &[StabilityLimit]) -> f64 {
     limits.last().map_or(0.0, |limit| limit.stable_to_s)
 }

@@ -31,7 +31,7 @@ pub use decrease::Decrease;
 pub use error::CertifyError;
 pub use limits::StabilityLimit;
 pub use margins::{AllChannels, ChannelMargins, DiskMargin, LoopMargins};
-pub use minimum::{MarginTooSmall, Minimum, require};
+pub use minimum::{Judged, MarginTooSmall, Minimum, Quantity, judge, require};
 pub use plant::{Controller, LagModel, Plant, Predictor, Timing};
 pub use region::{Region, RegionCertificate, Variation, certify_region};
 pub use structured::{StructuredBounds, structured_bounds};

@@ -1,10 +1,12 @@
-//! `quatrack fly`: a controller, a trajectory and a rate in; the figures of one flight, and its log, out.
+//! `quatrack fly`: a controller or a gain table, a trajectory and a rate in; the figures of one flight, and its log, out.
+
+mod table;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Rate};
+use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlightLaw, Limits, Rate};
 use quatrack_sim::design::codegen::rounded;
 use quatrack_sim::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
 use quatrack_sim::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
@@ -30,18 +32,23 @@ use super::{Failure, output};
 ///   quatrack fly --controller lqr-e --trajectory mild
 ///   quatrack fly --controller lqr-e --trajectory my.csv --rate-hz 500 --feed-forward --limits crazyflie-2.1
 ///   quatrack fly --controller lyap-e --mu 1 --trajectory aggressive --precision f64 --out out/crash
+///   quatrack fly --gains gains/generated/sampled-lqr-e.bin --trajectory aggressive --feed-forward
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
-    /// Which law and design.
-    #[arg(long, value_enum, ignore_case = true)]
-    controller: Controller,
+    /// Which law and design of the paper.
+    #[arg(long, value_enum, ignore_case = true, required_unless_present = "gains", conflicts_with = "gains")]
+    controller: Option<Controller>,
+    /// A gain table (.bin), or a design (.toml) whose table is made first. It is flown by the f32 core, at its own rate
+    /// and within its own limits.
+    #[arg(long, value_name = "FILE", conflicts_with = "mu")]
+    gains: Option<PathBuf>,
     /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), or a plan
     /// (TOML, planned first).
     #[arg(long, value_name = "mild|aggressive|FILE")]
     trajectory: String,
-    /// Control steps a second, 1 to 10000, commands held in between. Without it f32 flies at 500 Hz and f64 in
-    /// continuous time.
+    /// Control steps a second, 1 to 10000, commands held in between. Without it a table flies at its own, f32 at 500 Hz
+    /// and f64 in continuous time.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     rate_hz: Option<f64>,
     /// f32 flies the core that runs on the board, f64 the law as the paper writes it.
@@ -57,10 +64,10 @@ pub(crate) struct Args {
     /// Decay rate of the Lyapunov designs, 1/s.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     mu: Option<f64>,
-    /// Cut commands to a vehicle: crazyflie-2.1, crazyflie-2.1-upgrade, crazyflie-2.1-brushless, none, or
-    /// THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s.
-    #[arg(long, value_name = "V", default_value = "none", allow_hyphen_values = true)]
-    limits: LimitsChoice,
+    /// Cut commands to a vehicle: crazyflie-2.1, crazyflie-2.1-upgrade-kit, crazyflie-2.1-brushless, none, or
+    /// THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s. [default: those of the table, else none]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    limits: Option<LimitsChoice>,
     /// Folder for the log of the flight as CSV, created where it is missing.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -119,24 +126,45 @@ enum Gain {
     FlatOutput(Box<FlatOutputGain>),
 }
 
+/// A flight, with what is told of how it was flown.
+struct Flown {
+    /// The law and its gains.
+    law: String,
+    /// The arithmetic and the rate.
+    clock: String,
+    /// Whose limits.
+    limits: String,
+    duration_s: f64,
+    flight: Flight,
+}
+
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let rate = args.rate_hz.map(checked_rate).transpose()?;
-    let gain = design(args)?;
-    let trajectory = load(&args.trajectory)?;
-    if let Some(dir) = &args.out {
-        output::create_dir(dir)?;
-    }
+    let flown = match (&args.gains, args.controller) {
+        (Some(path), _) => table::fly(args, path, rate)?,
+        (None, Some(controller)) => fly_paper(args, controller, rate)?,
+        (None, None) => return Err(Failure::input("nothing to fly: give --controller or --gains")),
+    };
+    report(args, &flown)
+}
+
+fn fly_paper(args: &Args, controller: Controller, rate: Option<Rate>) -> Result<Flown, Failure> {
+    let gain = design(args, controller)?;
+    let trajectory = load(args)?;
+    let limits = args.limits.clone().unwrap_or_else(LimitsChoice::none);
     let (flight, clock) = match (args.precision, rate) {
         (Precision::F32, rate) => {
             let rate = rate.map_or_else(default_rate, Ok)?;
-            (fly_core(args, &gain, &trajectory, rate)?, format!("f32 core, {} Hz hold", rate.hz()))
+            (fly_core(args, &gain, &trajectory, rate, limits.limits)?, format!("f32 core, {} Hz hold", rate.hz()))
         }
         (Precision::F64, Some(rate)) => {
-            (fly_f64_sampled(args, &gain, &trajectory, rate), format!("f64, {} Hz hold", rate.hz()))
+            (fly_f64_sampled(args, &gain, &trajectory, rate, limits.limits), format!("f64, {} Hz hold", rate.hz()))
         }
-        (Precision::F64, None) => (fly_f64_continuous(args, &gain, &trajectory)?, "f64, continuous".to_owned()),
+        (Precision::F64, None) => {
+            (fly_f64_continuous(args, &gain, &trajectory, &limits)?, "f64, continuous".to_owned())
+        }
     };
-    report(args, &flight, &clock, trajectory.duration_s())
+    Ok(Flown { law: controller.to_string(), clock, limits: limits.name, duration_s: trajectory.duration_s(), flight })
 }
 
 fn checked_rate(hz: f64) -> Result<Rate, Failure> {
@@ -154,12 +182,12 @@ fn default_rate() -> Result<Rate, Failure> {
     checked_rate(500.0)
 }
 
-fn design(args: &Args) -> Result<Gain, Failure> {
+fn design(args: &Args, controller: Controller) -> Result<Gain, Failure> {
     let mu = args.mu.unwrap_or(PAPER_MU);
-    if matches!(args.controller, Controller::LqrE | Controller::LqrF) && args.mu.is_some() {
+    if matches!(controller, Controller::LqrE | Controller::LqrF) && args.mu.is_some() {
         return Err(Failure::input("--mu belongs to the Lyapunov designs; leave it out or choose lyap-e or lyap-f"));
     }
-    let gain = match args.controller {
+    let gain = match controller {
         Controller::LyapF => synthesis::lyapunov_flat(mu).map(|design| Gain::FlatOutput(design.gain.into())),
         Controller::LyapE => synthesis::lyapunov_equilibrium(mu).map(|design| Gain::Equilibrium(design.gain.into())),
         Controller::LqrF => {
@@ -172,8 +200,14 @@ fn design(args: &Args) -> Result<Gain, Failure> {
     gain.map_err(|error| Failure::input(format!("--mu {mu}: {error}")))
 }
 
-/// A trajectory by name or from a file, as the pieces that the board flies.
-fn load(name: &str) -> Result<PiecewisePolynomial, Failure> {
+/// The trajectory by name or from a file, as the pieces that the board flies; and the folder for the log.
+fn load(args: &Args) -> Result<PiecewisePolynomial, Failure> {
+    let trajectory = trajectory(&args.trajectory)?;
+    args.out.as_deref().map_or(Ok(()), output::create_dir)?;
+    Ok(trajectory)
+}
+
+fn trajectory(name: &str) -> Result<PiecewisePolynomial, Failure> {
     let from_spline = |spline: &BSpline| {
         PiecewisePolynomial::from_bspline(spline).map_err(|error| Failure::input(format!("{name}: {error}")))
     };
@@ -201,12 +235,27 @@ fn feedback<'a>(args: &Args, gain: &'a Gain) -> Feedback<'a> {
     Feedback { law, feed_forward: args.feed_forward }
 }
 
-fn fly_core(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial, rate: Rate) -> Result<Flight, Failure> {
-    let feed_forward = if args.feed_forward { FeedForward::With } else { FeedForward::Without };
-    let error_form = match args.error_form {
-        Form::Heading => ErrorForm::HeadingFrame,
-        Form::Paper => ErrorForm::Paper,
-    };
+impl Args {
+    fn feed_forward(&self) -> FeedForward {
+        if self.feed_forward { FeedForward::With } else { FeedForward::Without }
+    }
+
+    fn error_form(&self) -> ErrorForm {
+        match self.error_form {
+            Form::Heading => ErrorForm::HeadingFrame,
+            Form::Paper => ErrorForm::Paper,
+        }
+    }
+}
+
+fn fly_core(
+    args: &Args,
+    gain: &Gain,
+    trajectory: &PiecewisePolynomial,
+    rate: Rate,
+    limits: Limits,
+) -> Result<Flight, Failure> {
+    let (feed_forward, error_form) = (args.feed_forward(), args.error_form());
     let (equilibrium_gain, flat_gain);
     let law: AnyLaw<'_> = match gain {
         Gain::Equilibrium(gain) => {
@@ -218,28 +267,44 @@ fn fly_core(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial, rate: Ra
             FlatOutput { gain: &flat_gain, feed_forward }.into()
         }
     };
+    fly_law(args, law.into(), trajectory, rate, limits)
+}
+
+/// Flies a law of the core.
+fn fly_law(
+    args: &Args,
+    law: FlightLaw<'_>,
+    trajectory: &PiecewisePolynomial,
+    rate: Rate,
+    limits: Limits,
+) -> Result<Flight, Failure> {
     let pieces = core_loop::pieces(trajectory);
-    let mut core = CoreLoop::new(&pieces, rate, law, args.limits.limits)
+    let mut core = CoreLoop::new(&pieces, rate, law, limits)
         .map_err(|error| Failure::input(format!("{}: {error}", args.trajectory)))?;
     Ok(fly_sampled(&Exact(trajectory), rate.hz(), |tick, _, x| core.step(tick, x)))
 }
 
-fn fly_f64_sampled(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial, rate: Rate) -> Flight {
+fn fly_f64_sampled(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial, rate: Rate, limits: Limits) -> Flight {
     let (reference, feedback) = (Exact(trajectory), feedback(args, gain));
     fly_sampled(&reference, rate.hz(), |_, t_s, x| {
         let input = feedback.input(x, &reference.at(t_s));
-        let (input, limited) = core_loop::saturate(&input, &args.limits.limits)
-            .ok_or_else(|| "the law has no finite command".to_owned())?;
+        let (input, limited) =
+            core_loop::saturate(&input, &limits).ok_or_else(|| "the law has no finite command".to_owned())?;
         Ok(HeldCommand { input, limited })
     })
 }
 
 /// In continuous time nothing counts steps, so limits would go unreported: they are refused.
-fn fly_f64_continuous(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial) -> Result<Flight, Failure> {
-    if args.limits.name != "none" {
+fn fly_f64_continuous(
+    args: &Args,
+    gain: &Gain,
+    trajectory: &PiecewisePolynomial,
+    limits: &LimitsChoice,
+) -> Result<Flight, Failure> {
+    if limits.name != "none" {
         return Err(Failure::input(format!(
             "--limits {}: continuous time has no steps to limit; add --rate-hz",
-            args.limits.name
+            limits.name
         )));
     }
     let feedback = feedback(args, gain);
@@ -247,13 +312,14 @@ fn fly_f64_continuous(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial
     Ok(fly_continuous(&Exact(trajectory), |x, target| feedback.input(x, target), solver))
 }
 
-fn report(args: &Args, flight: &Flight, clock: &str, duration_s: f64) -> Result<(), Failure> {
+fn report(args: &Args, flown: &Flown) -> Result<(), Failure> {
+    let Flown { law, clock, limits, duration_s, flight } = flown;
     let metrics = Metrics::of(flight);
     let feed = if args.feed_forward { ", feed-forward" } else { "" };
-    let Args { controller, trajectory, limits, .. } = args;
+    let trajectory = &args.trajectory;
     let iae = |v: Option<f64>| v.map_or_else(|| "none: the flight was lost".to_owned(), |v| format!("{v:.6} m s"));
     output::print(&format!(
-        "{controller} on {trajectory}, {duration_s:.2} s, {clock}{feed}, limits {}\n\
+        "{law} on {trajectory}, {duration_s:.2} s, {clock}{feed}, limits {limits}\n\
          \x20 IAE, sum (23) times T_s   {}\n\
          \x20 IAE, integral (22)        {}\n\
          \x20 largest position error    {:.6} m\n\
@@ -263,7 +329,6 @@ fn report(args: &Args, flight: &Flight, clock: &str, duration_s: f64) -> Result<
          \x20 peak thrust               {:.3} m/s^2\n\
          \x20 peak body rate            {:.3} rad/s\n\
          \x20 saturated steps           {}\n",
-        limits.name,
         iae(metrics.iae_m_s),
         iae(metrics.iae_integral_m_s),
         metrics.max_error_m,

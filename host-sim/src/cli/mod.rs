@@ -1,13 +1,17 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
 mod analyze;
+mod export;
 mod fly;
+mod gains;
 mod limits;
 mod measure;
 mod output;
 mod pil;
 mod plan;
 mod reproduce;
+mod robustness;
+mod vehicle;
 
 use std::process::ExitCode;
 
@@ -43,11 +47,14 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Analyze(analyze::Args),
+    Export(export::Args),
     Fly(fly::Args),
+    Gains(gains::Args),
     Measure(measure::Args),
     Pil(pil::Args),
     Plan(plan::Args),
     Reproduce(reproduce::Args),
+    Robustness(robustness::Args),
 }
 
 /// Reads the arguments, runs the command, prints what went wrong in one line.
@@ -58,11 +65,14 @@ pub(crate) fn main() -> ExitCode {
     };
     let outcome: Result<(), Failure> = match &arguments.command {
         Command::Analyze(args) => analyze::run(args),
+        Command::Export(args) => export::run(args),
         Command::Fly(args) => fly::run(args),
+        Command::Gains(args) => gains::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Pil(args) => pil::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Reproduce(args) => reproduce::run(args),
+        Command::Robustness(args) => robustness::run(args),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

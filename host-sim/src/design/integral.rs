@@ -7,6 +7,7 @@
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
+use serde::Serialize;
 
 use super::discretise::{Held, zero_order_hold};
 use super::sampled::{CostForm, SampledCost, SampledDesign, Sampling, equilibrium_pair, optimal, sampled_cost};
@@ -31,7 +32,7 @@ pub const INTEGRAL_ERROR_NAMES: [&str; 12] = [
 ];
 
 /// Diagonal weights of the LQI designs.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct IntegralWeights {
     /// Weights of the error and the input.
     pub equilibrium: EquilibriumWeights,
@@ -80,6 +81,18 @@ pub fn lqi(weights: &IntegralWeights) -> Result<IntegralDesign, DesignError> {
 /// # Errors
 /// As [`super::sampled::sampled_lqr`].
 pub fn sampled_lqi(weights: &IntegralWeights, sampling: &Sampling) -> Result<SampledDesign, DesignError> {
+    let (held, cost) = sampled_integral_problem(weights, sampling)?;
+    optimal(&held, &cost, sampling.delay_samples)
+}
+
+/// The pair per sample, with the sums as states, and the cost that [`sampled_lqi`] makes least.
+///
+/// # Errors
+/// What [`zero_order_hold`] and [`sampled_cost`] refuse.
+pub fn sampled_integral_problem(
+    weights: &IntegralWeights,
+    sampling: &Sampling,
+) -> Result<(Held, SampledCost), DesignError> {
     let (a, b) = equilibrium_pair();
     let (q, r) = (diagonal(&weights.equilibrium.state), diagonal(&weights.equilibrium.input));
     let h = sampling.period_s;
@@ -94,8 +107,7 @@ pub fn sampled_lqi(weights: &IntegralWeights, sampling: &Sampling) -> Result<Sam
         whole[(9 + i, 9 + i)] = share * weight;
     }
     let (a, b) = extended(&held.a, &held.b, 1.0, h);
-    let cost = SampledCost { q: whole, s: cost.s.resize_vertically(12, 0.0), r: cost.r };
-    optimal(&Held { a, b, period_s: h }, &cost, sampling.delay_samples)
+    Ok((Held { a, b, period_s: h }, SampledCost { q: whole, s: cost.s.resize_vertically(12, 0.0), r: cost.r }))
 }
 
 /// The pair with three more states: `kept` of themselves and `fed` of the position each.

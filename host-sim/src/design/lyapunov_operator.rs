@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::DesignError;
+use super::triangular::{Pencil, solve_by_columns};
 use crate::analysis::{ComplexSchur, MatrixError, complex_schur, require_finite};
 
 /// The map `X -> A' X + X A`, ready to be inverted.
@@ -20,27 +21,17 @@ impl LyapunovOperator {
 
     /// X with `A' X + X A + C = 0` for a symmetric C; not finite if two eigenvalues of A add up to exactly zero.
     pub(super) fn solve(&self, c: &DMatrix<f64>) -> DMatrix<f64> {
-        let (u, t) = (&self.schur.unitary, &self.schur.triangular);
-        let n = t.nrows();
-        let mut y = -(u.adjoint() * c.map(|value| Complex64::new(value, 0.0)) * u);
-        // Column j of T* Y + Y T = -U* C U, with the columns before it known.
-        for j in 0..n {
-            let (known, mut open) = y.columns_range_pair_mut(0..j, j..n);
-            let mut column = open.column_mut(0);
+        // Column j of T* Y + Y T = -U* C U, with the columns before it known: (T* + t_jj I) y_j = -c_j - sum_(k<j) t_kj y_k.
+        solve_by_columns(&self.schur, c, |t, known, column| {
+            let j = known.ncols();
             for (k, solved) in known.column_iter().enumerate() {
                 let factor = t[(k, j)];
                 if factor != Complex64::ZERO {
                     column.axpy(-factor, &solved, Complex64::ONE);
                 }
             }
-            let shift = t[(j, j)];
-            for i in 0..n {
-                let sum: Complex64 = (0..i).map(|k| t[(k, i)].conj() * column[k]).sum();
-                column[i] = (column[i] - sum) / (t[(i, i)].conj() + shift);
-            }
-        }
-        let x = (u * y * u.adjoint()).map(|value| value.re);
-        (&x + x.transpose()) * 0.5
+            Pencil { adjoint: Complex64::ONE, identity: t[(j, j)] }
+        })
     }
 
     /// Refuses A if two of its eigenvalues add up to zero within the rounding of A.

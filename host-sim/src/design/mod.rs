@@ -30,6 +30,7 @@ mod riccati;
 pub mod sampled;
 mod stein;
 pub mod synthesis;
+mod triangular;
 
 pub use dare::{DareSolution, dare, dlqr, dlqr_with_cross};
 pub use error::DesignError;

@@ -130,7 +130,14 @@ fn solve(
     let weight = InputWeight::new(&require_symmetric("R", r, m)?)?;
     let given = Equation::new(a.clone(), weight.factor(b), q);
     let balanced = given.clone().balanced();
-    require_stabilisable(&balanced)?;
+    if let Err(error) = require_stabilisable(&balanced) {
+        // Balancing moves a mode that Q does not see so far off that the input seems not to reach it.
+        require_stabilisable(&given)?;
+        if accepted == Poles::Stable {
+            require_detectable(&given)?;
+        }
+        return Err(error);
+    }
     if accepted == Poles::Stable {
         require_detectable(&balanced)?;
     }

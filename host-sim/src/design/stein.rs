@@ -9,6 +9,7 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::double_double::DoubleMatrix;
+use super::triangular::{Pencil, solve_by_columns};
 use super::{DesignError, require_symmetric};
 use crate::analysis::{ComplexSchur, MatrixError, complex_schur, require_finite, require_square};
 
@@ -84,29 +85,22 @@ impl SteinOperator {
 
     /// X with `A' X A - X + C = 0` for a symmetric C; not finite if two eigenvalues of A multiply to exactly 1.
     pub(super) fn solve(&self, c: &DMatrix<f64>) -> DMatrix<f64> {
-        let (u, t) = (&self.schur.unitary, &self.schur.triangular);
-        let n = t.nrows();
-        let mut y = -(u.adjoint() * c.map(|value| Complex64::new(value, 0.0)) * u);
         // Column j of T* Y T - Y = -U* C U: (t_jj T* - I) y_j = -c_j - T* sum_(k<j) t_kj y_k.
-        for j in 0..n {
-            let (known, mut open) = y.columns_range_pair_mut(0..j, j..n);
-            let mut column = open.column_mut(0);
-            let mut before = vec![Complex64::ZERO; n];
+        solve_by_columns(&self.schur, c, |t, known, column| {
+            let j = known.ncols();
+            let mut before = vec![Complex64::ZERO; t.nrows()];
             for (k, solved) in known.column_iter().enumerate() {
                 let factor = t[(k, j)];
                 for (sum, value) in before.iter_mut().zip(solved.iter()) {
                     *sum += factor * value;
                 }
             }
-            let pivot = t[(j, j)];
-            for i in 0..n {
+            for i in 0..t.nrows() {
                 let moved: Complex64 = (0..=i).map(|k| t[(k, i)].conj() * before[k]).sum();
-                let coupled: Complex64 = (0..i).map(|k| t[(k, i)].conj() * column[k]).sum();
-                column[i] = (column[i] - moved - pivot * coupled) / (pivot * t[(i, i)].conj() - 1.0);
+                column[i] -= moved;
             }
-        }
-        let x = (u * y * u.adjoint()).map(|value| value.re);
-        (&x + x.transpose()) * 0.5
+            Pencil { adjoint: t[(j, j)], identity: -Complex64::ONE }
+        })
     }
 
     /// Largest modulus of the eigenvalues.

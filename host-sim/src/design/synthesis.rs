@@ -13,6 +13,7 @@
 
 use nalgebra::{DMatrix, SMatrix};
 use num_complex::Complex64;
+use serde::Serialize;
 
 use super::{DesignError, decay_rate_design, lqr};
 use crate::analysis::{Staircase, eigenvalues, staircase};
@@ -58,7 +59,7 @@ pub struct FlatDesign {
 }
 
 /// Diagonal weights of (LQR-E).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EquilibriumWeights {
     /// Weights of the errors `[x y z q1 q2 q3 vx vy vz]`.
     pub state: [f64; 9],
@@ -77,7 +78,7 @@ impl EquilibriumWeights {
 }
 
 /// Diagonal weights of (LQR-F).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FlatWeights {
     /// Weights of the flat state `[r v a q3]`.
     pub state: [f64; 10],
@@ -189,12 +190,12 @@ fn flat_design(
     })
 }
 
-pub(super) fn dense_flat_chain() -> (DMatrix<f64>, DMatrix<f64>) {
+pub(crate) fn dense_flat_chain() -> (DMatrix<f64>, DMatrix<f64>) {
     let (a, b) = flat_chain();
     (DMatrix::from_column_slice(10, 10, a.as_slice()), DMatrix::from_column_slice(10, 7, b.as_slice()))
 }
 
-pub(super) fn diagonal(weights: &[f64]) -> DMatrix<f64> {
+pub(crate) fn diagonal(weights: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(weights.len(), weights.len(), |i, j| if i == j { weights[i] } else { 0.0 })
 }
 

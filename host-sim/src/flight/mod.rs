@@ -4,6 +4,10 @@
 //! closed_loop        plant (1) under a law in continuous time, or under held commands at a rate
 //!   core_loop        the f32 core in the loop: the one crossing between f64 and f32
 //!   law, reference   the laws in f64; references sampled as in the paper, or exact
+//! rigid_loop         a craft with motors under commands at a rate, late and with noise if asked for
+//!   motor_loop       the f32 core down to the motors in the loop
+//!     motor_laws     actuator-aware tables and the paper's laws on a vehicle's motors
+//!       robustness, manoeuvres   the flights they are judged by
 //! metrics, log       what a flight came to; its rows as CSV
 //! ```
 
@@ -11,7 +15,14 @@ pub mod closed_loop;
 pub mod core_loop;
 pub mod law;
 pub mod log;
+
+pub mod manoeuvres;
 pub mod metrics;
+pub mod motor_laws;
+pub mod motor_loop;
+pub mod noise;
 pub mod reference;
+pub mod rigid_loop;
+pub mod robustness;
 
 pub use crate::integrator;

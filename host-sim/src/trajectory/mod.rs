@@ -2,6 +2,7 @@
 //! out.
 
 pub mod bspline;
+pub mod fifth_order;
 pub mod file;
 pub mod polynomial;
 

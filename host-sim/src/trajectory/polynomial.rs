@@ -208,6 +208,17 @@ impl PiecewisePolynomial {
         &self.pieces
     }
 
+    /// The `order`-th derivative of a coordinate at a time, SI; at rest outside the trajectory's duration.
+    pub fn derivative(&self, coordinate: Coordinate, order: usize, t_s: f64) -> f64 {
+        let at_rest = !(0.0..=self.duration_s()).contains(&t_s);
+        if at_rest && order > 0 {
+            return 0.0;
+        }
+        let (piece, start_s) = self.piece_at(t_s);
+        // Rounding of the boundaries never takes a piece past its own end.
+        piece.derivative(coordinate, order, (t_s - start_s).max(0.0).min(piece.duration_s))
+    }
+
     /// The piece flown at `t_s` and its start, s; at a joint the later piece, at and after the end the last.
     fn piece_at(&self, t_s: f64) -> (&Piece, f64) {
         let last = self.pieces.len() - 1;
@@ -243,13 +254,7 @@ impl Trajectory for PiecewisePolynomial {
     }
 
     fn at(&self, t_s: f64) -> FlatSample {
-        let at_rest = !(0.0..=self.duration_s()).contains(&t_s);
-        let (piece, start_s) = self.piece_at(t_s);
-        // Rounding of the boundaries never takes a piece past its own end.
-        let local_s = (t_s - start_s).max(0.0).min(piece.duration_s);
-        let value = |coordinate, order| {
-            if at_rest && order > 0 { 0.0 } else { piece.derivative(coordinate, order, local_s) }
-        };
+        let value = |coordinate, order| self.derivative(coordinate, order, t_s);
         let vector = |order| Vector3::from([Coordinate::X, Coordinate::Y, Coordinate::Z].map(|c| value(c, order)));
         FlatSample {
             position_m: vector(0),

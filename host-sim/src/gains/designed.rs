@@ -1,0 +1,274 @@
+//! What a design computes: a validated problem in; the model, the gain in f64 and the plant it is certified on out.
+
+use nalgebra::{DMatrix, SMatrix};
+use num_complex::Complex64;
+use quatrack::gains::table::{Rows, TableKind};
+
+use super::GainsError;
+use super::design::{Design, Method, Problem};
+use super::names::{EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, INTEGRAL_STATES, Signal};
+use crate::certify::{Controller, Plant, Timing};
+use crate::design::codegen::rounded;
+use crate::design::discretise::{Held, zero_order_hold};
+use crate::design::integral::{integral_pair, sampled_integral_problem, sampled_lqi};
+use crate::design::sampled::{
+    SampledCost, SampledDesign, Sampling, equilibrium_pair, sampled_cost, sampled_equilibrium, sampled_flat, shaped,
+};
+use crate::design::synthesis::{
+    EquilibriumDesign, EquilibriumWeights, FlatDesign, FlatWeights, dense_flat_chain, diagonal, lqr_equilibrium,
+    lqr_flat, lyapunov_equilibrium, lyapunov_flat,
+};
+
+/// A gain with all that it came from.
+#[derive(Debug, Clone)]
+pub struct Designed {
+    /// The model that it was designed on.
+    pub model: LinearModel,
+    /// Q and R; a Lyapunov design has none.
+    pub weights: Option<Weights>,
+    /// The gain as designed.
+    pub gains: Gains,
+    /// `K_1 ... K_d` of a design that knows of a delay: of the last command, the one before, and so on.
+    pub past_command_gains: Vec<DMatrix<f64>>,
+    /// P, of the equation that the gain solves.
+    pub p: DMatrix<f64>,
+    /// Poles of the closed loop.
+    pub poles: Poles,
+    /// Relative residual of P.
+    pub relative_residual: f64,
+    /// The problem per sample that P and the gain solve, if it is one.
+    pub sampled: Option<SampledProblem>,
+}
+
+/// A pair under held commands and its cost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SampledProblem {
+    /// `x+ = A_d x + B_d u`, and the period.
+    pub held: Held,
+    /// The cost between the samples.
+    pub cost: SampledCost,
+}
+
+/// `x' = A x + B u`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearModel {
+    /// A, n x n, 1/s.
+    pub a: DMatrix<f64>,
+    /// B, n x m.
+    pub b: DMatrix<f64>,
+    /// The states in order.
+    pub states: &'static [Signal],
+    /// The inputs in order.
+    pub inputs: &'static [Signal],
+}
+
+/// Weights of the cost in continuous time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Weights {
+    /// Q, n x n.
+    pub q: DMatrix<f64>,
+    /// R, m x m.
+    pub r: DMatrix<f64>,
+}
+
+/// Poles, and in which time.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Poles {
+    /// 1/s.
+    Continuous(Vec<Complex64>),
+    /// Per sample.
+    Sampled(Vec<Complex64>),
+}
+
+/// Gains by the law that flies them; each kind is one of the table format's.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Gains {
+    /// 4 x 9.
+    Equilibrium(Box<SMatrix<f64, 4, 9>>),
+    /// 7 x 10.
+    FlatOutput(Box<SMatrix<f64, 7, 10>>),
+    /// 4 x 12, with the sums of the position error.
+    Integral(Box<SMatrix<f64, 4, 12>>),
+}
+
+impl Gains {
+    /// Which table it makes.
+    pub fn kind(&self) -> TableKind {
+        match self {
+            Self::Equilibrium(_) => TableKind::Equilibrium,
+            Self::FlatOutput(_) => TableKind::FlatOutput,
+            Self::Integral(_) => TableKind::Integral,
+        }
+    }
+
+    /// As one matrix.
+    pub fn dense(&self) -> DMatrix<f64> {
+        match self {
+            Self::Equilibrium(gain) => DMatrix::from_column_slice(4, 9, gain.as_slice()),
+            Self::FlatOutput(gain) => DMatrix::from_column_slice(7, 10, gain.as_slice()),
+            Self::Integral(gain) => DMatrix::from_column_slice(4, 12, gain.as_slice()),
+        }
+    }
+
+    /// As the core flies it, every entry the nearest f32.
+    pub fn rows(&self) -> Rows {
+        match self {
+            Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),
+            Self::FlatOutput(gain) => Rows::FlatOutput(rounded(gain)),
+            Self::Integral(gain) => Rows::Integral(rounded(gain)),
+        }
+    }
+
+    /// The same, each row a list.
+    pub fn by_rows(&self) -> Vec<Vec<f32>> {
+        self.rows().entries().chunks(usize::from(self.kind().dimensions().1)).map(<[f32]>::to_vec).collect()
+    }
+}
+
+impl Designed {
+    /// Computes the gain.
+    ///
+    /// # Errors
+    /// [`GainsError::Design`] where the equations have no solution.
+    pub fn of(design: &Design) -> Result<Self, GainsError> {
+        let rate_hz = design.rate.hz();
+        match &design.problem {
+            Problem::Equilibrium(Method::Lyapunov { mu_1_s }) => {
+                Ok(Self::equilibrium(lyapunov_equilibrium(*mu_1_s)?, None))
+            }
+            Problem::Equilibrium(Method::Lqr { weights }) => {
+                Ok(Self::equilibrium(lqr_equilibrium(weights)?, Some(of_equilibrium(weights))))
+            }
+            Problem::Equilibrium(Method::SampledLqr { weights, delay_samples }) => {
+                let sampling = sampling(rate_hz, *delay_samples);
+                let designed = sampled_equilibrium(weights, &sampling)?;
+                let gains = Gains::Equilibrium(Box::new(of_shape(&designed.gain)));
+                let (model, weights) = (LinearModel::equilibrium(), of_equilibrium(weights));
+                let problem = SampledProblem::new(&model, &weights, sampling.period_s)?;
+                Ok(Self::sampled(designed, model, gains, weights, problem))
+            }
+            Problem::Integral { weights } => {
+                let sampling = sampling(rate_hz, 0);
+                let designed = sampled_lqi(weights, &sampling)?;
+                let gains = Gains::Integral(Box::new(of_shape(&designed.gain)));
+                let (held, cost) = sampled_integral_problem(weights, &sampling)?;
+                let state: Vec<f64> = weights.equilibrium.state.iter().chain(&weights.integral).copied().collect();
+                let weights = Weights { q: diagonal(&state), r: diagonal(&weights.equilibrium.input) };
+                Ok(Self::sampled(designed, LinearModel::integral(), gains, weights, SampledProblem { held, cost }))
+            }
+            Problem::FlatOutput(Method::Lyapunov { mu_1_s }) => Ok(Self::flat(lyapunov_flat(*mu_1_s)?, None)),
+            Problem::FlatOutput(Method::Lqr { weights }) => Ok(Self::flat(lqr_flat(weights)?, Some(of_flat(weights)))),
+            Problem::FlatOutput(Method::SampledLqr { weights, delay_samples }) => {
+                let sampling = sampling(rate_hz, *delay_samples);
+                let designed = sampled_flat(weights, &sampling)?;
+                let gains = Gains::FlatOutput(Box::new(of_shape(&designed.gain)));
+                let (model, weights) = (LinearModel::flat_chain(), of_flat(weights));
+                let problem = SampledProblem::new(&model, &weights, sampling.period_s)?;
+                Ok(Self::sampled(designed, model, gains, weights, problem))
+            }
+        }
+    }
+
+    /// What is certified: the plant, the controller before it is rounded, and when it runs.
+    pub fn closed_loop(&self, rate_hz: u32) -> (Plant, Controller, Timing) {
+        let plant = match &self.gains {
+            Gains::Equilibrium(_) => Plant::equilibrium(),
+            Gains::FlatOutput(_) => Plant::flat_chain(),
+            Gains::Integral(_) => Plant::equilibrium_with_integral(),
+        };
+        let past_command_gains = self.past_command_gains.clone();
+        let timing = Timing { delay_samples: past_command_gains.len(), ..Timing::at_rate(rate_hz) };
+        (plant, Controller { gain: self.gains.dense(), past_command_gains }, timing)
+    }
+
+    fn equilibrium(design: EquilibriumDesign, weights: Option<Weights>) -> Self {
+        Self {
+            model: LinearModel::equilibrium(),
+            weights,
+            gains: Gains::Equilibrium(Box::new(design.gain)),
+            past_command_gains: Vec::new(),
+            p: DMatrix::from_column_slice(9, 9, design.p.as_slice()),
+            poles: Poles::Continuous(design.poles),
+            relative_residual: design.relative_residual,
+            sampled: None,
+        }
+    }
+
+    fn flat(design: FlatDesign, weights: Option<Weights>) -> Self {
+        Self {
+            model: LinearModel::flat_chain(),
+            weights,
+            gains: Gains::FlatOutput(Box::new(design.gain)),
+            past_command_gains: Vec::new(),
+            p: DMatrix::from_column_slice(10, 10, design.p.as_slice()),
+            poles: Poles::Continuous(design.poles),
+            relative_residual: design.relative_residual,
+            sampled: None,
+        }
+    }
+
+    fn sampled(
+        design: SampledDesign,
+        model: LinearModel,
+        gains: Gains,
+        weights: Weights,
+        problem: SampledProblem,
+    ) -> Self {
+        Self {
+            model,
+            weights: Some(weights),
+            gains,
+            past_command_gains: design.past_command_gains,
+            p: design.p,
+            poles: Poles::Sampled(design.poles),
+            relative_residual: design.relative_residual,
+            sampled: Some(problem),
+        }
+    }
+}
+
+impl LinearModel {
+    /// Hover, without q0, which no input moves.
+    pub fn equilibrium() -> Self {
+        let (a, b) = equilibrium_pair();
+        Self { a, b, states: &EQUILIBRIUM_STATES, inputs: &EQUILIBRIUM_INPUTS }
+    }
+
+    /// Hover with the integrals of the position error.
+    pub fn integral() -> Self {
+        let (a, b) = integral_pair();
+        Self { a, b, states: &INTEGRAL_STATES, inputs: &EQUILIBRIUM_INPUTS }
+    }
+
+    /// The flat chain.
+    pub fn flat_chain() -> Self {
+        let (a, b) = dense_flat_chain();
+        Self { a, b, states: &FLAT_STATES, inputs: &FLAT_INPUTS }
+    }
+}
+
+impl SampledProblem {
+    fn new(model: &LinearModel, weights: &Weights, period_s: f64) -> Result<Self, GainsError> {
+        Ok(Self {
+            held: zero_order_hold(&model.a, &model.b, period_s)?,
+            cost: sampled_cost(&model.a, &model.b, &weights.q, &weights.r, period_s)?,
+        })
+    }
+}
+
+fn sampling(rate_hz: u32, delay_samples: usize) -> Sampling {
+    Sampling { delay_samples, ..Sampling::at_rate(rate_hz) }
+}
+
+fn of_equilibrium(weights: &EquilibriumWeights) -> Weights {
+    Weights { q: diagonal(&weights.state), r: diagonal(&weights.input) }
+}
+
+fn of_flat(weights: &FlatWeights) -> Weights {
+    Weights { q: diagonal(&weights.state), r: diagonal(&weights.input) }
+}
+
+/// A gain of the shape that its solver gives.
+fn of_shape<const M: usize, const N: usize>(gain: &DMatrix<f64>) -> SMatrix<f64, M, N> {
+    shaped(gain).unwrap_or_else(SMatrix::zeros)
+}

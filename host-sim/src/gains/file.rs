@@ -1,0 +1,121 @@
+//! Design files: TOML in, what is written in them out, key by key. What belongs together is checked in
+//! [`super::design`].
+
+use serde::Deserialize;
+
+use super::GainsError;
+
+/// A design as written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DesignFile {
+    #[serde(default)]
+    pub(super) description: String,
+    pub(super) vehicle: String,
+    pub(super) linearisation: Linearisation,
+    pub(super) method: MethodName,
+    pub(super) control_rate_hz: u32,
+    pub(super) mu_1_s: Option<f64>,
+    pub(super) delay_samples: Option<u32>,
+    pub(super) rate_loop_gain_1_s: Option<f64>,
+    pub(super) weights: Option<Weights>,
+    #[serde(default)]
+    pub(super) limits: LimitsEntry,
+    #[serde(default)]
+    pub(super) minimum: MinimumEntry,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Linearisation {
+    Equilibrium,
+    FlatOutput,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum MethodName {
+    Lyapunov,
+    Lqr,
+    SampledLqr,
+    Lqi,
+    Along,
+}
+
+/// Diagonal weights of errors and inputs, by group.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Weights {
+    pub(super) position: Option<[f64; 3]>,
+    pub(super) attitude: Option<[f64; 3]>,
+    pub(super) velocity: Option<[f64; 3]>,
+    pub(super) acceleration: Option<[f64; 3]>,
+    pub(super) q3: Option<f64>,
+    pub(super) position_integral: Option<[f64; 3]>,
+    pub(super) thrust_input: Option<f64>,
+    pub(super) body_rate_input: Option<[f64; 3]>,
+    pub(super) acceleration_input: Option<[f64; 3]>,
+    pub(super) jerk_input: Option<[f64; 3]>,
+    pub(super) q3_rate_input: Option<f64>,
+}
+
+/// Limits tighter than the vehicle's.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LimitsEntry {
+    pub(super) thrust_min_m_s2: Option<f64>,
+    pub(super) thrust_max_m_s2: Option<f64>,
+    pub(super) body_rates_max_rad_s: Option<[f64; 3]>,
+}
+
+/// The least that the design asks of its certificate, at the control rate and of all channels at once unless it says
+/// `each`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MinimumEntry {
+    pub(super) gain_factor_each: Option<f64>,
+    pub(super) gain_factor_all: Option<f64>,
+    pub(super) phase_each_deg: Option<f64>,
+    pub(super) phase_all_deg: Option<f64>,
+    pub(super) delay_ms: Option<f64>,
+    pub(super) motor_lag_ms: Option<f64>,
+    pub(super) decay_1_s: Option<f64>,
+}
+
+impl std::fmt::Display for Linearisation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Equilibrium => "linearisation = \"equilibrium\"",
+            Self::FlatOutput => "linearisation = \"flat-output\"",
+        })
+    }
+}
+
+impl MethodName {
+    /// As it is written.
+    pub(super) fn quoted(self) -> &'static str {
+        match self {
+            Self::Lyapunov => "\"lyapunov\"",
+            Self::Lqr => "\"lqr\"",
+            Self::SampledLqr => "\"sampled-lqr\"",
+            Self::Lqi => "\"lqi\"",
+            Self::Along => "\"along\"",
+        }
+    }
+}
+
+impl std::fmt::Display for MethodName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "method = {}", self.quoted())
+    }
+}
+
+pub(super) fn read(text: &str) -> Result<DesignFile, GainsError> {
+    toml::from_str(text).map_err(|error| {
+        let start = error.span().map_or(0, |span| span.start);
+        let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
+        let words: Vec<&str> = error.message().split_whitespace().collect();
+        let written = text.lines().nth(line - 1).unwrap_or_default().trim().to_owned();
+        GainsError::Syntax { line, written, reason: words.join(" ") }
+    })
+}

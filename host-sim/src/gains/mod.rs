@@ -1,0 +1,36 @@
+//! Gain tables that somebody may fly: design files in; gains, certificates and tables out, or the figure that fails.
+//!
+//! ```text
+//! check          what is committed against what its designs give today
+//!   artifacts    NAME.json, NAME.rs, NAME.bin
+//!     certified  gains, certificate, the table; the design's own minimum
+//!       statement  what the table promises on board, the same on every processor
+//!       designed   model and gain, in f64
+//!         design   what belongs together and is in range
+//!           file   TOML
+//! export         A, B, Q, R, K, P, poles, T_e for other tools
+//! ```
+//!
+//! A kind of table is a variant of [`Gains`]; a method a variant of [`Method`] under the [`Problem`] that it is for.
+
+mod artifacts;
+mod certified;
+mod check;
+mod design;
+mod designed;
+mod error;
+mod export;
+mod file;
+mod names;
+mod significant;
+mod statement;
+
+pub use artifacts::{Artifact, artifacts, default_folder, json_document, rust_source};
+pub use certified::Certified;
+pub use check::{Checked, Failed, check_design, check_folder, designs};
+pub use design::{Design, Method, Problem};
+pub use designed::{Designed, Gains, LinearModel, Poles, SampledProblem, Weights};
+pub use error::GainsError;
+pub use export::{Export, Matrix};
+pub use names::{Signal, signals};
+pub use statement::Statement;

@@ -1,0 +1,98 @@
+//! What the rows and columns of the matrices stand for, with their units.
+
+use quatrack::gains::table::TableKind;
+use serde::Serialize;
+
+/// A state or an input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Signal {
+    /// Its name in the paper.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+const fn signal(name: &'static str, unit: &'static str) -> Signal {
+    Signal { name, unit }
+}
+
+/// States of the model (1), `[r q v]`.
+pub(super) const MODEL_STATES: [Signal; 10] = [
+    signal("x", "m"),
+    signal("y", "m"),
+    signal("z", "m"),
+    signal("q0", "1"),
+    signal("q1", "1"),
+    signal("q2", "1"),
+    signal("q3", "1"),
+    signal("vx", "m/s"),
+    signal("vy", "m/s"),
+    signal("vz", "m/s"),
+];
+
+/// Errors of the equilibrium laws.
+pub(super) const EQUILIBRIUM_STATES: [Signal; 9] = [
+    signal("x", "m"),
+    signal("y", "m"),
+    signal("z", "m"),
+    signal("q1", "1"),
+    signal("q2", "1"),
+    signal("q3", "1"),
+    signal("vx", "m/s"),
+    signal("vy", "m/s"),
+    signal("vz", "m/s"),
+];
+
+/// Errors of the law with integral action.
+pub(super) const INTEGRAL_STATES: [Signal; 12] = [
+    signal("x", "m"),
+    signal("y", "m"),
+    signal("z", "m"),
+    signal("q1", "1"),
+    signal("q2", "1"),
+    signal("q3", "1"),
+    signal("vx", "m/s"),
+    signal("vy", "m/s"),
+    signal("vz", "m/s"),
+    signal("ix", "m s"),
+    signal("iy", "m s"),
+    signal("iz", "m s"),
+];
+
+/// Inputs of the model (1).
+pub(super) const EQUILIBRIUM_INPUTS: [Signal; 4] =
+    [signal("T", "m/s^2"), signal("p", "rad/s"), signal("q", "rad/s"), signal("r", "rad/s")];
+
+/// The flat state (6a).
+pub(super) const FLAT_STATES: [Signal; 10] = [
+    signal("x", "m"),
+    signal("y", "m"),
+    signal("z", "m"),
+    signal("vx", "m/s"),
+    signal("vy", "m/s"),
+    signal("vz", "m/s"),
+    signal("ax", "m/s^2"),
+    signal("ay", "m/s^2"),
+    signal("az", "m/s^2"),
+    signal("q3", "1"),
+];
+
+/// The flat input (6b).
+pub(super) const FLAT_INPUTS: [Signal; 7] = [
+    signal("ax", "m/s^2"),
+    signal("ay", "m/s^2"),
+    signal("az", "m/s^2"),
+    signal("jx", "m/s^3"),
+    signal("jy", "m/s^3"),
+    signal("jz", "m/s^3"),
+    signal("q3_rate", "1/s"),
+];
+
+/// What the rows and the columns of a table stand for.
+pub fn signals(kind: TableKind) -> (&'static [Signal], &'static [Signal]) {
+    match kind {
+        TableKind::Integral => (&EQUILIBRIUM_INPUTS, &INTEGRAL_STATES),
+        TableKind::Equilibrium | TableKind::AlongTrajectory => (&EQUILIBRIUM_INPUTS, &EQUILIBRIUM_STATES),
+        TableKind::FlatOutput => (&FLAT_INPUTS, &FLAT_STATES),
+    }
+}
