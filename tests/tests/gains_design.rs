@@ -68,6 +68,7 @@ fn what_cannot_be_used_is_named_with_its_value_and_the_remedy() {
         ),
         (LQR_E, "\"lqr\"", "\"lqi\"", &["weights.position_integral is missing; method = \"lqi\" needs it"]),
         (LQR_F, "\"lqr\"", "\"lqi\"", &["method = \"lqi\" does not belong to linearisation = \"flat-output\""]),
+        (LQR_E, "\"lqr\"", "\"along\"", &["method = \"along\": must be", "not certified"]),
         (LQI_E, "\"lqi\"", "\"lqr\"", &["weights.position_integral = [50.0, 50.0, 50.0] does not belong"]),
         (LQR_E, "= 20.0", "= 0.0", &["rate_loop_gain_1_s = 0"]),
         (LQR_E, "gain_factor_all = 2.0", "gain_factor_all = 0.9", &["minimum.gain_factor_all = 0.9: must be above 1"]),

@@ -230,7 +230,7 @@ fn method<W>(file: &DesignFile, weights: W, delay_samples: usize) -> Result<Meth
             key: "method".into(),
             value: name.quoted().into(),
             must:
-                "\"lyapunov\", \"lqr\", \"sampled-lqr\" or \"lqi\": gains along a trajectory are not designed here yet"
+                "\"lyapunov\", \"lqr\", \"sampled-lqr\" or \"lqi\": gains along a trajectory are not certified, and so make no table"
                     .into(),
         }),
     }

@@ -1,7 +1,5 @@
 //! Why a design gives no table, in one line each: which key, its value, what to do.
 
-use std::path::PathBuf;
-
 use quatrack::gains::table::{NameError, TableError};
 use thiserror::Error;
 
@@ -65,14 +63,6 @@ pub enum GainsError {
     Vehicle {
         /// As written in the design.
         vehicle: String,
-        /// What is wrong with it.
-        reason: String,
-    },
-    /// The trajectory cannot be used.
-    #[error("trajectory.file = \"{}\": {reason}", .path.display())]
-    Trajectory {
-        /// Where it was looked for.
-        path: PathBuf,
         /// What is wrong with it.
         reason: String,
     },
