@@ -8,12 +8,14 @@
 //!       course  what the high-level commander evaluates
 //! ```
 
+mod codegen;
 mod count;
 mod course;
 mod firmware;
 mod flight;
 mod recording;
 
+pub use codegen::{feedback_margin, motor_gains};
 pub use count::{Counts, count};
 pub use course::{Course, CourseError, Septics, figure_eight};
 pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
