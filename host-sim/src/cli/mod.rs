@@ -5,6 +5,7 @@ mod export;
 mod fly;
 mod gains;
 mod limits;
+mod manoeuvres;
 mod measure;
 mod output;
 mod pil;
@@ -50,6 +51,7 @@ enum Command {
     Export(export::Args),
     Fly(fly::Args),
     Gains(gains::Args),
+    Manoeuvres(manoeuvres::Args),
     Measure(measure::Args),
     Pil(pil::Args),
     Plan(plan::Args),
@@ -68,6 +70,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Export(args) => export::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Gains(args) => gains::run(args),
+        Command::Manoeuvres(args) => manoeuvres::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Pil(args) => pil::run(args),
         Command::Plan(args) => plan::run(args),

@@ -23,29 +23,6 @@ pub const ERRORS: usize = 19;
 /// Where the forces begin among them.
 pub const FORCES: usize = 12;
 
-/// Names of the errors in the order of the columns of the gain, with their units.
-pub const ACTUATOR_AWARE_ERROR_NAMES: [&str; ERRORS] = [
-    "x_m",
-    "y_m",
-    "z_m",
-    "vx_m_s",
-    "vy_m_s",
-    "vz_m_s",
-    "rotation_x_rad",
-    "rotation_y_rad",
-    "rotation_z_rad",
-    "p_rad_s",
-    "q_rad_s",
-    "r_rad_s",
-    "f1_n",
-    "f2_n",
-    "f3_n",
-    "f4_n",
-    "ix_metre_seconds",
-    "iy_metre_seconds",
-    "iz_metre_seconds",
-];
-
 /// Diagonal weights of a sum over the samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActuatorAwareWeights {

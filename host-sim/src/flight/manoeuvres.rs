@@ -2,17 +2,29 @@
 //!
 //! In flow a vehicle, a lag and a table; out flow named flights of the rigid plant under the f32 core at 500 Hz.
 
+use std::cell::Cell;
+
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::motor_laws::{AwareTable, FlightError, fly};
-use super::motor_loop::STEPS_A_SAMPLE;
-use super::rigid_loop::{Conditions, RigidFlight};
+use super::motor_loop::{PERIOD_S, STEPS_A_SAMPLE};
+use super::rigid_loop::{Conditions, RigidFlight, fly_rigid};
 use crate::plant::{Craft, Ground, RigidState, Shove};
-use crate::trajectory::fifth_order::{Course, Rest, RestToRest};
+use crate::trajectory::fifth_order::{Braking, Course, FifthOrder, Rest, RestToRest};
 use crate::vehicle::Vehicle;
 
 /// Height at which manoeuvres in the air begin, m.
 const HEIGHT_M: f64 = 1.0;
+/// The same for the start upside down, m.
+const RECOVERY_HEIGHT_M: f64 = 15.0;
+/// Acceleration downwards of the reference until the craft is upright, m/s^2: thrust enough to turn by.
+const FALLING_M_S2: f64 = 6.0;
+/// Cosine of the tilt below which a craft counts as upright.
+const UPRIGHT: f64 = 0.95;
+/// Body rates below which it does, rad/s.
+const STILL_RAD_S: f64 = 3.0;
+/// How long it then brakes, s.
+const BRAKING_S: f64 = 3.0;
 
 /// What is flown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +37,7 @@ pub enum Manoeuvre {
     Step,
     /// A force from the side that throws the craft about half a metre off.
     Shove,
-    /// From rest upside down, to upright 2 m lower in 1.5 s.
+    /// From rest upside down at 15 m: upright first, then to rest in 3 s.
     UpsideDown,
 }
 
@@ -76,12 +88,7 @@ impl Manoeuvre {
                 craft = craft.with_load(shove(vehicle));
                 (hovering, Box::new(rest(aloft_m, 5.0)))
             }
-            Self::UpsideDown => {
-                let from_m = aloft_m + Vector3::new(0.0, 0.0, 2.0);
-                let mut start = RigidState::at_rest(from_m, vehicle.motors().thrust_min_n);
-                start.attitude = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
-                (start, Box::new(RestToRest::new(from_m, aloft_m, 1.5, 5.0)))
-            }
+            Self::UpsideDown => return recover(vehicle, &craft, table),
         };
         let conditions =
             Conditions { duration_s: course.duration_s(), steps_a_sample: STEPS_A_SAMPLE, delay_s: 0.0, noise: None };
@@ -89,9 +96,46 @@ impl Manoeuvre {
     }
 }
 
+/// From rest upside down: attitude first, then speed.
+///
+/// Until the craft is upright its reference is wherever it is, with little thrust, so that only attitude and body rates are
+/// fed back; then it brakes from the speed that it has to rest.
+fn recover(vehicle: &Vehicle, craft: &Craft, table: &AwareTable) -> Result<RigidFlight, FlightError> {
+    let mut start = RigidState::at_rest(Vector3::new(0.0, 0.0, RECOVERY_HEIGHT_M), vehicle.motors().thrust_min_n);
+    start.attitude = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
+    let law = table.craft_law()?;
+    let mut control = law.started(&start.thrusts_n);
+    let target_m = Cell::new(start.position_m);
+    let mut braking: Option<(u32, Braking)> = None;
+    let conditions = Conditions { duration_s: 6.0, steps_a_sample: STEPS_A_SAMPLE, delay_s: 0.0, noise: None };
+    Ok(fly_rigid(
+        craft,
+        &start,
+        &conditions,
+        |_| target_m.get(),
+        |tick, measured| {
+            let upright = measured.thrust_axis().z > UPRIGHT && measured.body_rates_rad_s.norm() < STILL_RAD_S;
+            if braking.is_none() && upright {
+                braking = Some((tick, Braking::new(measured.position_m, measured.velocity_m_s, BRAKING_S)));
+            }
+            let point = match &braking {
+                Some((since, course)) => course.at(f64::from(tick - since) * PERIOD_S),
+                None => {
+                    let mut point = FifthOrder::at_rest(measured.position_m, 0.0);
+                    point.position[1] = measured.velocity_m_s;
+                    point.position[2] = Vector3::new(0.0, 0.0, -FALLING_M_S2);
+                    point
+                }
+            };
+            target_m.set(point.position[0]);
+            control.as_mut().ok_or("the motors' thrusts are not finite")?.step(measured, &point)
+        },
+    ))
+}
+
 /// 0.2 s of a force to the left, half a second after the start.
 fn shove(vehicle: &Vehicle) -> Shove {
-    const ACCELERATION_M_S2: f64 = 10.0;
+    const ACCELERATION_M_S2: f64 = 12.5;
     let force_n = Vector3::new(0.0, vehicle.mass_kg() * ACCELERATION_M_S2, 0.0);
     Shove { from_s: 0.5, to_s: 0.7, force_n }
 }

@@ -1,7 +1,7 @@
 //! Laws carried to the motors of a vehicle: a vehicle, a lag and weights in; tables with their certificates, and what a
 //! law of the paper stands behind a rate loop, out; and one flight with any of them.
 
-use nalgebra::{DMatrix, SMatrix};
+use nalgebra::{DMatrix, SMatrix, Vector4};
 use quatrack::airframe::AirframeError;
 use quatrack::gain::GainError;
 use quatrack::law::ActuatorAwareGain;
@@ -13,9 +13,7 @@ use quatrack::{
 
 use super::motor_loop::{self, MotorLoop, PERIOD_S};
 use super::rigid_loop::{Conditions, RigidFlight, fly_rigid};
-use crate::certify::{
-    CertifyError, Controller, Plant, Region, RegionCertificate, Timing, certify, certify_region,
-};
+use crate::certify::{CertifyError, Controller, Plant, Region, RegionCertificate, Timing, certify, certify_region};
 use crate::design::DesignError;
 use crate::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use crate::plant::{Craft, RigidState};
@@ -133,6 +131,11 @@ impl<'a> CraftLaw<'a> {
     pub fn airframe(&self) -> &Airframe {
         &self.airframe
     }
+
+    /// The law in the loop, its motors at the given thrusts, N; nothing where one of them is not finite.
+    pub fn started(&self, thrusts_n: &Vector4<f64>) -> Option<MotorLoop<'a>> {
+        MotorLoop::new(self.tracker, &self.airframe, thrusts_n)
+    }
 }
 
 /// The motor lag that a gain of the paper stands at hover, s, behind the rate loop that the core would run for motors of
@@ -157,7 +160,7 @@ pub fn fly(
     course: &dyn Course,
     conditions: &Conditions,
 ) -> RigidFlight {
-    let mut control = MotorLoop::new(law.tracker, &law.airframe, &start.thrusts_n);
+    let mut control = law.started(&start.thrusts_n);
     fly_rigid(
         craft,
         start,

@@ -5,8 +5,7 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 use quatrack::airframe::{AirframeError, AirframeFigures};
 use quatrack::{
-    ActuatorMemory, Airframe, FifthOrderSample, FlatSample, MotorReference, MotorTracker, Rate,
-    ReferenceError, State,
+    ActuatorMemory, Airframe, FifthOrderSample, FlatSample, MotorReference, MotorTracker, Rate, ReferenceError, State,
 };
 
 use super::rigid_loop::MotorCommand;
@@ -103,8 +102,7 @@ impl<'a> MotorLoop<'a> {
     /// # Errors
     /// The core's own words, where it gives no command.
     pub fn step(&mut self, measured: &RigidState, point: &FifthOrder) -> Result<MotorCommand, String> {
-        let reference =
-            MotorReference::from_flat(&sample(point), &self.airframe).map_err(|e| e.to_string())?;
+        let reference = MotorReference::from_flat(&sample(point), &self.airframe).map_err(|e| e.to_string())?;
         let q = measured.attitude.quaternion();
         let [w, x, y, z] = [q.w, q.i, q.j, q.k].map(|value| value as f32);
         let state = State {

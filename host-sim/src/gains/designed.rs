@@ -178,7 +178,7 @@ impl Designed {
         };
         let past_command_gains = self.past_command_gains.clone();
         let timing = Timing { delay_samples: past_command_gains.len(), ..Timing::at_rate(rate_hz) };
-        (plant, Controller { gain: self.gains.dense(), past_command_gains }, timing)
+        (plant, Controller { gain: self.gains.dense(), past_command_gains, predictor: None }, timing)
     }
 
     fn equilibrium(design: EquilibriumDesign, weights: Option<Weights>) -> Self {

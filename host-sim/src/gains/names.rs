@@ -88,11 +88,39 @@ pub(super) const FLAT_INPUTS: [Signal; 7] = [
     signal("q3_rate", "1/s"),
 ];
 
+/// Errors of the actuator-aware law.
+pub(super) const MOTOR_STATES: [Signal; 19] = [
+    signal("x", "m"),
+    signal("y", "m"),
+    signal("z", "m"),
+    signal("vx", "m/s"),
+    signal("vy", "m/s"),
+    signal("vz", "m/s"),
+    signal("rotation_x", "rad"),
+    signal("rotation_y", "rad"),
+    signal("rotation_z", "rad"),
+    signal("p", "rad/s"),
+    signal("q", "rad/s"),
+    signal("r", "rad/s"),
+    signal("f1", "N"),
+    signal("f2", "N"),
+    signal("f3", "N"),
+    signal("f4", "N"),
+    signal("ix", "m s"),
+    signal("iy", "m s"),
+    signal("iz", "m s"),
+];
+
+/// Commanded forces of the motors.
+pub(super) const MOTOR_INPUTS: [Signal; 4] =
+    [signal("u1", "N"), signal("u2", "N"), signal("u3", "N"), signal("u4", "N")];
+
 /// What the rows and the columns of a table stand for.
 pub fn signals(kind: TableKind) -> (&'static [Signal], &'static [Signal]) {
     match kind {
         TableKind::Integral => (&EQUILIBRIUM_INPUTS, &INTEGRAL_STATES),
         TableKind::Equilibrium | TableKind::AlongTrajectory => (&EQUILIBRIUM_INPUTS, &EQUILIBRIUM_STATES),
         TableKind::FlatOutput => (&FLAT_INPUTS, &FLAT_STATES),
+        TableKind::ActuatorAware => (&MOTOR_INPUTS, &MOTOR_STATES),
     }
 }
