@@ -152,13 +152,7 @@ impl Controller {
 
     /// One of the firmware's steps: whether [`Self::outcome`] is new; between control steps the last one holds.
     #[inline]
-    pub fn step(
-        &mut self,
-        setpoint: &abi::Setpoint,
-        sensors: &abi::SensorData,
-        state: &abi::State,
-        step: u32,
-    ) -> bool {
+    pub fn step(&mut self, setpoint: &abi::Setpoint, sensors: &abi::SensorData, state: &abi::State, step: u32) -> bool {
         if step % DECIMATION != 0 {
             return false;
         }
@@ -453,12 +447,7 @@ impl Run<'_> {
     }
 
     #[inline(always)]
-    fn to_wrench(
-        &self,
-        tracker: &Tracker<'_>,
-        reference: &Reference,
-        outcome: &mut Outcome,
-    ) -> Result<(), StepError> {
+    fn to_wrench(&self, tracker: &Tracker<'_>, reference: &Reference, outcome: &mut Outcome) -> Result<(), StepError> {
         let step = tracker.step(&self.state.state, reference)?;
         let wrench = self.craft.body_rates.wrench(&step.command, &self.state.body_rates_rad_s);
         if !is_finite(&wrench) {

@@ -3,6 +3,8 @@
 use quatrack::gains::table::{Name, Vehicle};
 use quatrack::{Airframe, BodyRateLoop, Rate};
 
+use crate::builtin::FIGURES;
+
 /// Control steps a second: every other one of the firmware's.
 pub const CONTROL_HZ: u32 = 500;
 
@@ -60,9 +62,9 @@ pub struct Known {
 
 /// The crafts that the controller knows.
 pub const KNOWN: [Known; 3] = [
-    known("crazyflie-2.1", 0, Airframe::CRAZYFLIE_2_1),
-    known("crazyflie-2.1-kit", 0, Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
-    known("crazyflie-2.1-brushless", 0, Airframe::CRAZYFLIE_2_1_BRUSHLESS),
+    known("crazyflie-2.1", FIGURES[0].0, Airframe::CRAZYFLIE_2_1),
+    known("crazyflie-2.1-kit", FIGURES[1].0, Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
+    known("crazyflie-2.1-brushless", FIGURES[2].0, Airframe::CRAZYFLIE_2_1_BRUSHLESS),
 ];
 
 const fn known(name: &str, id: u32, airframe: Airframe) -> Known {

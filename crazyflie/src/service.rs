@@ -7,9 +7,9 @@ use quatrack::FeedForward;
 use quatrack::nalgebra::Vector3;
 
 use crate::abi;
-use crate::edge;
 use crate::control::{Controller, Output, Settings};
 use crate::craft::{Craft, Platform};
+use crate::edge;
 use crate::guide::Bounds;
 use crate::shared::{AtomicF32, Shared};
 use crate::tables::{Refusal, Scales, Table, limits_within};
@@ -77,14 +77,7 @@ impl Handover {
 impl Service {
     /// Nothing known yet.
     pub const fn new() -> Self {
-        Self {
-            craft: None,
-            is_new: false,
-            uploads: Uploads::new(),
-            uploaded: None,
-            uploads_taken: 0,
-            asked: None,
-        }
+        Self { craft: None, is_new: false, uploads: Uploads::new(), uploaded: None, uploads_taken: 0, asked: None }
     }
 
     /// Starts anew for the craft that the firmware was built for; whether there are tables for it.

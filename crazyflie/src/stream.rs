@@ -3,7 +3,7 @@
 //!
 //! Between two setpoints the newest is extrapolated by its own derivatives. Snap and crackle come from backward
 //! differences of the jerks of successive setpoints: the difference of two jerks is the snap halfway between them, that of
-//! two such snaps the crackle, which carries the snap on to the newest one. Nothing is differenced over a jump, over a gap
+//! two such snaps the crackle in the middle, and each is carried on to the newest setpoint by the next. Nothing is differenced over a jump, over a gap
 //! of more than [`GAP_MAX_MS`], or from a stream that sends no jerk.
 
 use quatrack::FifthOrderSample;
@@ -31,8 +31,10 @@ pub struct Stream {
     newest: Motion,
     snap_m_s4: Vector3<f32>,
     crackle_m_s5: Vector3<f32>,
-    /// Difference of the newest jerks, over which time, s; nothing before two of them.
-    jerk_difference: Option<(Vector3<f32>, f32)>,
+    /// First and second difference of the newest jerks, as far as there are enough of them, each over its time.
+    differences: [Option<Vector3<f32>>; 2],
+    /// Time between the newest two setpoints, s.
+    gap_s: f32,
     /// When the newest came, ms; nothing before the first.
     since_ms: Option<u32>,
 }
@@ -55,7 +57,8 @@ impl Stream {
             newest: Motion::ZERO,
             snap_m_s4: Vector3::new(0.0, 0.0, 0.0),
             crackle_m_s5: Vector3::new(0.0, 0.0, 0.0),
-            jerk_difference: None,
+            differences: [None; 2],
+            gap_s: 0.0,
             since_ms: None,
         }
     }
@@ -96,9 +99,7 @@ impl Stream {
     fn to_jerk(&self, t: f32, sample: &mut FifthOrderSample) {
         let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
         let (t2, t3) = (t * (1.0 / 2.0), t * (1.0 / 3.0));
-        let along = |p: f32, v: f32, a: f32, j: f32| {
-            (p + t * (v + t2 * (a + t3 * j)), v + t * (a + t2 * j), a + t * j)
-        };
+        let along = |p: f32, v: f32, a: f32, j: f32| (p + t * (v + t2 * (a + t3 * j)), v + t * (a + t2 * j), a + t * j);
         let (x, y, z) = (along(p.x, v.x, a.x, j.x), along(p.y, v.y, a.y, j.y), along(p.z, v.z, a.z, j.z));
         let flat = &mut sample.flat;
         flat.position_m = Vector3::new(x.0, y.0, z.0);
@@ -159,27 +160,31 @@ impl Stream {
         let (new, old) = (&motion.jerk_m_s3, &self.newest.jerk_m_s3);
         let zero = Vector3::new(0.0, 0.0, 0.0);
         if *new == zero {
-            (self.jerk_difference, self.snap_m_s4, self.crackle_m_s5) = (None, zero, zero);
+            (self.differences, self.snap_m_s4, self.crackle_m_s5) = ([None; 2], zero, zero);
             return Arrival::Continued;
         }
-        let rate = 1.0 / gap_s;
-        let middle = Vector3::new((new.x - old.x) * rate, (new.y - old.y) * rate, (new.z - old.z) * rate);
-        let crackle = match &self.jerk_difference {
-            Some((before, gap_before_s)) => {
-                let rate = 2.0 / (gap_s + gap_before_s);
-                Vector3::new((middle.x - before.x) * rate, (middle.y - before.y) * rate, (middle.z - before.z) * rate)
-            }
-            None => zero,
+        // The snap halfway between two jerks, the crackle at the middle one of three; what follows them by half a gap and
+        // by a whole one comes from the next difference.
+        let over = |a: &Vector3<f32>, b: &Vector3<f32>, rate: f32| {
+            Vector3::new((a.x - b.x) * rate, (a.y - b.y) * rate, (a.z - b.z) * rate)
         };
+        let (per_gap, [snap_before, crackle_before]) = (1.0 / gap_s, self.differences);
+        let snap = over(new, old, per_gap);
+        let crackle = snap_before.map(|before| over(&snap, &before, 2.0 / (gap_s + self.gap_s)));
+        let growth = match (&crackle, &crackle_before) {
+            (Some(crackle), Some(before)) => over(crackle, before, per_gap),
+            _ => zero,
+        };
+        let ahead =
+            |a: &Vector3<f32>, b: &Vector3<f32>, t: f32| Vector3::new(a.x + t * b.x, a.y + t * b.y, a.z + t * b.z);
+        let middle = crackle.unwrap_or(zero);
         let size = |v: &Vector3<f32>| v.x.abs() + v.y.abs() + v.z.abs();
-        if !(size(&middle) <= SNAP_MAX_M_S4 && size(&crackle) <= CRACKLE_MAX_M_S5) {
+        if !(size(&snap) <= SNAP_MAX_M_S4 && size(&middle) <= CRACKLE_MAX_M_S5) {
             return Arrival::Jumped;
         }
-        let half = 0.5 * gap_s;
-        self.snap_m_s4 =
-            Vector3::new(middle.x + half * crackle.x, middle.y + half * crackle.y, middle.z + half * crackle.z);
-        self.crackle_m_s5 = crackle;
-        self.jerk_difference = Some((middle, gap_s));
+        self.snap_m_s4 = ahead(&snap, &ahead(&middle, &growth, 0.75 * gap_s), 0.5 * gap_s);
+        self.crackle_m_s5 = ahead(&middle, &growth, gap_s);
+        (self.differences, self.gap_s) = ([Some(snap), crackle], gap_s);
         Arrival::Continued
     }
 }

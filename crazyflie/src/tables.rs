@@ -75,6 +75,7 @@ impl MotorGains {
     pub const fn new(gain: &ActuatorAwareGain, airframe: &Airframe, lag_s: f32) -> Result<Self, Refusal> {
         let figures = AirframeFigures { motor_lag_s: lag_s, ..*airframe.figures() };
         let Ok(airframe) = Airframe::new(figures) else { return Err(Refusal::MotorLag) };
+        let airframe = airframe.commanded_at(RATE);
         match ActuatorAware::new(&builtin::ANY, &airframe, RATE) {
             Ok(law) => Ok(Self { gain: *gain, airframe, law }),
             Err(_) => Err(Refusal::MotorLag),
@@ -219,7 +220,8 @@ impl Table {
                 (&table.table().head().certificate, Gains::ActuatorAware(gains))
             }
         };
-        let margin = behind_motors(certificate.all_channels.gain_factor, craft.motor_lag_s, certificate.motor_lag_max_s)?;
+        let margin =
+            behind_motors(certificate.all_channels.gain_factor, craft.motor_lag_s, certificate.motor_lag_max_s)?;
         Ok(Self { id: TableId::Uploaded, gains, margin })
     }
 

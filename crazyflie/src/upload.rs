@@ -10,7 +10,8 @@
 //! The table is the file of docs/gain-tables.md; nothing of it is used before all of it has come and been checked.
 
 use quatrack::gains::table::{
-    ACTUATOR_TABLE_BYTES, AcceptedActuatorTable, AcceptedTable, ActuatorTable, LoadError, TableError, TableKind, Vehicle,
+    ACTUATOR_TABLE_BYTES, AcceptedActuatorTable, AcceptedTable, ActuatorTable, LoadError, TableError, TableKind,
+    Vehicle,
 };
 use quatrack::link::{BlobKind, BlobReceiver, Chunk, UploadBegin, UploadError};
 

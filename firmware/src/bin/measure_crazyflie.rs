@@ -118,8 +118,8 @@ mod image {
     }
 }
 
-/// On a desk there is nothing to run: `quatrack measure --crazyflie` builds the image and starts it.
+/// On a desk there is nothing to run: `quatrack crazyflie --count` builds the image and starts it.
 #[cfg(not(target_os = "none"))]
 fn main() {
-    eprintln!("this is an image for an emulated STM32F405; run it with `quatrack measure --crazyflie`");
+    eprintln!("this is an image for an emulated STM32F405; run it with `quatrack crazyflie --count`");
 }

@@ -31,7 +31,9 @@ const VEHICLES: [(&str, &str); 3] = [
 pub fn feedback_margin(vehicle: &Vehicle, in_parts: &DMatrix<f64>, lag_s: f64) -> Result<f64, FlightError> {
     let region = Region::of_any_crazyflie();
     'factors: for factor in FACTORS {
-        for (position, yaw) in [(factor, factor), (factor, 1.0 / factor), (1.0 / factor, factor), (1.0 / factor, 1.0 / factor)] {
+        for (position, yaw) in
+            [(factor, factor), (factor, 1.0 / factor), (1.0 / factor, factor), (1.0 / factor, 1.0 / factor)]
+        {
             let mut scaled = in_parts.clone();
             for (row, scale) in [position, position, position, yaw].into_iter().enumerate() {
                 scaled.row_mut(row).scale_mut(scale);
@@ -63,8 +65,14 @@ pub fn motor_gains() -> Result<String, FlightError> {
         let margin = feedback_margin(&vehicle, &design.gain_in_parts, lag_s)?;
         let id = vehicle.id();
         // Writing to a string does not fail.
-        let _ = write!(source, "\n/// Vehicle id, design lag (s) and factor of {name}.\npub(super) const {constant}_FIGURES: (u32, f32, f32) = (0x{id:08x}, {lag_s:?}, {margin:?});\n");
-        let _ = write!(source, "\n/// Of {name}.\npub(super) const {constant}: ActuatorAwareGain = ActuatorAwareGain::table([\n");
+        let _ = write!(
+            source,
+            "\n/// Vehicle id, design lag (s) and factor of {name}.\npub(super) const {constant}_FIGURES: (u32, f32, f32) = (0x{id:08x}, {lag_s:?}, {margin:?});\n"
+        );
+        let _ = write!(
+            source,
+            "\n/// Of {name}.\npub(super) const {constant}: ActuatorAwareGain = ActuatorAwareGain::table([\n"
+        );
         for row in design.gain.row_iter() {
             let entries: Vec<String> = row.iter().map(|entry| format!("{:?}", *entry as f32)).collect();
             let _ = writeln!(source, "    [{}],", entries.join(", "));

@@ -34,13 +34,8 @@ const STEPS: usize = 3000;
 const FIRST_STEP: u32 = 200;
 
 /// The tables that are counted, with the motors' lag (s) at which they fly.
-const TABLES: [(&str, u8, f64); 5] = [
-    ("actuator-aware", 0, 0.126),
-    ("lyap-e", 1, 0.02),
-    ("lqr-e", 2, 0.02),
-    ("lyap-f", 3, 0.005),
-    ("lqr-f", 4, 0.005),
-];
+const TABLES: [(&str, u8, f64); 5] =
+    [("actuator-aware", 0, 0.126), ("lyap-e", 1, 0.02), ("lqr-e", 2, 0.02), ("lyap-f", 3, 0.005), ("lqr-f", 4, 0.005)];
 
 /// Of one table under one kind of setpoint.
 #[derive(Clone, Debug, Serialize)]
@@ -105,7 +100,8 @@ pub fn count(checkout: &Path) -> Result<Counts, PilError> {
 fn compare(flights: &[(&'static str, &'static str, Tune, Recording)], counted: &[u8]) -> Result<Counts, PilError> {
     let too_short = || PilError::Answer("it counted fewer steps than were flown".to_owned());
     let (head, rest) = counted.split_first_chunk::<12>().ok_or_else(too_short)?;
-    let word = |bytes: &[u8], at: usize| bytes.get(at..at + 4).map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    let word =
+        |bytes: &[u8], at: usize| bytes.get(at..at + 4).map_or(0, |b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     let of_loops = word(head, 8).wrapping_sub(word(head, 4));
     if of_loops != LOOP_INSTRUCTIONS {
         return Err(PilError::Miscounts { counted: of_loops, instructions: LOOP_INSTRUCTIONS });
@@ -119,7 +115,9 @@ fn compare(flights: &[(&'static str, &'static str, Tune, Recording)], counted: &
             let record = records.next().ok_or_else(too_short)?;
             // The three bytes behind the mode are padding.
             if record[4..21] != wanted[..17] {
-                return Err(PilError::Answer(format!("{table}, {setpoints}, step {step}: another control than the host's")));
+                return Err(PilError::Answer(format!(
+                    "{table}, {setpoints}, step {step}: another control than the host's"
+                )));
             }
             steps += 1;
             if *step < FIRST_STEP {

@@ -68,11 +68,20 @@ impl Course {
             Self::FigureEight(w) => Some(figure_eight(*w, t_s)),
             Self::Hop(low, high) => {
                 let [up, down, end] = HOP_S;
-                let height = if t_s <= down { septic(*low, *high, up, t_s) } else { septic(*high, *low, end - down, t_s - down) };
+                let height = if t_s <= down {
+                    septic(*low, *high, up, t_s)
+                } else {
+                    septic(*high, *low, end - down, t_s - down)
+                };
                 (t_s <= end).then(|| height.map(|z| Vector3::new(0.0, 0.0, z)))
             }
             Self::Septics(septics) => Some(septics.at(t_s)),
         }
+    }
+
+    /// Farthest that pieces are from the curve that they stand for, m; 0 for what is flown as it is.
+    pub fn fit_error_m(&self) -> f64 {
+        if let Self::Septics(septics) = self { septics.fit_error_m() } else { 0.0 }
     }
 
     /// How long it is flown, s.
@@ -125,9 +134,8 @@ impl Septics {
     pub fn refit(curve: &BSpline, duration_s: f64, pieces: usize) -> Self {
         let piece_s = duration_s / pieces as f64;
         let ends = |t_s: f64| [0, 1, 2, 3].map(|order| curve.derivative(order, t_s));
-        let fitted = (0..pieces)
-            .map(|i| hermite(&ends(piece_s * i as f64), &ends(piece_s * (i + 1) as f64), piece_s))
-            .collect();
+        let fitted =
+            (0..pieces).map(|i| hermite(&ends(piece_s * i as f64), &ends(piece_s * (i + 1) as f64), piece_s)).collect();
         let mut septics = Self { pieces: fitted, duration_s, fit_error_m: 0.0 };
         let samples = (0..=2000).map(|k| duration_s * f64::from(k) / 2000.0);
         let error = |t_s: f64| (septics.at(t_s)[0] - curve.derivative(0, t_s)).norm();

@@ -138,7 +138,14 @@ impl Firmware {
         let setpoint = setpoint.unwrap_or(&self.setpoint);
         ffi::controllerOutOfTree(&mut self.control, setpoint, &sensors, &self.estimate, self.step);
         if let Some(recording) = &mut self.recording {
-            recording.add(self.step, std::mem::take(&mut self.is_selected), setpoint, &sensors, &self.estimate, &self.control);
+            recording.add(
+                self.step,
+                std::mem::take(&mut self.is_selected),
+                setpoint,
+                &sensors,
+                &self.estimate,
+                &self.control,
+            );
         }
         self.step += 1;
         self.distribute()
@@ -212,9 +219,14 @@ fn estimate(state: &RigidState) -> abi::State {
 
 /// `crtpCommanderHighLevelGetSetpoint` at yaw 0.
 fn high_level(motion: &[Vector3<f32>; 4]) -> abi::Setpoint {
-    let [position, velocity, acceleration, jerk] =
-        motion.map(|v| abi::Vector { timestamp: 0, x: v.x, y: v.y, z: v.z });
-    let modes = abi::Modes { x: Mode::ABSOLUTE, y: Mode::ABSOLUTE, z: Mode::ABSOLUTE, yaw: Mode::ABSOLUTE, ..Default::default() };
+    let [position, velocity, acceleration, jerk] = motion.map(|v| abi::Vector { timestamp: 0, x: v.x, y: v.y, z: v.z });
+    let modes = abi::Modes {
+        x: Mode::ABSOLUTE,
+        y: Mode::ABSOLUTE,
+        z: Mode::ABSOLUTE,
+        yaw: Mode::ABSOLUTE,
+        ..Default::default()
+    };
     abi::Setpoint { position, velocity, acceleration, jerk, mode: modes, ..Default::default() }
 }
 
@@ -222,7 +234,13 @@ fn high_level(motion: &[Vector3<f32>; 4]) -> abi::Setpoint {
 fn full_state(motion: &[Vector3<f64>; 4]) -> abi::Setpoint {
     let [position, velocity, acceleration, _] = motion.map(|v| vector(&v.map(|c| (c * 1e3).trunc() / 1e3)));
     let identity: UnitQuaternion<f32> = UnitQuaternion::identity();
-    let modes = abi::Modes { x: Mode::ABSOLUTE, y: Mode::ABSOLUTE, z: Mode::ABSOLUTE, quat: Mode::ABSOLUTE, ..Default::default() };
+    let modes = abi::Modes {
+        x: Mode::ABSOLUTE,
+        y: Mode::ABSOLUTE,
+        z: Mode::ABSOLUTE,
+        quat: Mode::ABSOLUTE,
+        ..Default::default()
+    };
     abi::Setpoint {
         position,
         velocity,

@@ -5,8 +5,8 @@ use quatrack::{Airframe, AirframeFigures, FifthOrderSample, FlatSample, MotorRef
 use serde::Serialize;
 
 use super::course::{Course, Motion};
-use super::recording::Recording;
 use super::firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
+use super::recording::Recording;
 use crate::plant::{Craft, Ground, RigidState};
 use crate::vehicle::Vehicle;
 

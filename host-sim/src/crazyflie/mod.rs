@@ -2,7 +2,7 @@
 //! the rigid plant; tracking errors out.
 //!
 //! ```text
-//! report        rows of flights
+//! report, count rows of flights; instructions a call on the emulated target
 //!   flight      a course, a craft and what is wrong with it -> errors
 //!     firmware  the stabilizer at 1 kHz: commander, gyroscope, controller, power distribution
 //!       course  what the high-level commander evaluates
@@ -14,6 +14,7 @@ mod course;
 mod firmware;
 mod flight;
 mod recording;
+mod report;
 
 pub use codegen::{feedback_margin, motor_gains};
 pub use count::{Counts, count};
@@ -21,3 +22,4 @@ pub use course::{Course, CourseError, Septics, figure_eight};
 pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
 pub use flight::{Case, Flown, fly, fly_recorded};
 pub use recording::Recording;
+pub use report::{Report, Row};

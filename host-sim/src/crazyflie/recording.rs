@@ -93,7 +93,10 @@ mod tests {
     #[test]
     fn a_call_has_the_targets_sizes() {
         let mut recording = Recording::default();
-        let setpoint = Setpoint { mode: Modes { quat: quatrack_crazyflie::abi::Mode(1), ..Default::default() }, ..Default::default() };
+        let setpoint = Setpoint {
+            mode: Modes { quat: quatrack_crazyflie::abi::Mode(1), ..Default::default() },
+            ..Default::default()
+        };
         recording.add(7, false, &setpoint, &SensorData::default(), &State::default(), &Control::default());
         assert_eq!(recording.calls.len(), 8 + 128 + 56 + 80);
         // The last byte of the setpoint is the mode of the quaternion, at 127.
