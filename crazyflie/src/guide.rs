@@ -84,7 +84,7 @@ impl Guide {
             Turn::Rate(rate_rad_s) => self.turn(sample, rate_rad_s),
         }
         if !matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position)) {
-            self.fill(sample, flight, state, along.mass_kg, bounds);
+            self.fill(sample, along, state, bounds);
         }
         leash(sample, state, bounds.leash_m);
     }
@@ -118,8 +118,10 @@ impl Guide {
 
     /// Everything but a position along all axes.
     #[inline(never)]
-    fn fill(&mut self, sample: &mut FifthOrderSample, flight: &Flight, state: &State, mass_kg: f32, bounds: &Bounds) {
-        let asked = sample.flat.velocity_m_s;
+    fn fill(&mut self, sample: &mut FifthOrderSample, along: &Along<'_>, state: &State, bounds: &Bounds) {
+        let (flight, mass_kg) = (along.flight, along.mass_kg);
+        // As it was sent: a velocity holds until another one comes.
+        let asked = along.stream.newest().velocity_m_s;
         let zero = Vector3::new(0.0, 0.0, 0.0);
         // Derivatives of a motion along some axes only, or of none.
         (sample.flat.jerk_m_s3, sample.snap_m_s4, sample.crackle_m_s5) = (zero, zero, zero);

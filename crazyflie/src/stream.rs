@@ -78,6 +78,11 @@ impl Stream {
         arrival
     }
 
+    /// The newest setpoint's motion as it was sent.
+    pub fn newest(&self) -> &Motion {
+        &self.newest
+    }
+
     /// Time since the newest setpoint, as far as it is extrapolated; s.
     pub fn age_s(&self, now_ms: u32) -> f32 {
         let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));

@@ -1,7 +1,7 @@
 //! A table over the app channel: packets of at most 31 bytes in, answers and, at the end, an accepted table out.
 //!
 //! ```text
-//! 1  length: u16  checksum: u32      announces a table (CRC-32C of its bytes)
+//! 1  length: u16  checksum: u32      announces a table, by its own checksum: its last four bytes
 //! 2  offset: u16  bytes: 1 to 28     its next bytes
 //! 3                                  all sent: check it and make it the uploaded table
 //! ```
@@ -19,6 +19,9 @@ use crate::craft::RATE;
 
 /// `APPCHANNEL_MTU`.
 pub const PACKET_BYTES: usize = 31;
+
+/// CRC-32C of anything that ends with its own CRC-32C, as every table does: it tells a whole table, not one from another.
+const RESIDUE: u32 = 0x4867_4bc7;
 
 /// A packet of the app channel, as our app passes it.
 #[repr(C)]
@@ -83,7 +86,7 @@ impl Uploads {
             [1, l0, l1, c0, c1, c2, c3] => {
                 let checksum = u32::from_le_bytes([*c0, *c1, *c2, *c3]);
                 let length = u32::from(u16::from_le_bytes([*l0, *l1]));
-                let begin = UploadBegin { kind: BlobKind::GainTable, id: checksum, length, checksum };
+                let begin = UploadBegin { kind: BlobKind::GainTable, id: checksum, length, checksum: RESIDUE };
                 (self.receiver.begin(&begin).map_or_else(status_of, |_| Status::Taken), None)
             }
             [2, o0, o1, bytes @ ..] => (self.chunk(u16::from_le_bytes([*o0, *o1]), bytes), None),
@@ -142,5 +145,18 @@ fn status_of(error: UploadError) -> Status {
         UploadError::ChunkLength { .. } => Status::Unknown,
         UploadError::Incomplete { .. } => Status::Incomplete,
         UploadError::Checksum { .. } => Status::Checksum,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use quatrack::checksum::crc32c;
+
+    #[test]
+    fn the_residue_is_that_of_any_bytes() {
+        for bytes in [&b""[..], b"table", &[7; 300]] {
+            assert_eq!(crc32c(&[bytes, &crc32c(bytes).to_le_bytes()].concat()), RESIDUE);
+        }
     }
 }

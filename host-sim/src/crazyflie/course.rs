@@ -7,10 +7,10 @@ use crate::plan::{self, Plan, PlanError};
 use crate::trajectory::bspline::BSpline;
 
 /// Position and its derivatives up to the jerk at one time, SI, world frame.
-pub type Motion = [Vector3<f64>; 4];
+pub(super) type Motion = [Vector3<f64>; 4];
 
 /// Pieces that the firmware's trajectory memory holds: 4096 bytes of 132 each.
-pub const PIECES_MAX: usize = 31;
+pub(super) const PIECES_MAX: usize = 31;
 
 /// A course over time.
 #[derive(Clone, Debug)]
@@ -60,7 +60,7 @@ impl Course {
     }
 
     /// The motion at a time; nothing once it is over and the commander sends no more.
-    pub fn at(&self, t_s: f64) -> Option<Motion> {
+    pub(super) fn at(&self, t_s: f64) -> Option<Motion> {
         let rest = |p: &Vector3<f64>| [*p, Vector3::zeros(), Vector3::zeros(), Vector3::zeros()];
         match self {
             Self::Hover(p) => Some(rest(p)),
@@ -77,6 +77,11 @@ impl Course {
             }
             Self::Septics(septics) => Some(septics.at(t_s)),
         }
+    }
+
+    /// Where it is at a time, m.
+    pub fn position_m(&self, t_s: f64) -> Option<Vector3<f64>> {
+        self.at(t_s).map(|[position_m, ..]| position_m)
     }
 
     /// Farthest that pieces are from the curve that they stand for, m; 0 for what is flown as it is.
@@ -97,7 +102,7 @@ impl Course {
 }
 
 /// The figure with its derivatives.
-pub fn figure_eight(w: f64, t_s: f64) -> Motion {
+pub(super) fn figure_eight(w: f64, t_s: f64) -> Motion {
     let (s1, c1) = (w * t_s).sin_cos();
     let (s2, c2) = (2.0 * w * t_s).sin_cos();
     [

@@ -189,7 +189,7 @@ impl Firmware {
 }
 
 /// What the firmware was built for.
-pub fn platform(vehicle: &Vehicle) -> Platform {
+pub(super) fn platform(vehicle: &Vehicle) -> Platform {
     let motors = vehicle.motors();
     Platform {
         mass_kg: vehicle.mass_kg() as f32,

@@ -18,7 +18,7 @@ mod report;
 
 pub use codegen::{feedback_margin, motor_gains};
 pub use count::{Counts, count};
-pub use course::{Course, CourseError, Septics, figure_eight};
+pub use course::{Course, CourseError, Septics};
 pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
 pub use flight::{Case, Flown, fly, fly_recorded};
 pub use recording::Recording;
