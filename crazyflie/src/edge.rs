@@ -75,7 +75,7 @@ pub fn demand(setpoint: &abi::Setpoint, thrust_max_n: f32) -> Option<Demand> {
         + sum(&setpoint.velocity)
         + sum(&setpoint.acceleration)
         + sum(&setpoint.jerk);
-    if !(counting.abs() <= f32::MAX) {
+    if !counting.is_finite() {
         return None;
     }
     if matches!(vertical, Vertical::Thrust(_)) && setpoint.thrust < THRUST_OFF {
@@ -155,9 +155,23 @@ pub fn is_urgent(before: &abi::Setpoint, setpoint: &abi::Setpoint) -> bool {
     words(before) != words(setpoint)
 }
 
-/// Whether two setpoints ask for the same; when they were made does not count.
-#[inline(never)]
+/// Whether two setpoints ask for the same.
+///
+/// The commander stamps every setpoint that it takes: one with the same stamp can differ only in what supervisor and
+/// collision avoidance change, modes, position and velocity. Without a stamp all of it is looked at.
+#[inline]
 pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
+    let vectors = |a: &abi::Vector, b: &abi::Vector| {
+        a.x.to_bits() == b.x.to_bits() && a.y.to_bits() == b.y.to_bits() && a.z.to_bits() == b.z.to_bits()
+    };
+    if a.timestamp == b.timestamp && a.timestamp != 0 {
+        return words(a) == words(b) && vectors(&a.position, &b.position) && vectors(&a.velocity, &b.velocity);
+    }
+    is_all_the_same(a, b)
+}
+
+#[inline(never)]
+fn is_all_the_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
     let vectors = |a: &abi::Vector, b: &abi::Vector| {
         a.x.to_bits() == b.x.to_bits() && a.y.to_bits() == b.y.to_bits() && a.z.to_bits() == b.z.to_bits()
     };

@@ -29,6 +29,10 @@ static SERVICE: TryCell<Service> = TryCell::new(Service::new());
 /// From the one to the other.
 static HANDOVER: TryCell<Handover> = TryCell::new(Handover::new());
 
+/// The log is written a hundred times a second, when no setpoint of the high-level commander is due.
+const SHOW_STEPS: u32 = 10;
+const SHOW_AT: u32 = 5;
+
 /// The firmware selects this controller: what it remembers of an earlier flight no longer holds.
 #[unsafe(no_mangle)]
 pub extern "C" fn controllerOutOfTreeInit() {
@@ -57,7 +61,7 @@ pub extern "C" fn controllerOutOfTree(
             quatrack.log.cycles.store(cycles::since(begun), Relaxed);
             return;
         }
-        if !controller.between(setpoint, state, step) {
+        if !controller.between(setpoint, state, step) && step % SHOW_STEPS == SHOW_AT {
             service::show(&quatrack, controller, state);
         }
         HANDOVER.with(|handover| handover.take_over(controller));

@@ -46,7 +46,7 @@ pub struct Handover {
 
 impl Handover {
     /// Nothing.
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self { craft: None, table: None, settings: None }
     }
 
@@ -76,7 +76,7 @@ impl Handover {
 
 impl Service {
     /// Nothing known yet.
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self { craft: None, is_new: false, uploads: Uploads::new(), uploaded: None, uploads_taken: 0, asked: None }
     }
 

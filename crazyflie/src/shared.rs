@@ -117,9 +117,7 @@ const _: () = assert!(core::mem::offset_of!(Log, bad_states) == 26, "one log pac
 
 impl Shared {
     /// As it is when the craft is switched on.
-    pub const fn new() -> Self {
-        const U16: AtomicU16 = AtomicU16::new(0);
-        const I16: AtomicI16 = AtomicI16::new(0);
+    pub(crate) const fn new() -> Self {
         Self {
             parameters: Parameters {
                 position_scale: AtomicF32::new(1.0),
@@ -134,19 +132,19 @@ impl Shared {
                 feed_forward: AtomicU8::new(1),
             },
             log: Log {
-                error_mm: [I16; 3],
-                rotation_mrad: [I16; 3],
-                forces: [U16; 4],
-                limited: U16,
-                cycles: U16,
+                error_mm: [const { AtomicI16::new(0) }; 3],
+                rotation_mrad: [const { AtomicI16::new(0) }; 3],
+                forces: [const { AtomicU16::new(0) }; 4],
+                limited: AtomicU16::new(0),
+                cycles: AtomicU16::new(0),
                 mode: AtomicU8::new(0),
                 table: AtomicU8::new(0),
-                bad_states: U16,
-                bad_setpoints: U16,
-                limited_steps: U16,
-                jumps: U16,
-                refused_tables: U16,
-                refusal: U16,
+                bad_states: AtomicU16::new(0),
+                bad_setpoints: AtomicU16::new(0),
+                limited_steps: AtomicU16::new(0),
+                jumps: AtomicU16::new(0),
+                refused_tables: AtomicU16::new(0),
+                refusal: AtomicU16::new(0),
             },
             gains: Gains {
                 scale_min: AtomicF32::new(1.0),

@@ -52,7 +52,7 @@ pub enum Arrival {
 
 impl Stream {
     /// Nothing yet.
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self {
             newest: Motion::ZERO,
             snap_m_s4: Vector3::new(0.0, 0.0, 0.0),
@@ -97,11 +97,11 @@ impl Stream {
             return self.end(sample);
         }
         let t = age_ms as f32 * 1e-3;
-        if to_fifth { self.to_fifth(t, sample) } else { self.to_jerk(t, sample) }
+        if to_fifth { self.put_to_fifth(t, sample) } else { self.put_to_jerk(t, sample) }
     }
 
     #[inline]
-    fn to_jerk(&self, t: f32, sample: &mut FifthOrderSample) {
+    fn put_to_jerk(&self, t: f32, sample: &mut FifthOrderSample) {
         let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
         let (t2, t3) = (t * (1.0 / 2.0), t * (1.0 / 3.0));
         let along = |p: f32, v: f32, a: f32, j: f32| (p + t * (v + t2 * (a + t3 * j)), v + t * (a + t2 * j), a + t * j);
@@ -114,7 +114,7 @@ impl Stream {
     }
 
     #[inline]
-    fn to_fifth(&self, t: f32, sample: &mut FifthOrderSample) {
+    fn put_to_fifth(&self, t: f32, sample: &mut FifthOrderSample) {
         let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
         let (s, c) = (&self.snap_m_s4, &self.crackle_m_s5);
         let (t2, t3, t4, t5) = (t * (1.0 / 2.0), t * (1.0 / 3.0), t * (1.0 / 4.0), t * (1.0 / 5.0));
@@ -143,7 +143,7 @@ impl Stream {
     #[cold]
     #[inline(never)]
     fn end(&self, sample: &mut FifthOrderSample) {
-        self.to_fifth(EXTRAPOLATION_MAX_MS as f32 * 1e-3, sample);
+        self.put_to_fifth(EXTRAPOLATION_MAX_MS as f32 * 1e-3, sample);
         *sample = FifthOrderSample::at_rest(sample.flat.position_m, 0.0);
     }
 
@@ -151,7 +151,7 @@ impl Stream {
     fn difference(&mut self, motion: &Motion, gap_ms: u32) -> Arrival {
         let gap_s = gap_ms as f32 * 1e-3;
         let mut expected = FifthOrderSample::at_rest(motion.position_m, 0.0);
-        self.to_fifth(gap_s, &mut expected);
+        self.put_to_fifth(gap_s, &mut expected);
         let expected = &expected.flat;
         let is_near = |a: &Vector3<f32>, b: &Vector3<f32>, bound: f32| {
             (a.x - b.x).abs() <= bound && (a.y - b.y).abs() <= bound && (a.z - b.z).abs() <= bound

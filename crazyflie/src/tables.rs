@@ -47,6 +47,7 @@ impl TableId {
 
 /// A gain, and with it the law that it is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "nothing is allocated: the largest has to have its place anyway")]
 pub enum Gains {
     /// Thrust and body rates from the state.
     Equilibrium(EquilibriumGain),

@@ -61,6 +61,7 @@ pub enum Status {
 
 /// A table as it has come, for this craft.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "nothing is allocated: the largest has to have its place anyway")]
 pub enum Sent {
     /// For thrust and body rates.
     BodyRates(AcceptedTable),
@@ -75,7 +76,7 @@ pub struct Uploads {
 
 impl Uploads {
     /// Nothing announced.
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         Self { receiver: BlobReceiver::new() }
     }
 
