@@ -113,6 +113,9 @@ pub struct Controller {
     stream: Stream,
     guide: Guide,
     sample: FifthOrderSample,
+    /// What the sample asks of the paper's laws at a step that is still to come.
+    prepared: Option<Reference>,
+    prepared_for: u32,
     last_step: u32,
     /// The controller has just been selected.
     is_selected: bool,
@@ -141,6 +144,8 @@ impl Controller {
             stream: Stream::new(),
             guide: Guide::new(PERIOD_S),
             sample: FifthOrderSample::at_rest(ZERO, 0.0),
+            prepared: None,
+            prepared_for: 0,
             last_step: 0,
             is_selected: true,
             bad_states_in_a_row: 0,
@@ -195,6 +200,24 @@ impl Controller {
         is_new
     }
 
+    /// Between control steps: makes the reference of the next one for the paper's laws along a trajectory. It takes nothing
+    /// from the estimate but where the leash ends.
+    #[inline]
+    pub fn prepare(&mut self, state: &abi::State, next_step: u32) {
+        let is_along = |flight: &Flight| {
+            matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position))
+                && matches!(flight.turn, Turn::Heading { .. })
+        };
+        let is_aware = matches!(self.table.gains, Gains::ActuatorAware(_));
+        if let Some(flight) = self.flight.as_ref().filter(|flight| !is_aware && is_along(flight)) {
+            let mass_kg = self.craft.airframe.figures().mass_kg;
+            let along = Along { flight, stream: &self.stream, now_ms: next_step, to_fifth: false, mass_kg };
+            self.guide.put(&along, &edge::state(state), &self.settings.bounds, &mut self.sample);
+            self.prepared = Reference::from_flat(&self.sample.flat).ok();
+            self.prepared_for = next_step;
+        }
+    }
+
     /// Another controller has flown in the meantime, or nobody: nothing that was remembered holds. The motors are
     /// taken to carry the craft until a setpoint says that they are off.
     #[cold]
@@ -202,6 +225,7 @@ impl Controller {
     fn restart(&mut self) {
         self.memory = ActuatorMemory::hovering(&self.craft.airframe);
         (self.flight, self.fade_left, self.bad_states_in_a_row, self.is_selected) = (None, 0, 0, false);
+        self.prepared = None;
     }
 
     /// Forgets what it remembers, at the next control step.
@@ -213,6 +237,7 @@ impl Controller {
     #[inline(never)]
     fn take(&mut self, setpoint: &abi::Setpoint, state: &State, now_ms: u32) {
         self.setpoint = *setpoint;
+        self.prepared = None;
         let thrust_max_n = 4.0 * self.craft.airframe.figures().force_max_n;
         let flight = match edge::demand(setpoint, thrust_max_n) {
             Some(Demand::Off) => {
@@ -260,13 +285,19 @@ impl Controller {
         if let Horizontal::Rates([p, q]) = flight.horizontal {
             return self.turn([p, q], state);
         }
-        let to_fifth = matches!(self.table.gains, Gains::ActuatorAware(_)) || self.fade_left > 0;
-        let mass_kg = self.craft.airframe.figures().mass_kg;
-        let along = Along { flight, stream: &self.stream, now_ms, to_fifth, mass_kg };
-        self.guide.put(&along, &state.state, &self.settings.bounds, &mut self.sample);
+        let is_prepared = self.prepared.is_some() && self.prepared_for == now_ms && self.fade_left == 0;
+        if !is_prepared {
+            let to_fifth = matches!(self.table.gains, Gains::ActuatorAware(_)) || self.fade_left > 0;
+            let mass_kg = self.craft.airframe.figures().mass_kg;
+            let along = Along { flight, stream: &self.stream, now_ms, to_fifth, mass_kg };
+            self.guide.put(&along, &state.state, &self.settings.bounds, &mut self.sample);
+        }
         let (r, p) = (&state.state.position_m, &self.sample.flat.position_m);
         self.outcome.error_m = Vector3::new(r.x - p.x, r.y - p.y, r.z - p.z);
         let run = Run { craft: &self.craft, settings: &self.settings, sample: &self.sample, state };
+        if let Some(reference) = self.prepared.as_ref().filter(|_| is_prepared) {
+            return run.follow(&self.table, reference, &mut self.outcome);
+        }
         run.step(&self.table, &mut self.memory, &mut self.outcome)?;
         if self.fade_left > 0 { self.mix_in_the_one_before(state) } else { Ok(()) }
     }
@@ -341,6 +372,7 @@ impl Controller {
             (self.memory_before, self.fade_left) = (self.memory, FADE_STEPS);
         }
         self.table = *table;
+        self.prepared = None;
     }
 
     /// Starts for a craft: motors off until a setpoint comes.
@@ -416,6 +448,20 @@ impl Run<'_> {
                 self.through_rates(&Tracker::new(law, self.settings.limits), outcome)
             }
         }
+    }
+
+    /// A law of the paper on a reference that is there.
+    #[inline(always)]
+    fn follow(&self, table: &Table, reference: &Reference, outcome: &mut Outcome) -> Result<(), StepError> {
+        let feed_forward = self.settings.feed_forward;
+        let tracker = match &table.gains {
+            Gains::Equilibrium(gain) => {
+                Tracker::new(Equilibrium { feed_forward, ..Equilibrium::new(gain) }, self.settings.limits)
+            }
+            Gains::FlatOutput(gain) => Tracker::new(FlatOutput { gain, feed_forward }, self.settings.limits),
+            Gains::ActuatorAware(_) => return Err(StepError::Singular),
+        };
+        self.wrench(&tracker, reference, outcome)
     }
 
     #[inline(always)]

@@ -65,6 +65,7 @@ pub extern "C" fn controllerOutOfTree(
             service::show(&quatrack, controller, state);
         }
         HANDOVER.with(|handover| handover.take_over(controller));
+        controller.prepare(state, step.wrapping_add(1));
     });
 }
 

@@ -176,9 +176,15 @@ impl fmt::Display for Counts {
             "Instructions a call of the Crazyflie controller's object on the emulated Cortex-M4F, {} calls\n",
             self.steps
         )?;
-        writeln!(f, "{:<16}{:<12}{:>8}{:>10}{:>8}   between, max", "table", "setpoints", "min", "mean", "max")?;
-        for Row { table, setpoints, control_step: c, other_step } in &self.rows {
-            writeln!(f, "{table:<16}{setpoints:<12}{:>8}{:>10.1}{:>8}{:>15}", c.min, c.mean, c.max, other_step.max)?;
+        writeln!(f, "{:<28}{:^26}{:^26}", "", "control step (500 Hz)", "between (500 Hz)")?;
+        writeln!(
+            f,
+            "{:<16}{:<12}{:>8}{:>10}{:>8}{:>8}{:>10}{:>8}",
+            "table", "setpoints", "min", "mean", "max", "min", "mean", "max"
+        )?;
+        for Row { table, setpoints, control_step: c, other_step: o } in &self.rows {
+            write!(f, "{table:<16}{setpoints:<12}{:>8}{:>10.1}{:>8}", c.min, c.mean, c.max)?;
+            writeln!(f, "{:>8}{:>10.1}{:>8}", o.min, o.mean, o.max)?;
         }
         Ok(())
     }
