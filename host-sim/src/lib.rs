@@ -23,6 +23,7 @@
 
 pub mod analysis;
 pub mod certify;
+pub mod crazyflie;
 pub mod design;
 pub mod figures;
 pub mod flight;

@@ -1,6 +1,7 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
 mod analyze;
+mod crazyflie;
 mod export;
 mod fly;
 mod gains;
@@ -49,6 +50,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Analyze(analyze::Args),
+    Crazyflie(crazyflie::Args),
     Export(export::Args),
     Fly(fly::Args),
     Gains(gains::Args),
@@ -69,6 +71,7 @@ pub(crate) fn main() -> ExitCode {
     };
     let outcome: Result<(), Failure> = match &arguments.command {
         Command::Analyze(args) => analyze::run(args),
+        Command::Crazyflie(args) => crazyflie::run(args),
         Command::Export(args) => export::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Gains(args) => gains::run(args),

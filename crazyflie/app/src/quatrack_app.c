@@ -1,0 +1,119 @@
+/* The app around the quatrack controller: tells it which craft the firmware was built for, passes it tables that come over
+ * the app channel, and declares its parameters and log variables. */
+#include <string.h>
+
+#include "FreeRTOS.h"
+#include "task.h"
+
+#include "app.h"
+#include "app_channel.h"
+#include "log.h"
+#include "param.h"
+#include "platform_defaults.h"
+#include "stm32f4xx.h"
+
+#define DEBUG_MODULE "QUATRACK"
+#include "debug.h"
+
+#include "quatrack.h"
+
+#define PERIOD_MS 20
+
+_Static_assert(sizeof(quatrackParameters_t) == 36, "as in shared.rs");
+_Static_assert(sizeof(quatrackLog_t) == 38, "as in shared.rs");
+_Static_assert(sizeof(quatrack_t) == 160, "as in shared.rs");
+_Static_assert(APPCHANNEL_MTU <= sizeof(((quatrackPacket_t *)0)->bytes), "a packet fits");
+
+void appMain(void)
+{
+  const quatrackPlatform_t platform = {
+    .massKg = CF_MASS,
+    .armM = ARM_LENGTH,
+    .thrustMaxN = THRUST_MAX,
+    .torquePerThrustM = THRUST2TORQUE,
+  };
+
+  /* The cycle counter, for the time that a step takes. */
+  CoreDebug->DEMCR |= CoreDebug_DEMCR_TRCENA_Msk;
+  DWT->CTRL |= DWT_CTRL_CYCCNTENA_Msk;
+
+  if (!quatrackPlatform(&platform)) {
+    DEBUG_PRINT("No table for this craft: the motors stay off\n");
+  }
+  while (1) {
+    quatrackPacket_t packet, answer;
+    quatrackService();
+    packet.length = (uint8_t)appchannelReceiveDataPacket(packet.bytes, sizeof(packet.bytes), PERIOD_MS);
+    if (packet.length > 0) {
+      memset(&answer, 0, sizeof(answer));
+      quatrackPacket(&packet, &answer);
+      appchannelSendDataPacket(answer.bytes, answer.length);
+    }
+  }
+}
+
+PARAM_GROUP_START(quatrack)
+PARAM_ADD(PARAM_UINT8, table, &quatrack.parameters.table)
+PARAM_ADD(PARAM_FLOAT, posScale, &quatrack.parameters.positionScale)
+PARAM_ADD(PARAM_FLOAT, yawScale, &quatrack.parameters.yawScale)
+PARAM_ADD(PARAM_FLOAT, motorLag, &quatrack.parameters.motorLagS)
+PARAM_ADD(PARAM_UINT8, feedForward, &quatrack.parameters.feedForward)
+PARAM_ADD(PARAM_FLOAT, leash, &quatrack.parameters.leashM)
+PARAM_ADD(PARAM_FLOAT, speedMax, &quatrack.parameters.speedMS)
+PARAM_ADD(PARAM_FLOAT, accMax, &quatrack.parameters.accelerationMS2)
+PARAM_ADD(PARAM_FLOAT, rpRateMax, &quatrack.parameters.rollPitchRateRadS)
+PARAM_ADD(PARAM_FLOAT, yawRateMax, &quatrack.parameters.yawRateRadS)
+PARAM_ADD(PARAM_FLOAT | PARAM_RONLY, scaleMin, &quatrack.gains.scaleMin)
+PARAM_ADD(PARAM_FLOAT | PARAM_RONLY, scaleMax, &quatrack.gains.scaleMax)
+PARAM_GROUP_STOP(quatrack)
+
+#define GAIN(NAME, INDEX) PARAM_ADD(PARAM_FLOAT | PARAM_RONLY, NAME, &quatrack.gains.gains[INDEX])
+
+PARAM_GROUP_START(quatrackK)
+GAIN(thrustZ, 0)
+GAIN(thrustVz, 1)
+GAIN(thrustF, 2)
+GAIN(thrustIz, 3)
+GAIN(rollY, 4)
+GAIN(rollVy, 5)
+GAIN(rollRot, 6)
+GAIN(rollRate, 7)
+GAIN(rollF, 8)
+GAIN(rollIy, 9)
+GAIN(pitchX, 10)
+GAIN(pitchVx, 11)
+GAIN(pitchRot, 12)
+GAIN(pitchRate, 13)
+GAIN(pitchF, 14)
+GAIN(pitchIx, 15)
+GAIN(yawRot, 16)
+GAIN(yawRate, 17)
+GAIN(yawF, 18)
+PARAM_GROUP_STOP(quatrackK)
+
+/* One packet of 26 bytes. */
+LOG_GROUP_START(quatrack)
+LOG_ADD(LOG_INT16, errX, &quatrack.log.errorMm[0])
+LOG_ADD(LOG_INT16, errY, &quatrack.log.errorMm[1])
+LOG_ADD(LOG_INT16, errZ, &quatrack.log.errorMm[2])
+LOG_ADD(LOG_INT16, rotX, &quatrack.log.rotationMrad[0])
+LOG_ADD(LOG_INT16, rotY, &quatrack.log.rotationMrad[1])
+LOG_ADD(LOG_INT16, rotZ, &quatrack.log.rotationMrad[2])
+LOG_ADD(LOG_UINT16, f1, &quatrack.log.forces[0])
+LOG_ADD(LOG_UINT16, f2, &quatrack.log.forces[1])
+LOG_ADD(LOG_UINT16, f3, &quatrack.log.forces[2])
+LOG_ADD(LOG_UINT16, f4, &quatrack.log.forces[3])
+LOG_ADD(LOG_UINT16, limited, &quatrack.log.limited)
+LOG_ADD(LOG_UINT16, cycles, &quatrack.log.cycles)
+LOG_ADD(LOG_UINT8, mode, &quatrack.log.mode)
+LOG_ADD(LOG_UINT8, table, &quatrack.log.table)
+LOG_GROUP_STOP(quatrack)
+
+LOG_GROUP_START(quatrackN)
+LOG_ADD(LOG_UINT16, badStates, &quatrack.log.badStates)
+LOG_ADD(LOG_UINT16, badSetpoints, &quatrack.log.badSetpoints)
+LOG_ADD(LOG_UINT16, limitedSteps, &quatrack.log.limitedSteps)
+LOG_ADD(LOG_UINT16, jumps, &quatrack.log.jumps)
+LOG_ADD(LOG_UINT16, refused, &quatrack.log.refusedTables)
+LOG_ADD(LOG_UINT16, refusal, &quatrack.log.refusal)
+LOG_GROUP_STOP(quatrackN)

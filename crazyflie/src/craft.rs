@@ -1,0 +1,116 @@
+//! The crafts that there are tables for: the figures that the firmware was built with in, the craft out.
+
+use quatrack::gains::table::{Name, Vehicle};
+use quatrack::{Airframe, BodyRateLoop, Rate};
+
+use crate::builtin::FIGURES;
+
+/// Control steps a second: every other one of the firmware's.
+pub const CONTROL_HZ: u32 = 500;
+
+/// The firmware's steps between two control steps.
+pub const DECIMATION: u32 = 2;
+
+/// The period of the control steps, s.
+pub const PERIOD_S: f32 = 1.0 / CONTROL_HZ as f32;
+
+/// The rate of the control steps.
+pub const RATE: Rate = match Rate::from_hz(CONTROL_HZ) {
+    Some(rate) => rate,
+    None => panic!("the control rate is no rate"),
+};
+
+/// What the firmware says of the craft: `platform_defaults.h`, passed by the app.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Platform {
+    /// `CF_MASS`, kg.
+    pub mass_kg: f32,
+    /// `ARM_LENGTH`, centre to rotor, m.
+    pub arm_m: f32,
+    /// `THRUST_MAX` of one motor, N.
+    pub thrust_max_n: f32,
+    /// `THRUST2TORQUE`, m.
+    pub torque_per_thrust_m: f32,
+}
+
+/// A craft, with what the steps need of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Craft {
+    /// Its figures.
+    pub airframe: Airframe,
+    /// From body rates to torque.
+    pub body_rates: BodyRateLoop,
+    /// Who it is for a gain table.
+    pub vehicle: Vehicle,
+    /// Which of [`KNOWN`] it is.
+    pub index: usize,
+    /// Time constant of its motors as far as it is known, s.
+    pub motor_lag_s: f32,
+    /// One over the largest force of a motor, 1/N.
+    pub per_force_max_1_n: f32,
+}
+
+/// A craft that the controller knows.
+#[derive(Clone, Copy, Debug)]
+pub struct Known {
+    /// Its figures.
+    pub airframe: Airframe,
+    /// Its name and id.
+    pub vehicle: Vehicle,
+}
+
+/// The crafts that the controller knows.
+pub const KNOWN: [Known; 3] = [
+    known("crazyflie-2.1", FIGURES[0].0, Airframe::CRAZYFLIE_2_1),
+    known("crazyflie-2.1-upgrade", FIGURES[1].0, Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
+    known("crazyflie-2.1-brushless", FIGURES[2].0, Airframe::CRAZYFLIE_2_1_BRUSHLESS),
+];
+
+const fn known(name: &str, id: u32, airframe: Airframe) -> Known {
+    Known { airframe, vehicle: Vehicle { name: Name::literal(name), id } }
+}
+
+/// Largest relative difference of a figure from the one that the tables were made for: what is left out of it in rounding.
+const TOLERANCE: f32 = 2e-3;
+
+/// Largest relative difference of the mass: half of what the tables are certified for.
+const MASS_TOLERANCE: f32 = 0.1;
+
+impl Craft {
+    /// The craft that the firmware was built for; nothing where no table is for it.
+    pub fn of(platform: &Platform) -> Option<Self> {
+        let is_near = |found: f32, known: f32, tolerance: f32| (found - known).abs() <= tolerance * known;
+        let root_2 = core::f32::consts::SQRT_2;
+        let (index, known) = KNOWN.iter().enumerate().find(|(_, known)| {
+            let figures = known.airframe.figures();
+            is_near(platform.mass_kg, figures.mass_kg, MASS_TOLERANCE)
+                && is_near(platform.arm_m, figures.lever_arm_m * root_2, TOLERANCE)
+                && is_near(platform.thrust_max_n, figures.force_max_n, TOLERANCE)
+                && is_near(platform.torque_per_thrust_m, figures.torque_per_thrust_m, TOLERANCE)
+        })?;
+        // The mass as the owner has set it: the weight is fed forward.
+        let figures = quatrack::AirframeFigures { mass_kg: platform.mass_kg, ..*known.airframe.figures() };
+        let airframe = Airframe::new(figures).ok()?;
+        Some(Self::with(airframe, known.vehicle, index))
+    }
+
+    /// From its parts.
+    pub const fn with(airframe: Airframe, vehicle: Vehicle, index: usize) -> Self {
+        let figures = airframe.figures();
+        let (motor_lag_s, per_force_max_1_n) = (figures.motor_lag_s, 1.0 / figures.force_max_n);
+        let body_rates = BodyRateLoop::behind_lag(&airframe);
+        Self { airframe, body_rates, vehicle, index, motor_lag_s, per_force_max_1_n }
+    }
+
+    /// The same whose owner knows the time constant of the motors; 0 for the longest that is published.
+    pub fn with_motor_lag(&self, motor_lag_s: f32) -> Self {
+        let published = self.airframe.figures().motor_lag_s;
+        let motor_lag_s = if motor_lag_s > 0.0 { motor_lag_s } else { published };
+        let figures = quatrack::AirframeFigures { motor_lag_s, ..*self.airframe.figures() };
+        match Airframe::new(figures) {
+            Ok(airframe) => Self { body_rates: BodyRateLoop::behind_lag(&airframe), motor_lag_s, ..*self },
+            Err(_) => *self,
+        }
+    }
+}

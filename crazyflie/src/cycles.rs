@@ -1,0 +1,20 @@
+//! The processor's cycle counter, as far as the app has started it; 0 elsewhere.
+
+/// The count now.
+#[inline]
+pub(crate) fn now() -> u32 {
+    #[cfg(target_os = "none")]
+    {
+        cortex_m::peripheral::DWT::cycle_count()
+    }
+    #[cfg(not(target_os = "none"))]
+    {
+        0
+    }
+}
+
+/// Cycles since a count, at most what a `u16` holds.
+#[inline]
+pub(crate) fn since(begun: u32) -> u16 {
+    u16::try_from(now().wrapping_sub(begun)).unwrap_or(u16::MAX)
+}

@@ -1,0 +1,93 @@
+//! The symbols of the object: what the firmware calls, what our app calls, and the variables behind its parameters.
+//!
+//! Everything takes C pointers that are never null as references. The stabilizer task calls the `controller` functions,
+//! the app's task the others; they meet in cells that turn the second visitor away.
+#![allow(unsafe_code, reason = "names for the linker; nothing below them is unsafe")]
+#![allow(non_upper_case_globals, non_snake_case, reason = "names of C")]
+
+use core::sync::atomic::Ordering::Relaxed;
+
+use crate::abi::{Control, SensorData, Setpoint, State};
+use crate::builtin;
+use crate::control::Controller;
+use crate::craft::Platform;
+use crate::cycles;
+use crate::edge;
+use crate::service::{self, Handover, Service};
+use crate::shared::Shared;
+use crate::try_cell::TryCell;
+use crate::upload::Packet;
+
+/// Parameters and log variables; `quatrack.h` has the same struct.
+#[unsafe(no_mangle)]
+pub static quatrack: Shared = Shared::new();
+
+/// The stabilizer task's.
+static CONTROLLER: TryCell<Controller> = TryCell::new(builtin::CONTROLLER);
+/// The app task's.
+static SERVICE: TryCell<Service> = TryCell::new(Service::new());
+/// From the one to the other.
+static HANDOVER: TryCell<Handover> = TryCell::new(Handover::new());
+
+/// The log is written a hundred times a second, when no setpoint of the high-level commander is due.
+const SHOW_STEPS: u32 = 10;
+const SHOW_AT: u32 = 5;
+
+/// The firmware selects this controller: what it remembers of an earlier flight no longer holds.
+#[unsafe(no_mangle)]
+pub extern "C" fn controllerOutOfTreeInit() {
+    CONTROLLER.with(Controller::forget);
+}
+
+/// Whether the controller can be selected: always. Without a known craft it keeps the motors off.
+#[unsafe(no_mangle)]
+pub extern "C" fn controllerOutOfTreeTest() -> bool {
+    true
+}
+
+/// One step of the stabilizer at 1 kHz; leaves `control` as it is between control steps.
+#[unsafe(no_mangle)]
+pub extern "C" fn controllerOutOfTree(
+    control: &mut Control,
+    setpoint: &Setpoint,
+    sensors: &SensorData,
+    state: &State,
+    step: u32,
+) {
+    let begun = cycles::now();
+    CONTROLLER.with(|controller| {
+        if controller.step(setpoint, sensors, state, step) {
+            edge::put(&controller.outcome().output, controller.craft(), control);
+            quatrack.log.cycles.store(cycles::since(begun), Relaxed);
+            return;
+        }
+        if !controller.between(setpoint, state, step) && step % SHOW_STEPS == SHOW_AT {
+            service::show(&quatrack, controller, state);
+        }
+        HANDOVER.with(|handover| handover.take_over(controller));
+        controller.prepare(state, step.wrapping_add(1));
+    });
+}
+
+/// The app says which craft the firmware was built for, before anything else. Starts everything anew, motors off.
+///
+/// Returns whether there are tables for it.
+#[unsafe(no_mangle)]
+pub extern "C" fn quatrackPlatform(platform: &Platform) -> bool {
+    SERVICE.with(|service| service.start(platform)).unwrap_or(false)
+}
+
+/// The app passes a packet of the app channel and gets the answer to send back.
+#[unsafe(no_mangle)]
+pub extern "C" fn quatrackPacket(packet: &Packet, answer: &mut Packet) {
+    if let Some(taken) = SERVICE.with(|service| service.packet(packet, &quatrack)) {
+        *answer = taken;
+    }
+}
+
+/// The app lets the parameters be looked at, a few times a second: a change of the table or of a scale is flown from then
+/// on.
+#[unsafe(no_mangle)]
+pub extern "C" fn quatrackService() {
+    SERVICE.with(|service| service.keep_house(&quatrack, &HANDOVER));
+}

@@ -1,0 +1,222 @@
+//! From what a setpoint asks to a flat sample that the laws follow: position and velocity demands, tilts, and turns in; a
+//! motion with heading out.
+//!
+//! What a demand leaves free is taken from the measured state, so that the laws see no error there: at a tilt, position
+//! and velocity over the ground; under manual thrust, height and climb. A velocity demand becomes a position that moves
+//! with it, speeding up no faster than [`Bounds`] allow, and never far from where the craft is.
+
+use quatrack::flatness::GRAVITY_M_S2;
+use quatrack::math::sqrt;
+use quatrack::nalgebra::Vector3;
+use quatrack::{FifthOrderSample, Heading, State};
+
+use crate::demand::{Flight, Horizontal, Turn, Vertical};
+use crate::stream::Stream;
+
+/// How fast and how far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Largest speed of a velocity demand, m/s, over the ground and up or down.
+    pub speed_m_s: f32,
+    /// Largest acceleration of a velocity demand, m/s^2.
+    pub acceleration_m_s2: f32,
+    /// Farthest that a position is asked for from the measured one, m.
+    pub leash_m: f32,
+}
+
+/// How fast a velocity demand is taken up, 1/s.
+const VELOCITY_BANDWIDTH_1_S: f32 = 6.0;
+
+/// How far the position of a velocity demand may run ahead of the craft along each axis, m.
+const LEAD_MAX_M: f32 = 0.25;
+
+/// What is integrated over time: the point that a velocity demand moves, the heading that a turn rate moves.
+#[derive(Clone, Copy, Debug)]
+pub struct Guide {
+    position_m: Vector3<f32>,
+    velocity_m_s: Vector3<f32>,
+    heading_rad: f32,
+    period_s: f32,
+}
+
+/// A flight at one step.
+#[derive(Clone, Copy, Debug)]
+pub struct Along<'a> {
+    /// How to fly.
+    pub flight: &'a Flight,
+    /// Along what.
+    pub stream: &'a Stream,
+    /// When.
+    pub now_ms: u32,
+    /// Whether the law looks beyond the jerk.
+    pub to_fifth: bool,
+    /// Of the craft.
+    pub mass_kg: f32,
+}
+
+impl Guide {
+    /// At the origin; to be put somewhere by [`Self::begin`].
+    pub const fn new(period_s: f32) -> Self {
+        let zero = Vector3::new(0.0, 0.0, 0.0);
+        Self { position_m: zero, velocity_m_s: zero, heading_rad: 0.0, period_s }
+    }
+
+    /// Starts a flight of another kind from the measured state at a heading.
+    pub fn begin(&mut self, state: &State, heading_rad: f32) {
+        self.position_m = state.position_m;
+        self.velocity_m_s = state.velocity_m_s;
+        self.heading_rad = heading_rad;
+    }
+
+    /// What to follow at this step of a flight that goes along a stream, into `sample`; not for a horizontal that asks for
+    /// body rates, which no flat sample has.
+    #[inline]
+    pub fn put(&mut self, along: &Along<'_>, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) {
+        let Along { flight, stream, now_ms, to_fifth, .. } = along;
+        stream.at(*now_ms, *to_fifth, sample);
+        match flight.turn {
+            Turn::Heading { heading_rad, body_rate_rad_s } => {
+                (sample.flat.heading_rad, sample.flat.heading_rate_rad_s) = (heading_rad, 0.0);
+                if body_rate_rad_s != 0.0 {
+                    self.turn_along(sample, body_rate_rad_s, stream.age_s(*now_ms));
+                }
+            }
+            Turn::Rate(rate_rad_s) => self.turn(sample, rate_rad_s),
+        }
+        if !matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position)) {
+            self.fill(sample, along, state, bounds);
+        }
+        leash(sample, state, bounds.leash_m);
+    }
+
+    /// A heading that moves on between setpoints. The firmware's trajectories send the body rate, the heading's rate times
+    /// the vertical part of the thrust's direction.
+    #[inline(never)]
+    fn turn_along(&mut self, sample: &mut FifthOrderSample, body_rate_rad_s: f32, age_s: f32) {
+        let a = &sample.flat.acceleration_m_s2;
+        let h = a.z + GRAVITY_M_S2;
+        let axis_z = h / sqrt(a.x * a.x + a.y * a.y + h * h);
+        // Beyond 60 degrees of tilt the two have little to do with each other.
+        let rate = if axis_z > 0.5 { body_rate_rad_s / axis_z } else { body_rate_rad_s };
+        sample.flat.heading_rad += rate * age_s;
+        sample.flat.heading_rate_rad_s = rate;
+        self.heading_rad = sample.flat.heading_rad;
+    }
+
+    /// A heading that turns from where it is.
+    #[inline(never)]
+    fn turn(&mut self, sample: &mut FifthOrderSample, rate_rad_s: f32) {
+        const TURN: f32 = core::f32::consts::TAU;
+        self.heading_rad += rate_rad_s * self.period_s;
+        // Two turns give the same quaternion, one its negative, which is the same attitude.
+        if self.heading_rad.abs() > 2.0 * TURN {
+            self.heading_rad -= if self.heading_rad > 0.0 { 2.0 * TURN } else { -2.0 * TURN };
+        }
+        sample.flat.heading_rad = self.heading_rad;
+        sample.flat.heading_rate_rad_s = rate_rad_s;
+    }
+
+    /// Everything but a position along all axes.
+    #[inline(never)]
+    fn fill(&mut self, sample: &mut FifthOrderSample, along: &Along<'_>, state: &State, bounds: &Bounds) {
+        let (flight, mass_kg) = (along.flight, along.mass_kg);
+        // As it was sent: a velocity holds until another one comes.
+        let asked = along.stream.newest().velocity_m_s;
+        let zero = Vector3::new(0.0, 0.0, 0.0);
+        // Derivatives of a motion along some axes only, or of none.
+        (sample.flat.jerk_m_s3, sample.snap_m_s4, sample.crackle_m_s5) = (zero, zero, zero);
+        let heading = Heading::from_angle(sample.flat.heading_rad);
+        let a = &mut sample.flat.acceleration_m_s2;
+        match flight.horizontal {
+            Horizontal::Position => {}
+            Horizontal::Velocity { in_heading_frame } => {
+                let (cos, sin) = heading.cos_sin();
+                let (vx, vy) = if in_heading_frame {
+                    (cos * asked.x - sin * asked.y, sin * asked.x + cos * asked.y)
+                } else {
+                    (asked.x, asked.y)
+                };
+                let speed = sqrt(vx * vx + vy * vy);
+                let share = if speed > bounds.speed_m_s { bounds.speed_m_s / speed } else { 1.0 };
+                let (ax, ay) = self.approach([vx * share, vy * share], bounds.acceleration_m_s2);
+                (a.x, a.y) = (ax, ay);
+                let lead = |position: f32, velocity: f32, measured: f32| {
+                    within(position + velocity * self.period_s, measured - LEAD_MAX_M, measured + LEAD_MAX_M)
+                };
+                self.position_m.x = lead(self.position_m.x, self.velocity_m_s.x, state.position_m.x);
+                self.position_m.y = lead(self.position_m.y, self.velocity_m_s.y, state.position_m.y);
+                (sample.flat.position_m.x, sample.flat.position_m.y) = (self.position_m.x, self.position_m.y);
+                (sample.flat.velocity_m_s.x, sample.flat.velocity_m_s.y) = (self.velocity_m_s.x, self.velocity_m_s.y);
+            }
+            Horizontal::Tilt(_) | Horizontal::Rates(_) => {
+                (sample.flat.position_m.x, sample.flat.position_m.y) = (state.position_m.x, state.position_m.y);
+                (sample.flat.velocity_m_s.x, sample.flat.velocity_m_s.y) = (state.velocity_m_s.x, state.velocity_m_s.y);
+            }
+        }
+        match flight.vertical {
+            Vertical::Position => {}
+            Vertical::Velocity => {
+                let (limit, v) = (bounds.speed_m_s, self.velocity_m_s.z);
+                let acceleration = VELOCITY_BANDWIDTH_1_S * (within(asked.z, -limit, limit) - v);
+                a.z = within(acceleration, -bounds.acceleration_m_s2, bounds.acceleration_m_s2);
+                self.velocity_m_s.z = v + a.z * self.period_s;
+                let (next, z) = (self.position_m.z + self.velocity_m_s.z * self.period_s, state.position_m.z);
+                self.position_m.z = within(next, z - LEAD_MAX_M, z + LEAD_MAX_M);
+                sample.flat.position_m.z = self.position_m.z;
+                sample.flat.velocity_m_s.z = self.velocity_m_s.z;
+            }
+            Vertical::Thrust(thrust_n) => {
+                sample.flat.position_m.z = state.position_m.z;
+                sample.flat.velocity_m_s.z = state.velocity_m_s.z;
+                a.z = thrust_n / mass_kg - GRAVITY_M_S2;
+            }
+        }
+        if let Horizontal::Tilt(axis) = flight.horizontal {
+            let (cos, sin) = heading.cos_sin();
+            let world = Vector3::new(cos * axis.x - sin * axis.y, sin * axis.x + cos * axis.y, axis.z);
+            // Under manual thrust its direction is turned; at a height its vertical part is kept.
+            let along = match flight.vertical {
+                Vertical::Thrust(thrust_n) => thrust_n / mass_kg,
+                _ => (a.z + GRAVITY_M_S2) / if world.z > 0.5 { world.z } else { 0.5 },
+            };
+            *a = Vector3::new(world.x * along, world.y * along, world.z * along - GRAVITY_M_S2);
+        }
+    }
+
+    /// Moves the velocity over the ground towards the asked one and returns its acceleration.
+    fn approach(&mut self, asked: [f32; 2], acceleration_max: f32) -> (f32, f32) {
+        let (ax, ay) = (
+            VELOCITY_BANDWIDTH_1_S * (asked[0] - self.velocity_m_s.x),
+            VELOCITY_BANDWIDTH_1_S * (asked[1] - self.velocity_m_s.y),
+        );
+        let size = sqrt(ax * ax + ay * ay);
+        let share = if size > acceleration_max { acceleration_max / size } else { 1.0 };
+        let (ax, ay) = (ax * share, ay * share);
+        self.velocity_m_s.x += ax * self.period_s;
+        self.velocity_m_s.y += ay * self.period_s;
+        (ax, ay)
+    }
+}
+
+/// Draws a position that is too far away towards the craft: the laws are linear, and would turn it over for a goal
+/// metres away.
+#[inline]
+fn leash(sample: &mut FifthOrderSample, state: &State, leash_m: f32) {
+    let (p, r) = (&mut sample.flat.position_m, &state.position_m);
+    let (dx, dy, dz) = (p.x - r.x, p.y - r.y, p.z - r.z);
+    let squared = dx * dx + dy * dy + dz * dz;
+    if squared > leash_m * leash_m {
+        let share = leash_m / sqrt(squared);
+        *p = Vector3::new(r.x + dx * share, r.y + dy * share, r.z + dz * share);
+    }
+}
+
+fn within(value: f32, min: f32, max: f32) -> f32 {
+    if value > max {
+        max
+    } else if value < min {
+        min
+    } else {
+        value
+    }
+}

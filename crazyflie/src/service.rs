@@ -1,0 +1,220 @@
+//! Around the controller, in the app's task and on its stack: which craft, parameters and sent tables in; the table to
+//! fly and the settings out, to be taken over between two control steps.
+
+use core::sync::atomic::Ordering::Relaxed;
+
+use quatrack::FeedForward;
+use quatrack::nalgebra::Vector3;
+
+use crate::abi;
+use crate::control::{Controller, Output, Settings};
+use crate::craft::{Craft, Platform};
+use crate::edge;
+use crate::guide::Bounds;
+use crate::shared::{AtomicF32, Shared};
+use crate::tables::{Refusal, Scales, Table, limits_within};
+use crate::try_cell::TryCell;
+use crate::upload::{Packet, Sent, Status, Uploads};
+
+/// What the app's task keeps.
+pub struct Service {
+    craft: Option<Craft>,
+    /// The craft is new, and has to be handed over.
+    is_new: bool,
+    uploads: Uploads,
+    uploaded: Option<Sent>,
+    uploads_taken: u8,
+    asked: Option<Asked>,
+}
+
+/// What the owner last asked to be flown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Asked {
+    table: u8,
+    scales: Scales,
+    motor_lag_s: f32,
+    /// Which of the sent tables, counted.
+    upload: u8,
+}
+
+/// On its way to the stabilizer's task: what is there has not been taken over yet.
+pub struct Handover {
+    craft: Option<Craft>,
+    table: Option<Table>,
+    settings: Option<(Settings, Craft)>,
+}
+
+impl Handover {
+    /// Nothing.
+    pub(crate) const fn new() -> Self {
+        Self { craft: None, table: None, settings: None }
+    }
+
+    /// The controller takes over what there is.
+    #[inline]
+    pub fn take_over(&mut self, controller: &mut Controller) {
+        // The settings come last and with everything else.
+        if self.settings.is_some() {
+            self.hand_to(controller);
+        }
+    }
+
+    #[inline(never)]
+    fn hand_to(&mut self, controller: &mut Controller) {
+        if let Some(craft) = &self.craft {
+            controller.change_craft(craft);
+        }
+        if let Some(table) = &self.table {
+            controller.change_table(table);
+        }
+        if let Some((settings, craft)) = &self.settings {
+            controller.set(settings, craft);
+        }
+        (self.craft, self.table, self.settings) = (None, None, None);
+    }
+}
+
+impl Service {
+    /// Nothing known yet.
+    pub(crate) const fn new() -> Self {
+        Self { craft: None, is_new: false, uploads: Uploads::new(), uploaded: None, uploads_taken: 0, asked: None }
+    }
+
+    /// Starts anew for the craft that the firmware was built for; whether there are tables for it.
+    pub fn start(&mut self, platform: &Platform) -> bool {
+        *self = Self::new();
+        self.craft = Craft::of(platform);
+        self.is_new = self.craft.is_some();
+        self.is_new
+    }
+
+    /// Takes a packet of the app channel and gives the answer to it.
+    pub fn packet(&mut self, packet: &Packet, shared: &Shared) -> Packet {
+        let Some(craft) = &self.craft else { return self.uploads.answer(packet.bytes[0], Status::Busy) };
+        let (answer, table) = self.uploads.take(packet, &craft.vehicle);
+        match table {
+            Some(table) => {
+                self.uploaded = Some(table);
+                self.uploads_taken = self.uploads_taken.wrapping_add(1);
+            }
+            None if answer.bytes[1] == Status::Table as u8 => refuse(shared, Refusal::Table),
+            None if answer.bytes[1] == Status::Vehicle as u8 => refuse(shared, Refusal::Vehicle),
+            None => {}
+        }
+        answer
+    }
+
+    /// Looks at the parameters and hands over what has changed; to be called a few times a second.
+    pub(crate) fn keep_house(&mut self, shared: &Shared, handover: &TryCell<Handover>) {
+        let Some(craft) = &self.craft else { return };
+        let asked = Asked::of(shared, self.uploads_taken);
+        let craft = craft.with_motor_lag(asked.motor_lag_s);
+        let is_asked = self.asked != Some(asked);
+        let mut table = None;
+        if is_asked {
+            let chosen = Table::choose(asked.table, &craft, self.uploaded.as_ref());
+            table = match chosen.map(|table| table.scaled(&asked.scales)) {
+                Ok(table) => Some(table),
+                Err(refusal) => {
+                    refuse(shared, refusal);
+                    // There is always one to start with.
+                    if self.is_new { Table::actuator_aware(&craft).ok() } else { None }
+                }
+            };
+        }
+        let handed = handover.with(|place| {
+            if self.is_new {
+                place.craft = Some(craft);
+            }
+            if let Some(table) = &table {
+                place.table = Some(*table);
+            }
+            place.settings = Some((settings(shared, &craft), craft));
+        });
+        if handed.is_some() {
+            (self.is_new, self.asked) = (false, Some(asked));
+            if let Some(table) = &table {
+                show_table(shared, table);
+            }
+        }
+    }
+}
+
+impl Asked {
+    fn of(shared: &Shared, upload: u8) -> Self {
+        let parameters = &shared.parameters;
+        Self {
+            table: parameters.table.load(Relaxed),
+            scales: Scales { position: parameters.position_scale.get(), yaw: parameters.yaw_scale.get() },
+            motor_lag_s: within(&parameters.motor_lag_s, 0.0, 1.0),
+            upload,
+        }
+    }
+}
+
+/// Says that a table is not flown.
+fn refuse(shared: &Shared, refusal: Refusal) {
+    shared.log.refused_tables.fetch_add(1, Relaxed);
+    shared.log.refusal.store(refusal as u16, Relaxed);
+}
+
+/// A parameter within what makes sense; what is not a number counts as the least.
+fn within(value: &AtomicF32, least: f32, most: f32) -> f32 {
+    let value = value.get();
+    if value >= most {
+        most
+    } else if value >= least {
+        value
+    } else {
+        least
+    }
+}
+
+fn settings(shared: &Shared, craft: &Craft) -> Settings {
+    let parameters = &shared.parameters;
+    let roll_pitch = within(&parameters.roll_pitch_rate_rad_s, 0.5, 100.0);
+    let yaw = within(&parameters.yaw_rate_rad_s, 0.5, 100.0);
+    Settings {
+        bounds: Bounds {
+            leash_m: within(&parameters.leash_m, 0.1, 10.0),
+            speed_m_s: within(&parameters.speed_m_s, 0.1, 5.0),
+            acceleration_m_s2: within(&parameters.acceleration_m_s2, 0.5, 10.0),
+        },
+        limits: limits_within(&craft.airframe, Vector3::new(roll_pitch, roll_pitch, yaw)),
+        feed_forward: if parameters.feed_forward.load(Relaxed) == 0 { FeedForward::Without } else { FeedForward::With },
+    }
+}
+
+/// What the last control step did, into the log; in the stabilizer's task, between control steps.
+#[inline(never)]
+pub fn show(shared: &Shared, controller: &Controller, state: &abi::State) {
+    let log = &shared.log;
+    // A conversion from a float cuts to the range, and takes NaN for 0.
+    let thousandths = |v: &Vector3<f32>| [(v.x * 1e3) as i16, (v.y * 1e3) as i16, (v.z * 1e3) as i16];
+    let outcome = controller.outcome();
+    log.error_mm.iter().zip(thousandths(&outcome.error_m)).for_each(|(to, value)| to.store(value, Relaxed));
+    let rotation = thousandths(&controller.rotation_error_rad(edge::state(state).attitude));
+    log.rotation_mrad.iter().zip(rotation).for_each(|(to, value)| to.store(value, Relaxed));
+    let scale = 1e3 / controller.craft().airframe.figures().force_max_n;
+    let forces = match &outcome.output {
+        Output::Forces(forces) => *forces,
+        Output::Wrench(_) => [0.0; 4],
+    };
+    log.forces.iter().zip(forces).for_each(|(to, force)| to.store((force * scale) as u16, Relaxed));
+    log.limited.store(outcome.limited.bits(), Relaxed);
+    log.mode.store(controller.mode() as u8, Relaxed);
+    let counters = controller.counters();
+    log.bad_states.store(counters.bad_states, Relaxed);
+    log.bad_setpoints.store(counters.bad_setpoints, Relaxed);
+    log.limited_steps.store(counters.limited_steps, Relaxed);
+    log.jumps.store(counters.jumps, Relaxed);
+}
+
+/// The table in use, its margin and its gain.
+fn show_table(shared: &Shared, table: &Table) {
+    shared.log.table.store(table.id as u8, Relaxed);
+    shared.gains.scale_min.set(1.0 / table.margin);
+    shared.gains.scale_max.set(table.margin);
+    let shown = table.gains.shown();
+    shared.gains.entries.iter().zip(shown).for_each(|(to, entry)| to.set(entry));
+}

@@ -1,0 +1,156 @@
+//! What the firmware's parameters and logs look at: one C struct of atomics, which every task may read and write.
+//!
+//! `quatrack.h` has the same struct in C; [`LAYOUT`] is what both agree on.
+
+use core::sync::atomic::{AtomicI16, AtomicU8, AtomicU16, AtomicU32, Ordering::Relaxed};
+
+/// An `f32` that tasks may share: a C `float` in memory.
+#[repr(transparent)]
+#[derive(Debug)]
+pub struct AtomicF32(AtomicU32);
+
+impl AtomicF32 {
+    /// Holding a value.
+    pub const fn new(value: f32) -> Self {
+        Self(AtomicU32::new(value.to_bits()))
+    }
+
+    /// Its value.
+    pub fn get(&self) -> f32 {
+        f32::from_bits(self.0.load(Relaxed))
+    }
+
+    /// Gives it a value.
+    pub fn set(&self, value: f32) {
+        self.0.store(value.to_bits(), Relaxed);
+    }
+}
+
+/// Parameters, log variables and the gains in use.
+#[repr(C)]
+#[derive(Debug)]
+pub struct Shared {
+    /// What the owner sets.
+    pub parameters: Parameters,
+    /// What the owner sees.
+    pub log: Log,
+    /// What is flown, to be read.
+    pub gains: Gains,
+}
+
+/// Set by the owner; a value out of range counts as the nearest one in it.
+#[repr(C)]
+#[derive(Debug)]
+pub struct Parameters {
+    /// Factor on the feedback that moves the craft: thrust, roll and pitch; within the margin of the table's certificate.
+    pub position_scale: AtomicF32,
+    /// Factor on the feedback about the vertical, likewise.
+    pub yaw_scale: AtomicF32,
+    /// Farthest position error that is acted on, m.
+    pub leash_m: AtomicF32,
+    /// Largest speed of a velocity setpoint, m/s.
+    pub speed_m_s: AtomicF32,
+    /// Largest acceleration of a velocity setpoint, m/s^2.
+    pub acceleration_m_s2: AtomicF32,
+    /// Largest roll and pitch rate that a law may command through the body-rate loop, rad/s.
+    pub roll_pitch_rate_rad_s: AtomicF32,
+    /// Largest yaw rate, likewise, rad/s.
+    pub yaw_rate_rad_s: AtomicF32,
+    /// Time constant of this craft's motors as its owner knows it, s; 0 where only what is published is known.
+    pub motor_lag_s: AtomicF32,
+    /// The table to fly, by its number.
+    pub table: AtomicU8,
+    /// Whether the paper's laws are fed forward.
+    pub feed_forward: AtomicU8,
+}
+
+/// Written by the controller: 26 bytes that matter, for one log packet, then counters and figures for others.
+#[repr(C)]
+#[derive(Debug)]
+pub struct Log {
+    /// Position error, measured less asked, mm, world frame.
+    pub error_mm: [AtomicI16; 3],
+    /// Rotation error, mrad, body frame.
+    pub rotation_mrad: [AtomicI16; 3],
+    /// Forces that the motors should have, thousandths of the largest; 0 under a law of thrust and torque.
+    pub forces: [AtomicU16; 4],
+    /// What the last step had to give up, see `quatrack.h`.
+    pub limited: AtomicU16,
+    /// Processor cycles of the last step.
+    pub cycles: AtomicU16,
+    /// How the last setpoint is flown.
+    pub mode: AtomicU8,
+    /// The table in use.
+    pub table: AtomicU8,
+    /// Steps on estimates or gyroscope readings that nothing can be flown on: motors off.
+    pub bad_states: AtomicU16,
+    /// Setpoints that make no sense: level and slowly down.
+    pub bad_setpoints: AtomicU16,
+    /// Steps on which something was given up.
+    pub limited_steps: AtomicU16,
+    /// Setpoints that were not where the ones before led.
+    pub jumps: AtomicU16,
+    /// Tables that were asked for or sent and are not flown.
+    pub refused_tables: AtomicU16,
+    /// Why the last of them was not, see `quatrack.h`.
+    pub refusal: AtomicU16,
+}
+
+/// Read-only: the gain in use, as flown (scales included).
+#[repr(C)]
+#[derive(Debug)]
+pub struct Gains {
+    /// The smallest and the largest factor that the certificate allows.
+    pub scale_min: AtomicF32,
+    /// See [`Self::scale_min`].
+    pub scale_max: AtomicF32,
+    /// Entries of the gain: thrust from z, vz, force, integral of z; roll from y, vy, rotation, rate, force, integral of y;
+    /// pitch from x likewise; yaw from rotation, rate, force. Zero where a law has none.
+    pub entries: [AtomicF32; GAINS],
+}
+
+/// Entries of [`Gains`].
+pub const GAINS: usize = 19;
+
+const _: () = assert!(size_of::<Parameters>() == 36 && size_of::<Log>() == 38);
+const _: () = assert!(core::mem::offset_of!(Log, bad_states) == 26, "one log packet");
+
+impl Shared {
+    /// As it is when the craft is switched on.
+    pub(crate) const fn new() -> Self {
+        Self {
+            parameters: Parameters {
+                position_scale: AtomicF32::new(1.0),
+                yaw_scale: AtomicF32::new(1.0),
+                leash_m: AtomicF32::new(1.0),
+                speed_m_s: AtomicF32::new(1.5),
+                acceleration_m_s2: AtomicF32::new(4.0),
+                roll_pitch_rate_rad_s: AtomicF32::new(20.0),
+                yaw_rate_rad_s: AtomicF32::new(10.0),
+                motor_lag_s: AtomicF32::new(0.0),
+                table: AtomicU8::new(0),
+                feed_forward: AtomicU8::new(1),
+            },
+            log: Log {
+                error_mm: [const { AtomicI16::new(0) }; 3],
+                rotation_mrad: [const { AtomicI16::new(0) }; 3],
+                forces: [const { AtomicU16::new(0) }; 4],
+                limited: AtomicU16::new(0),
+                cycles: AtomicU16::new(0),
+                mode: AtomicU8::new(0),
+                table: AtomicU8::new(0),
+                bad_states: AtomicU16::new(0),
+                bad_setpoints: AtomicU16::new(0),
+                limited_steps: AtomicU16::new(0),
+                jumps: AtomicU16::new(0),
+                refused_tables: AtomicU16::new(0),
+                refusal: AtomicU16::new(0),
+            },
+            gains: Gains {
+                scale_min: AtomicF32::new(1.0),
+                scale_max: AtomicF32::new(1.0),
+                entries: [const { AtomicF32::new(0.0) }; GAINS],
+            },
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! Setpoints that arrive slowly, a hundred a second, each with its derivatives up to the jerk, in; the motion at every
+//! step between them, with snap and crackle, out.
+//!
+//! Between two setpoints the newest is extrapolated by its own derivatives. Snap and crackle come from backward
+//! differences of the jerks of successive setpoints: the difference of two jerks is the snap halfway between them, that of
+//! two such snaps the crackle in the middle, and each is carried on to the newest setpoint by the next. Nothing is differenced over a jump, over a gap
+//! of more than [`GAP_MAX_MS`], or from a stream that sends no jerk.
+
+use quatrack::FifthOrderSample;
+use quatrack::nalgebra::Vector3;
+
+use crate::demand::Motion;
+
+/// Longest time between two setpoints over which jerks are differenced, ms.
+pub const GAP_MAX_MS: u32 = 25;
+
+/// Longest time that a setpoint is extrapolated, ms; then the motion stands still where it has come to.
+pub const EXTRAPOLATION_MAX_MS: u32 = 100;
+
+/// Differences from what the last setpoint led to expect, beyond which a setpoint is a jump: m, m/s, m/s^2.
+const JUMP: [f32; 3] = [0.02, 0.2, 2.0];
+
+/// Largest snap (m/s^4) and crackle (m/s^5) that are taken for a motion, ten and fifty times those of the fastest flights;
+/// beyond lies the corner of a trajectory.
+const SNAP_MAX_M_S4: f32 = 1_000.0;
+const CRACKLE_MAX_M_S5: f32 = 25_000.0;
+
+/// The newest setpoint's motion, and what the ones before tell about it.
+#[derive(Clone, Copy, Debug)]
+pub struct Stream {
+    newest: Motion,
+    snap_m_s4: Vector3<f32>,
+    crackle_m_s5: Vector3<f32>,
+    /// First and second difference of the newest jerks, as far as there are enough of them, each over its time.
+    differences: [Option<Vector3<f32>>; 2],
+    /// Time between the newest two setpoints, s.
+    gap_s: f32,
+    /// When the newest came, ms; nothing before the first.
+    since_ms: Option<u32>,
+}
+
+/// What a setpoint was to the ones before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrival {
+    /// Their continuation.
+    Continued,
+    /// A new beginning: the first one, or one after a gap.
+    Begun,
+    /// Somewhere else.
+    Jumped,
+}
+
+impl Stream {
+    /// Nothing yet.
+    pub(crate) const fn new() -> Self {
+        Self {
+            newest: Motion::ZERO,
+            snap_m_s4: Vector3::new(0.0, 0.0, 0.0),
+            crackle_m_s5: Vector3::new(0.0, 0.0, 0.0),
+            differences: [None; 2],
+            gap_s: 0.0,
+            since_ms: None,
+        }
+    }
+
+    /// Takes a setpoint that has changed, at a time of a clock that may wrap.
+    pub fn accept(&mut self, motion: &Motion, now_ms: u32) -> Arrival {
+        let gap_ms = self.since_ms.map(|since_ms| now_ms.wrapping_sub(since_ms));
+        let arrival = match gap_ms {
+            Some(gap_ms) if (1..=GAP_MAX_MS).contains(&gap_ms) => self.difference(motion, gap_ms),
+            _ => Arrival::Begun,
+        };
+        if arrival != Arrival::Continued {
+            *self = Self::new();
+        }
+        self.newest = *motion;
+        self.since_ms = Some(now_ms);
+        arrival
+    }
+
+    /// The newest setpoint's motion as it was sent.
+    pub fn newest(&self) -> &Motion {
+        &self.newest
+    }
+
+    /// Time since the newest setpoint, as far as it is extrapolated; s.
+    pub fn age_s(&self, now_ms: u32) -> f32 {
+        let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
+        age_ms.min(EXTRAPOLATION_MAX_MS) as f32 * 1e-3
+    }
+
+    /// The motion at a time, heading aside, into `sample`; with snap and crackle only where they are asked for.
+    #[inline]
+    pub fn at(&self, now_ms: u32, to_fifth: bool, sample: &mut FifthOrderSample) {
+        let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
+        if age_ms > EXTRAPOLATION_MAX_MS {
+            return self.end(sample);
+        }
+        let t = age_ms as f32 * 1e-3;
+        if to_fifth { self.put_to_fifth(t, sample) } else { self.put_to_jerk(t, sample) }
+    }
+
+    #[inline]
+    fn put_to_jerk(&self, t: f32, sample: &mut FifthOrderSample) {
+        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
+        let (t2, t3) = (t * (1.0 / 2.0), t * (1.0 / 3.0));
+        let along = |p: f32, v: f32, a: f32, j: f32| (p + t * (v + t2 * (a + t3 * j)), v + t * (a + t2 * j), a + t * j);
+        let (x, y, z) = (along(p.x, v.x, a.x, j.x), along(p.y, v.y, a.y, j.y), along(p.z, v.z, a.z, j.z));
+        let flat = &mut sample.flat;
+        flat.position_m = Vector3::new(x.0, y.0, z.0);
+        flat.velocity_m_s = Vector3::new(x.1, y.1, z.1);
+        flat.acceleration_m_s2 = Vector3::new(x.2, y.2, z.2);
+        flat.jerk_m_s3 = *j;
+    }
+
+    #[inline]
+    fn put_to_fifth(&self, t: f32, sample: &mut FifthOrderSample) {
+        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
+        let (s, c) = (&self.snap_m_s4, &self.crackle_m_s5);
+        let (t2, t3, t4, t5) = (t * (1.0 / 2.0), t * (1.0 / 3.0), t * (1.0 / 4.0), t * (1.0 / 5.0));
+        let along = |p: f32, v: f32, a: f32, j: f32, s: f32, c: f32| {
+            (
+                p + t * (v + t2 * (a + t3 * (j + t4 * (s + t5 * c)))),
+                v + t * (a + t2 * (j + t3 * (s + t4 * c))),
+                a + t * (j + t2 * (s + t3 * c)),
+                j + t * (s + t2 * c),
+                s + t * c,
+            )
+        };
+        let x = along(p.x, v.x, a.x, j.x, s.x, c.x);
+        let y = along(p.y, v.y, a.y, j.y, s.y, c.y);
+        let z = along(p.z, v.z, a.z, j.z, s.z, c.z);
+        let flat = &mut sample.flat;
+        flat.position_m = Vector3::new(x.0, y.0, z.0);
+        flat.velocity_m_s = Vector3::new(x.1, y.1, z.1);
+        flat.acceleration_m_s2 = Vector3::new(x.2, y.2, z.2);
+        flat.jerk_m_s3 = Vector3::new(x.3, y.3, z.3);
+        sample.snap_m_s4 = Vector3::new(x.4, y.4, z.4);
+        sample.crackle_m_s5 = *c;
+    }
+
+    /// Where a motion without successors has come to.
+    #[cold]
+    #[inline(never)]
+    fn end(&self, sample: &mut FifthOrderSample) {
+        self.put_to_fifth(EXTRAPOLATION_MAX_MS as f32 * 1e-3, sample);
+        *sample = FifthOrderSample::at_rest(sample.flat.position_m, 0.0);
+    }
+
+    /// Snap and crackle at a setpoint that continues the ones before, so many milliseconds after the last of them.
+    fn difference(&mut self, motion: &Motion, gap_ms: u32) -> Arrival {
+        let gap_s = gap_ms as f32 * 1e-3;
+        let mut expected = FifthOrderSample::at_rest(motion.position_m, 0.0);
+        self.put_to_fifth(gap_s, &mut expected);
+        let expected = &expected.flat;
+        let is_near = |a: &Vector3<f32>, b: &Vector3<f32>, bound: f32| {
+            (a.x - b.x).abs() <= bound && (a.y - b.y).abs() <= bound && (a.z - b.z).abs() <= bound
+        };
+        let continues = is_near(&motion.position_m, &expected.position_m, JUMP[0])
+            && is_near(&motion.velocity_m_s, &expected.velocity_m_s, JUMP[1])
+            && is_near(&motion.acceleration_m_s2, &expected.acceleration_m_s2, JUMP[2]);
+        if !continues {
+            return Arrival::Jumped;
+        }
+        let (new, old) = (&motion.jerk_m_s3, &self.newest.jerk_m_s3);
+        let zero = Vector3::new(0.0, 0.0, 0.0);
+        if *new == zero {
+            (self.differences, self.snap_m_s4, self.crackle_m_s5) = ([None; 2], zero, zero);
+            return Arrival::Continued;
+        }
+        // The snap halfway between two jerks, the crackle at the middle one of three; what follows them by half a gap and
+        // by a whole one comes from the next difference.
+        let over = |a: &Vector3<f32>, b: &Vector3<f32>, rate: f32| {
+            Vector3::new((a.x - b.x) * rate, (a.y - b.y) * rate, (a.z - b.z) * rate)
+        };
+        let (per_gap, [snap_before, crackle_before]) = (1.0 / gap_s, self.differences);
+        let snap = over(new, old, per_gap);
+        let crackle = snap_before.map(|before| over(&snap, &before, 2.0 / (gap_s + self.gap_s)));
+        let growth = match (&crackle, &crackle_before) {
+            (Some(crackle), Some(before)) => over(crackle, before, per_gap),
+            _ => zero,
+        };
+        let ahead =
+            |a: &Vector3<f32>, b: &Vector3<f32>, t: f32| Vector3::new(a.x + t * b.x, a.y + t * b.y, a.z + t * b.z);
+        let middle = crackle.unwrap_or(zero);
+        let size = |v: &Vector3<f32>| v.x.abs() + v.y.abs() + v.z.abs();
+        if !(size(&snap) <= SNAP_MAX_M_S4 && size(&middle) <= CRACKLE_MAX_M_S5) {
+            return Arrival::Jumped;
+        }
+        self.snap_m_s4 = ahead(&snap, &ahead(&middle, &growth, 0.75 * gap_s), 0.5 * gap_s);
+        self.crackle_m_s5 = ahead(&middle, &growth, gap_s);
+        (self.differences, self.gap_s) = ([Some(snap), crackle], gap_s);
+        Arrival::Continued
+    }
+}

@@ -1,0 +1,163 @@
+//! A table over the app channel: packets of at most 31 bytes in, answers and, at the end, an accepted table out.
+//!
+//! ```text
+//! 1  length: u16  checksum: u32      announces a table, by its own checksum: its last four bytes
+//! 2  offset: u16  bytes: 1 to 28     its next bytes
+//! 3                                  all sent: check it and make it the uploaded table
+//! ```
+//!
+//! Little-endian. Every packet is answered with its own first byte, a [`Status`] and the offset of the next bytes (u16).
+//! The table is the file of docs/gain-tables.md; nothing of it is used before all of it has come and been checked.
+
+use quatrack::gains::table::{
+    ACTUATOR_TABLE_BYTES, AcceptedActuatorTable, AcceptedTable, ActuatorTable, LoadError, TableError, TableKind,
+    Vehicle,
+};
+use quatrack::link::{BlobKind, BlobReceiver, Chunk, UploadBegin, UploadError};
+
+use crate::craft::RATE;
+
+/// `APPCHANNEL_MTU`.
+pub const PACKET_BYTES: usize = 31;
+
+/// CRC-32C of anything that ends with its own CRC-32C, as every table does: it tells a whole table, not one from another.
+const RESIDUE: u32 = 0x4867_4bc7;
+
+/// A packet of the app channel, as our app passes it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Packet {
+    /// How many of the bytes count.
+    pub length: u8,
+    /// Its bytes.
+    pub bytes: [u8; PACKET_BYTES],
+}
+
+/// How a packet was taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Status {
+    /// As it should be; after packet 3 the table is there.
+    Taken = 0,
+    /// No packet of this kind or length.
+    Unknown = 1,
+    /// Nothing has been announced.
+    NotBegun = 2,
+    /// Longer than any table, or empty.
+    Length = 3,
+    /// Not the next bytes: go on from the offset in the answer.
+    Offset = 4,
+    /// Not all has been sent.
+    Incomplete = 5,
+    /// Not what was announced: begin again.
+    Checksum = 6,
+    /// No sound table with a valid certificate.
+    Table = 7,
+    /// A table for another vehicle or another control rate.
+    Vehicle = 8,
+    /// The controller is busy, or has not been told which craft this is: again.
+    Busy = 9,
+}
+
+/// A table as it has come, for this craft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "nothing is allocated: the largest has to have its place anyway")]
+pub enum Sent {
+    /// For thrust and body rates.
+    BodyRates(AcceptedTable),
+    /// For motor forces.
+    Motors(AcceptedActuatorTable),
+}
+
+/// The receiving end.
+pub struct Uploads {
+    receiver: BlobReceiver<ACTUATOR_TABLE_BYTES>,
+}
+
+impl Uploads {
+    /// Nothing announced.
+    pub(crate) const fn new() -> Self {
+        Self { receiver: BlobReceiver::new() }
+    }
+
+    /// Takes a packet; with the last one comes the table.
+    pub fn take(&mut self, packet: &Packet, vehicle: &Vehicle) -> (Packet, Option<Sent>) {
+        let bytes = packet.bytes.get(..usize::from(packet.length)).unwrap_or_default();
+        let (status, table) = match bytes {
+            [1, l0, l1, c0, c1, c2, c3] => {
+                let checksum = u32::from_le_bytes([*c0, *c1, *c2, *c3]);
+                let length = u32::from(u16::from_le_bytes([*l0, *l1]));
+                let begin = UploadBegin { kind: BlobKind::GainTable, id: checksum, length, checksum: RESIDUE };
+                (self.receiver.begin(&begin).map_or_else(status_of, |_| Status::Taken), None)
+            }
+            [2, o0, o1, bytes @ ..] => (self.chunk(u16::from_le_bytes([*o0, *o1]), bytes), None),
+            [3] => self.commit(vehicle),
+            _ => (Status::Unknown, None),
+        };
+        let kind = bytes.first().copied().unwrap_or_default();
+        (self.answer(kind, status), table)
+    }
+
+    /// The answer to a packet of some kind.
+    pub fn answer(&self, kind: u8, status: Status) -> Packet {
+        let wanted = self.receiver.progress().map_or(0, |progress| progress.wanted_offset);
+        let [w0, w1] = u16::try_from(wanted).unwrap_or(u16::MAX).to_le_bytes();
+        let mut bytes = [0; PACKET_BYTES];
+        let [b0, b1, b2, b3, ..] = &mut bytes;
+        (*b0, *b1, *b2, *b3) = (kind, status as u8, w0, w1);
+        Packet { length: 4, bytes }
+    }
+
+    fn chunk(&mut self, offset: u16, bytes: &[u8]) -> Status {
+        let Ok(progress) = self.receiver.progress() else { return Status::NotBegun };
+        let Some(chunk) = Chunk::new(progress.id, u32::from(offset), bytes) else { return Status::Unknown };
+        self.receiver.chunk(&chunk).map_or_else(status_of, |_| Status::Taken)
+    }
+
+    fn commit(&mut self, vehicle: &Vehicle) -> (Status, Option<Sent>) {
+        let Ok(progress) = self.receiver.progress() else { return (Status::NotBegun, None) };
+        let blob = match self.receiver.finish(progress.id) {
+            Ok((_, blob)) => blob,
+            Err(error) => return (status_of(error), None),
+        };
+        match read(blob, vehicle) {
+            Ok(table) => (Status::Taken, Some(table)),
+            Err(LoadError::Table(_)) => (Status::Table, None),
+            Err(LoadError::Accept(_)) => (Status::Vehicle, None),
+        }
+    }
+}
+
+fn read(blob: &[u8], vehicle: &Vehicle) -> Result<Sent, LoadError> {
+    match AcceptedTable::from_bytes(blob, vehicle, RATE) {
+        Err(LoadError::Table(TableError::OtherKind { kind: TableKind::ActuatorAware })) => {
+            let table = ActuatorTable::from_bytes(blob)?.accept_for(vehicle, RATE)?;
+            Ok(Sent::Motors(table))
+        }
+        other => other.map(Sent::BodyRates),
+    }
+}
+
+fn status_of(error: UploadError) -> Status {
+    match error {
+        UploadError::NotBegun | UploadError::OtherBlob { .. } => Status::NotBegun,
+        UploadError::Length { .. } => Status::Length,
+        UploadError::Offset { .. } => Status::Offset,
+        UploadError::ChunkLength { .. } => Status::Unknown,
+        UploadError::Incomplete { .. } => Status::Incomplete,
+        UploadError::Checksum { .. } => Status::Checksum,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use quatrack::checksum::crc32c;
+
+    #[test]
+    fn the_residue_is_that_of_any_bytes() {
+        for bytes in [&b""[..], b"table", &[7; 300]] {
+            assert_eq!(crc32c(&[bytes, &crc32c(bytes).to_le_bytes()].concat()), RESIDUE);
+        }
+    }
+}
