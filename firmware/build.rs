@@ -5,8 +5,18 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 /// What computes commands, seen from the workspace's root.
-const CONTROL_PATH: [&str; 5] =
-    ["core/src", "plans", "firmware/src/control.rs", "firmware/src/flight.rs", "firmware/src/playback.rs"];
+const CONTROL_PATH: [&str; 10] = [
+    "core/src",
+    "plans",
+    "gains/generated/actuator-aware.rs",
+    "firmware/src/control.rs",
+    "firmware/src/flight.rs",
+    "firmware/src/flight",
+    "firmware/src/laws.rs",
+    "firmware/src/motor_control.rs",
+    "firmware/src/playback.rs",
+    "firmware/src/playback",
+];
 
 fn main() -> io::Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 
 use crate::command::Command;
 use crate::reference::FlatSample;
+use crate::rigid_state::RigidState;
 use crate::state::State;
 use crate::tracker::Step;
 
@@ -16,6 +17,12 @@ impl Format for State {
     fn format(&self, f: Formatter<'_>) {
         let (r, v) = (xyz(&self.position_m), xyz(&self.velocity_m_s));
         write!(f, "State {{ r {} m, {}, v {} m/s }}", r, self.attitude, v);
+    }
+}
+
+impl Format for RigidState {
+    fn format(&self, f: Formatter<'_>) {
+        write!(f, "RigidState {{ {}, {} rad/s }}", self.state, xyz(&self.body_rates_rad_s));
     }
 }
 

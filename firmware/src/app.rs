@@ -11,9 +11,12 @@ mod app {
 
     use heapless::spsc::Queue;
     use quatrack::Tick;
-    use quatrack::link::{FRAME_BYTES, FromBoard, LoopStatistics};
+    use quatrack::link::{FRAME_BYTES, LoopStatistics};
     use quatrack_firmware::board::crazyflie_2_1 as board;
+    use quatrack_firmware::board::i2c::Bus;
+    use quatrack_firmware::board::pwm::Channel;
     use quatrack_firmware::counter::Counter;
+    use quatrack_firmware::craft::BoardCraft;
     use quatrack_firmware::flight::{Flight, Store};
     use quatrack_firmware::session::{Session, Shared as SharedFlight, Uploads, Vitals};
     use quatrack_firmware::timing::Timing;
@@ -36,6 +39,7 @@ mod app {
 
     #[local]
     struct Local {
+        craft: BoardCraft<Bus, Channel>,
         receiver: Receiver,
         session: Session,
         line: Line,
@@ -59,9 +63,13 @@ mod app {
             timing: Timing::new(board.clocks.counts_per_tick),
             counter: board.counter,
         };
-        defmt::info!("core {=u32} Hz, TIM2 {=u32} counts a tick", board.clocks.core_hz, board.clocks.counts_per_tick);
+        defmt::info!("core {=u32} Hz, TIM5 {=u32} counts a tick", board.clocks.core_hz, board.clocks.counts_per_tick);
+        if let Err(error) = &board.gyro {
+            defmt::warn!("no gyroscope: {=str}", error.kind());
+        }
+        let craft = BoardCraft { gyro: board.gyro.ok(), motors: board.motors };
         let receiver = Receiver::new(producer, &DROPPED_BYTES);
-        (shared, Local { receiver, session: Session::new(context.local.uploads, fault), line })
+        (shared, Local { craft, receiver, session: Session::new(context.local.uploads, fault), line })
     }
 
     #[task(binds = USART2, priority = 3, local = [receiver])]
@@ -76,10 +84,10 @@ mod app {
         }
     }
 
-    #[task(binds = CAN2_SCE, priority = 1, shared = [flight, &timing, &counter])]
+    #[task(binds = CAN2_SCE, priority = 1, local = [craft], shared = [flight, &timing, &counter])]
     fn control(mut context: control::Context) {
-        let (timing, counter) = (context.shared.timing, *context.shared.counter);
-        context.shared.flight.lock(|flight| quatrack_firmware::tick::control(flight, timing, counter));
+        let (timing, counter, craft) = (context.shared.timing, *context.shared.counter, context.local.craft);
+        context.shared.flight.lock(|flight| quatrack_firmware::tick::control(flight, timing, counter, craft));
     }
 
     #[idle(local = [session, line], shared = [flight, &timing])]
@@ -100,14 +108,14 @@ mod app {
                     cortex_m::asm::dsb();
                     cortex_m::asm::isb();
                 }
-                let command = flight.with(Flight::take_answer).map(FromBoard::Command);
+                let command = flight.with(Flight::take_message);
                 for message in answers.iter().chain(&command) {
                     if let Some(frame) = session.frame(message, &mut frame) {
                         line.send(frame);
                     }
                 }
             }
-            let command = flight.with(Flight::take_answer).map(FromBoard::Command);
+            let command = flight.with(Flight::take_message);
             for message in command.into_iter().chain(session.unasked(&mut flight, &vitals)) {
                 if let Some(frame) = session.frame(&message, &mut frame) {
                     line.send(frame);

@@ -1,9 +1,9 @@
-//! TIM2 as a free-running counter: the timer in, counts out.
+//! TIM5 as a free-running counter: the timer in, counts out.
 //!
 //! On the board it counts the timer's clock. Under QEMU with `-icount shift=0` an instruction takes a nanosecond and the
 //! emulated timer runs at 1 GHz, so that it counts instructions; who relies on that measures it first.
 
-use stm32f4::stm32f405::{RCC, TIM2};
+use stm32f4::stm32f405::{RCC, TIM5};
 
 /// The running counter, for any interrupt to read.
 #[derive(Clone, Copy)]
@@ -15,8 +15,8 @@ pub struct Counter {
 impl Counter {
     /// Starts the timer over the whole range of 32 bits, without prescaler. Nobody gets at it afterwards.
     #[allow(clippy::needless_pass_by_value, reason = "the timer is taken away from whoever had it")]
-    pub fn start(timer: TIM2, rcc: &RCC) -> Self {
-        rcc.apb1enr().modify(|_, w| w.tim2en().enabled());
+    pub fn start(timer: TIM5, rcc: &RCC) -> Self {
+        rcc.apb1enr().modify(|_, w| w.tim5en().enabled());
         timer.arr().write(|w| w.set(u32::MAX));
         timer.psc().reset();
         // Takes the prescaler over.
@@ -31,6 +31,6 @@ impl Counter {
     pub fn now(&self) -> u32 {
         let () = self.running;
         // SAFETY: reading the count changes nothing.
-        unsafe { TIM2::steal() }.cnt().read().bits()
+        unsafe { TIM5::steal() }.cnt().read().bits()
     }
 }

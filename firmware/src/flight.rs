@@ -1,14 +1,27 @@
-//! The flight: states, orders and ticks in; gated commands and answers out. What the control interrupt owns.
+//! The flight: states, orders and ticks in; gated commands, motor forces and answers out. What the control interrupt owns.
+
+#[cfg(not(feature = "motors"))]
+#[path = "flight/commands_only.rs"]
+mod motors;
+#[cfg(feature = "motors")]
+mod motors;
 
 use quatrack::command::LimitsError;
 use quatrack::gains::table::AcceptedTable;
-use quatrack::link::{CommandOut, GainStore, LawChoice, LimitsSetting, NoCommand, StateIn};
+use quatrack::link::{
+    CommandOut, FromBoard, GainStore, LawChoice, LimitsSetting, NoCommand, RigidStateIn, StateIn, Table,
+};
 use quatrack::supervisor::{ArmError, Conditions, Config, Fault, Mode, StepReport, Supervisor, Verdict};
-use quatrack::{Command, Limited, Limits, Rate, State, Step, Tick};
+use quatrack::{Command, Limited, Limits, MotorForces, Rate, RigidState, State, Step, Tick};
 
 use crate::control::{self, Clock, CommandSink, StateSource};
+use crate::craft::BodyRates;
 use crate::laws::{FADE_STEPS, Laws, Refused};
+use crate::motor_control::STOPPED;
 use crate::playback::{self, Playback};
+
+use self::motors::StepInput;
+pub use self::motors::ToMotors;
 
 /// Ticks of the loop a second.
 pub const TICK_RATE_HZ: u32 = 1000;
@@ -32,12 +45,12 @@ pub const CONFIG: Config = Config { state_age_max_ticks: 50, link_silence_max_ti
 const LIMITS: LimitsSetting =
     LimitsSetting { thrust_min_m_s2: 1.768, thrust_max_m_s2: 16.55, body_rates_max_rad_s: [20.0, 20.0, 10.0] };
 
-/// The command as the motors get it. There are none yet: kept for who asks.
-struct Motors {
+/// The command that passes.
+struct Passed {
     command: Command,
 }
 
-impl CommandSink for Motors {
+impl CommandSink for Passed {
     #[inline]
     fn put(&mut self, command: &Command) {
         self.command = *command;
@@ -99,11 +112,13 @@ pub struct Flight {
     pub playback: Playback,
     /// The bounds of a flight.
     pub config: Config,
+    /// What carries the law to the motors.
+    pub motors: ToMotors,
     supervisor: Supervisor,
     decimation: u32,
     last_report: StepReport,
     fault: Option<Fault>,
-    motors: Motors,
+    passed: Passed,
     /// The last step and its result, kept in place: it is as large as a command may be.
     answer: CommandOut,
     is_answer_new: bool,
@@ -132,7 +147,8 @@ impl Flight {
             decimation: DECIMATION,
             last_report: StepReport::NoReference,
             fault,
-            motors: Motors { command: Command::ZERO },
+            motors: ToMotors::new(),
+            passed: Passed { command: Command::ZERO },
             answer: CommandOut { tick: 0, state_tick: 0, result: Ok(nothing) },
             is_answer_new: false,
             steps: 0,
@@ -147,7 +163,15 @@ impl Flight {
 
     /// Takes a state. In lock-step it is to be stepped on at once.
     pub fn accept(&mut self, state: StateIn, now: Tick) {
+        self.motors.accept(None);
         self.arrived = Some(Arrived { state, at: now, answered: false });
+    }
+
+    /// The same with body rates.
+    pub fn accept_rigid(&mut self, state: RigidStateIn, now: Tick) {
+        let RigidStateIn { tick, state: RigidState { state, body_rates_rad_s } } = state;
+        self.accept(StateIn { tick, state }, now);
+        self.motors.accept(Some(body_rates_rad_s));
     }
 
     /// Whether a state waits for its step.
@@ -165,24 +189,39 @@ impl Flight {
         self.decimation
     }
 
-    /// Sets the ticks for one step. Gain tables for another rate are dropped.
+    /// Sets the ticks for one step. Gain tables for another rate are dropped, the actuator-aware one too.
     pub fn set_decimation(&mut self, decimation: u32) {
         self.decimation = decimation;
         self.laws.set_rate(step_rate(decimation));
+        if !self.is_actuator_aware_rate() {
+            self.motors.follow_commands();
+        }
+    }
+
+    /// Whether the steps come at the rate that the actuator-aware table is made for.
+    fn is_actuator_aware_rate(&self) -> bool {
+        step_rate(self.decimation) == step_rate(DECIMATION)
     }
 
     /// The law in force.
     pub fn law(&self) -> LawChoice {
-        self.laws.choice()
+        if self.motors.is_straight() { LawChoice::new(Table::ActuatorAware) } else { self.laws.choice() }
     }
 
-    /// Chooses a law, from the next step on; in flight over [`FADE_STEPS`].
+    /// Chooses a law, from the next step on; in flight over [`FADE_STEPS`], but to and from the actuator-aware one at once:
+    /// the motors' lag takes the edge off.
     ///
     /// # Errors
     /// As [`Laws::select`].
     #[cold]
     pub fn select(&mut self, law: LawChoice) -> Result<(), Refused> {
-        self.laws.select(law, self.fade_steps())
+        if law.table == Table::ActuatorAware {
+            let is_its_rate = self.is_actuator_aware_rate();
+            return if self.motors.go_straight(is_its_rate) { Ok(()) } else { Err(Refused::NoTable) };
+        }
+        self.laws.select(law, self.fade_steps())?;
+        self.motors.follow_commands();
+        Ok(())
     }
 
     /// The rate of the steps that gain tables must be certified at, if there are any for it. In lock-step the states are
@@ -201,9 +240,9 @@ impl Flight {
         self.laws.load(table, self.fade_steps())
     }
 
-    /// On the ground there is nothing to jump.
+    /// On the ground there is nothing to jump, and nothing to fade out of what is not flown.
     fn fade_steps(&self) -> u16 {
-        if self.mode().motors_allowed() { FADE_STEPS } else { 0 }
+        if self.mode().motors_allowed() && !self.motors.is_straight() { FADE_STEPS } else { 0 }
     }
 
     /// The limits in force.
@@ -236,6 +275,7 @@ impl Flight {
         // Asked again in flight, nothing changes.
         if !self.mode().motors_allowed() {
             self.laws.settle();
+            self.motors.begin();
         }
         self.supervisor.arm(&self.config, age(self.heard_at, now))
     }
@@ -243,7 +283,7 @@ impl Flight {
     /// Takes a disarm request.
     pub fn disarm(&mut self) {
         self.supervisor.disarm();
-        self.motors.put(&Command::ZERO);
+        self.stop();
     }
 
     /// The supervisor's mode.
@@ -251,15 +291,38 @@ impl Flight {
         self.supervisor.mode()
     }
 
-    /// What the motors are told.
+    /// The command that passes; zero under a law that gives none.
     pub fn command(&self) -> &Command {
-        &self.motors.command
+        &self.passed.command
+    }
+
+    /// The motor forces that pass, N.
+    pub fn forces_n(&self) -> &MotorForces {
+        self.motors.forces_n()
+    }
+
+    /// Those that motors are to be driven to: none in lock-step, where it is not this craft that flies.
+    #[inline]
+    pub fn driven_forces_n(&self) -> &MotorForces {
+        if self.is_lock_step() { &STOPPED } else { self.motors.forces_n() }
+    }
+
+    /// Whether the next step is to be given the craft's own body rates.
+    #[inline]
+    pub fn takes_body_rates(&self) -> bool {
+        !self.is_lock_step() && self.supervisor.mode().motors_allowed()
     }
 
     /// The answer to the last state, once.
+    pub fn take_message(&mut self) -> Option<FromBoard> {
+        let is_new = core::mem::take(&mut self.is_answer_new);
+        is_new.then(|| self.motors.message().unwrap_or(FromBoard::Command(self.answer)))
+    }
+
+    /// The same, if it is a command.
     pub fn take_answer(&mut self) -> Option<CommandOut> {
         let is_new = core::mem::take(&mut self.is_answer_new);
-        is_new.then_some(self.answer)
+        (is_new && self.motors.message().is_none()).then_some(self.answer)
     }
 
     /// Steps taken, and those without a command.
@@ -272,29 +335,43 @@ impl Flight {
     pub fn fail(&mut self, fault: Fault, now: Tick) {
         self.fault = Some(fault);
         self.supervise(now, StepReport::Failed, false);
-        self.motors.put(&Command::ZERO);
+        self.stop();
     }
 
     /// One control step at a tick of the board: step, supervise, gate, and answer the state if it is new.
     #[inline]
-    pub fn step(&mut self, now: Tick, overrun: bool) {
+    pub fn step(&mut self, now: Tick, overrun: bool, rates: BodyRates) {
         self.steps = self.steps.wrapping_add(1);
         let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
-        self.answer.result = if self.supervisor.mode().motors_allowed() {
-            let clock = StepClock(if self.is_lock_step() { state_tick } else { now });
-            control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &mut self.laws)
-        } else {
+        let clock = StepClock(if self.is_lock_step() { state_tick } else { now });
+        self.answer.result = if !self.supervisor.mode().motors_allowed() {
             Err(NoCommand::Mode(self.supervisor.mode()))
+        } else if self.motors.is_straight() {
+            Err(if self.arrived.is_some() { NoCommand::NoBodyRates } else { NoCommand::NoReference })
+        } else {
+            control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &mut self.laws)
         };
-        let report = match &self.answer.result {
-            Ok(_) => StepReport::Command,
-            Err(NoCommand::NoReference | NoCommand::Mode(_)) => StepReport::NoReference,
-            Err(NoCommand::Reference(_) | NoCommand::Step(_)) => StepReport::Failed,
+        let input = StepInput {
+            now,
+            state_tick,
+            reference_tick: clock.now(),
+            mode: self.supervisor.mode(),
+            rates,
+            state: self.arrived.as_ref().map(|arrived| &arrived.state.state),
+            command: &self.answer.result,
+        };
+        self.motors.step(&input, &mut self.playback);
+        let report = match self.motors.refusal(&self.answer.result) {
+            None => StepReport::Command,
+            Some(NoCommand::NoReference | NoCommand::Mode(_)) => StepReport::NoReference,
+            Some(NoCommand::Reference(_) | NoCommand::Step(_) | NoCommand::NoBodyRates) => StepReport::Failed,
         };
         let verdict = self.supervise(now, report, overrun);
-        match &self.answer.result {
-            Ok(step) if verdict.mode.command_passes() => self.motors.put(&step.command),
-            _ => self.stand_still(verdict.mode),
+        if report == StepReport::Command && verdict.mode.command_passes() {
+            self.passed.put(self.answer.result.as_ref().map_or(&Command::ZERO, |step| &step.command));
+            self.motors.pass();
+        } else {
+            self.stand_still(verdict.mode);
         }
         (self.answer.tick, self.answer.state_tick) = (now, state_tick);
         if let Some(arrived) = &mut self.arrived {
@@ -308,14 +385,22 @@ impl Flight {
         if self.answer.result.is_ok() {
             self.answer.result = Err(NoCommand::Mode(mode));
         }
+        self.motors.withdraw(mode);
         self.steps_failed = self.steps_failed.wrapping_add(1);
-        self.motors.put(&Command::ZERO);
+        self.stop();
+    }
+
+    /// Nothing passes.
+    #[inline]
+    fn stop(&mut self) {
+        self.passed.put(&Command::ZERO);
+        self.motors.stop();
     }
 
     /// A tick without a step: looks at the ages, and stops the motors where they are too high.
     pub fn watch(&mut self, now: Tick, overrun: bool) {
         if !self.supervise(now, self.last_report, overrun).mode.command_passes() {
-            self.motors.put(&Command::ZERO);
+            self.stop();
         }
     }
 

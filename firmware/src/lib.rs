@@ -9,20 +9,27 @@
 //!     panic                   the handler that cannot link
 //!   tick                      what the timer's interrupts run
 //!   session                   frames in, orders to the flight, frames out
-//!     flight                  states, orders, ticks in; gated commands out
+//!     flight                  states, orders, ticks in; gated commands and motor forces out
 //!       laws                  which law is flown: built in, or of a loaded table
 //!       playback, stored      what is followed; the trajectories in flash
+//!         motor_control       laws carried to the motors
 //!         control, timing     the step against traits; overruns, jitter, the longest step
+//!     craft                   a flight's gyroscope and motors
+//!       drivers               BMI088, brushed motors, battery, against the traits of `embedded-hal`
 //! ```
 //!
-//! From `session` down nothing knows the hardware, and all of it is tested on the host.
+//! From `session` and `craft` down nothing knows the hardware, and all of it is tested on the host.
 #![cfg_attr(not(test), no_std)]
 #![warn(clippy::unwrap_used, clippy::expect_used)]
 
 pub mod control;
+pub mod craft;
+pub mod drivers;
 pub mod flight;
 pub mod laws;
+pub mod motor_control;
 pub mod playback;
+#[cfg(feature = "motors")]
 pub mod session;
 pub mod stored;
 pub mod timing;

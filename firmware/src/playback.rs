@@ -1,5 +1,7 @@
 //! What is followed: orders from the link in, the flat output of a tick out.
 
+mod motors;
+
 use quatrack::link::{TRAJECTORY_PIECES, TrajectoryStore};
 use quatrack::nalgebra::Vector3;
 use quatrack::trajectory::Bookmark;

@@ -9,6 +9,7 @@ use quatrack::link::{
     TrajectoryCommand, TrajectoryId, UploadBegin, Version,
 };
 
+use crate::drivers::battery::CellVoltage;
 use crate::flight::{Flight, TICK_RATE_HZ};
 use crate::laws::{Refused, VEHICLE};
 use crate::stored;
@@ -93,6 +94,10 @@ impl Session {
                     flight.playback.follow(sample);
                     flight.accept(state, now);
                 });
+                None
+            }
+            ToBoard::RigidState(state) => {
+                flight.with(|flight| flight.accept_rigid(state, now));
                 None
             }
             ToBoard::TelemetryRequest => Some(self.telemetry(flight, vitals)),
@@ -228,11 +233,13 @@ impl Session {
             ParameterId::OverrunsTolerated => Parameter::OverrunsTolerated(flight.config.overruns_tolerated),
             ParameterId::TelemetryPeriodTicks => Parameter::TelemetryPeriodTicks(self.telemetry_period_ticks),
             ParameterId::UploadsRefused => Parameter::UploadsRefused(self.uploads_refused),
+            ParameterId::BatteryVoltage => Parameter::BatteryVoltage(flight.motors.battery().volts()),
+            ParameterId::BodyRateBandwidth => Parameter::BodyRateBandwidth(flight.motors.bandwidth_rad_s()),
         })
     }
 
     fn set(&mut self, parameter: Parameter, flight: &mut impl Shared, vitals: &impl Vitals) -> Result<(), Refusal> {
-        if !matches!(parameter, Parameter::TelemetryPeriodTicks(_)) {
+        if !matches!(parameter, Parameter::TelemetryPeriodTicks(_) | Parameter::BatteryVoltage(_)) {
             disarmed(flight)?;
         }
         let within = |value: u32, max: u32| if value <= max { Ok(value) } else { Err(Refusal::OutOfRange) };
@@ -259,6 +266,14 @@ impl Session {
             }
             Parameter::TelemetryPeriodTicks(ticks) => self.telemetry_period_ticks = ticks,
             Parameter::UploadsRefused(_) => return Err(Refusal::ReadOnly),
+            Parameter::BatteryVoltage(voltage_v) => {
+                let battery = CellVoltage::new(voltage_v).map_err(|_| Refusal::OutOfRange)?;
+                flight.with(|flight| flight.motors.set_battery(battery));
+            }
+            Parameter::BodyRateBandwidth(bandwidth_rad_s) => {
+                let set = flight.with(|flight| flight.motors.set_bandwidth(bandwidth_rad_s));
+                set.map_err(|_| Refusal::OutOfRange)?;
+            }
         }
         Ok(())
     }

@@ -3,13 +3,15 @@
 use quatrack::supervisor::Fault;
 
 use crate::counter::Counter;
+use crate::craft::{BodyRates, Craft};
 use crate::flight::Flight;
 use crate::stack;
 use crate::timing::Timing;
 
-/// The control interrupt: looks at the stack, steps if a step is due, watches the ages if not, and times itself.
+/// The control interrupt: looks at the stack, steps if a step is due, watches the ages if not, drives the motors, and
+/// times itself. In lock-step with a simulation the craft is left alone: its motors stay off.
 #[inline]
-pub fn control(flight: &mut Flight, timing: &Timing, counter: Counter) {
+pub fn control(flight: &mut Flight, timing: &Timing, counter: Counter, craft: &mut impl Craft) {
     let begun = counter.now();
     let (due, overran) = timing.on_begin();
     let now = timing.now();
@@ -18,9 +20,11 @@ pub fn control(flight: &mut Flight, timing: &Timing, counter: Counter) {
     }
     let steps = if flight.is_lock_step() { flight.is_waiting() } else { due };
     if steps {
-        flight.step(now, overran);
+        let rates = if flight.takes_body_rates() { craft.body_rates() } else { BodyRates::NoGyroscope };
+        flight.step(now, overran, rates);
     } else {
         flight.watch(now, overran);
     }
+    craft.drive(flight.driven_forces_n(), flight.motors.battery());
     timing.on_end(begun, counter.now(), due);
 }

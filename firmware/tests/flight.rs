@@ -4,6 +4,7 @@ use quatrack::link::{CommandOut, LawChoice, NoCommand, StateIn, Table, Trajector
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{Fault, Mode, StopReason};
 use quatrack::{Command, FlatSample, State, Tick};
+use quatrack_firmware::craft::BodyRates;
 use quatrack_firmware::flight::{CONFIG, DECIMATION, Flight};
 use quatrack_firmware::stored;
 
@@ -24,7 +25,7 @@ fn flying(now: Tick) -> Flight {
     flight.hear(now);
     flight.arm(now).expect("the link has just been heard");
     flight.accept(StateIn { tick: 7, state: low() }, now);
-    flight.step(now, false);
+    flight.step(now, false, BodyRates::NoGyroscope);
     assert_eq!(flight.mode(), Mode::Flying);
     assert!(flight.command().thrust_m_s2 > 9.81, "it climbs");
     flight
@@ -45,7 +46,7 @@ fn a_state_is_answered_once_with_the_tick_that_it_came_with() {
         panic!("the state has no answer");
     };
     assert_eq!(&step.command, flight.command());
-    flight.step(102, false);
+    flight.step(102, false, BodyRates::NoGyroscope);
     assert_eq!(flight.take_answer(), None, "the same state again is no new one");
     assert_eq!(flight.mode(), Mode::Flying);
 }
@@ -55,7 +56,7 @@ fn before_it_is_armed_it_commands_nothing() {
     let mut flight = board(None);
     flight.playback.start(stored::player(TrajectoryId::Mild).expect("it is in flash"));
     flight.accept(StateIn { tick: 0, state: low() }, 0);
-    flight.step(0, false);
+    flight.step(0, false, BodyRates::NoGyroscope);
     assert_eq!(flight.command(), &Command::ZERO);
     let answer = flight.take_answer().expect("even so the state is answered");
     assert_eq!(answer.result, Err(NoCommand::Mode(Mode::Disarmed(None))));
@@ -71,7 +72,7 @@ fn an_old_state_ends_the_flight_between_steps_too() {
             now += DECIMATION;
             flight.hear(now);
             if stepping {
-                flight.step(now, false);
+                flight.step(now, false, BodyRates::NoGyroscope);
             } else {
                 flight.watch(now, false);
             }
@@ -96,10 +97,10 @@ fn a_silent_link_ends_the_flight() {
 fn overruns_in_a_row_end_the_flight() {
     let mut flight = flying(0);
     for tick in 1..=CONFIG.overruns_tolerated {
-        flight.step(tick, true);
+        flight.step(tick, true, BodyRates::NoGyroscope);
         assert_eq!(flight.mode(), Mode::Flying, "so many are tolerated");
     }
-    flight.step(CONFIG.overruns_tolerated + 1, true);
+    flight.step(CONFIG.overruns_tolerated + 1, true, BodyRates::NoGyroscope);
     assert_eq!(stopped(&flight), Some(StopReason::Overrun));
 }
 
@@ -107,13 +108,13 @@ fn overruns_in_a_row_end_the_flight() {
 fn a_step_without_a_command_ends_the_flight() {
     let mut flight = flying(0);
     flight.accept(StateIn { tick: 9, state: State::at_rest(Vector3::new(f32::NAN, 0.0, 0.0)) }, 2);
-    flight.step(2, false);
+    flight.step(2, false, BodyRates::NoGyroscope);
     assert_eq!(stopped(&flight), Some(StopReason::StepFailed));
     assert_eq!(flight.steps(), (2, 1));
 
     let mut flight = flying(0);
     flight.playback.follow(FlatSample::at_rest(Vector3::new(0.0, 0.0, f32::INFINITY), 0.0));
-    flight.step(2, false);
+    flight.step(2, false, BodyRates::NoGyroscope);
     assert_eq!(stopped(&flight), Some(StopReason::StepFailed));
 }
 
@@ -121,7 +122,7 @@ fn a_step_without_a_command_ends_the_flight() {
 fn nothing_to_follow_ends_the_flight() {
     let mut flight = flying(0);
     flight.playback.stop();
-    flight.step(2, false);
+    flight.step(2, false, BodyRates::NoGyroscope);
     assert_eq!(stopped(&flight), Some(StopReason::NoReference));
 }
 
@@ -137,7 +138,7 @@ fn a_fault_stays_until_a_restart() {
     let mut flight = flying(0);
     flight.fail(Fault::StackExhausted, 1);
     assert_eq!((flight.mode(), *flight.command()), (Mode::Faulted(Fault::StackExhausted), Command::ZERO));
-    flight.step(2, false);
+    flight.step(2, false, BodyRates::NoGyroscope);
     assert_eq!(flight.command(), &Command::ZERO);
     assert!(flight.arm(2).is_err());
     assert_eq!(board(Some(Fault::HardFault)).mode(), Mode::Faulted(Fault::HardFault), "or from one");

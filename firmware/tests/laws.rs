@@ -5,6 +5,7 @@ use quatrack::gains::table::{AcceptedTable, Certificate, GainTable, Hash, Margin
 use quatrack::link::{LawChoice, StateIn, Table, TrajectoryId};
 use quatrack::nalgebra::Vector3;
 use quatrack::{Limits, Rate, State, Tick};
+use quatrack_firmware::craft::BodyRates;
 use quatrack_firmware::flight::{DECIMATION, Flight};
 use quatrack_firmware::laws::{FADE_STEPS, Refused, VEHICLE};
 use quatrack_firmware::stored;
@@ -41,7 +42,7 @@ fn board() -> Flight {
 fn thrust(flight: &mut Flight, now: Tick) -> f32 {
     flight.hear(now);
     flight.accept(StateIn { tick: now, state: State::at_rest(Vector3::new(0.0, 0.0, -0.1)) }, now);
-    flight.step(now, false);
+    flight.step(now, false, BodyRates::NoGyroscope);
     flight.command().thrust_m_s2
 }
 

@@ -8,7 +8,8 @@ const TEXT: &str = include_str!("../../gains/vehicles/crazyflie-2.1.toml");
 fn built_in_vehicles_hover_between_their_limits() {
     for name in Vehicle::names() {
         let vehicle = Vehicle::by_name(name).expect("built in");
-        assert_eq!(vehicle.name(), name);
+        assert_eq!(vehicle.name(), name.strip_suffix("-kit").unwrap_or(name));
+        assert_eq!(Vehicle::by_name(vehicle.name()), Ok(vehicle.clone()));
         let [min, max] = vehicle.thrust_limits_m_s2();
         assert!(min < 9.81 && max > 1.5 * 9.81, "{name}: {min} to {max} m/s^2");
         assert!(vehicle.limits().is_ok());

@@ -12,6 +12,7 @@ use super::upload::{Progress, UploadError};
 use crate::clock::Tick;
 use crate::command::LimitsError;
 use crate::error::{ReferenceError, StepError};
+use crate::motor_tracker::MotorStep;
 use crate::supervisor::{ArmError, Fault, Mode};
 use crate::tracker::Step;
 
@@ -43,10 +44,12 @@ pub enum FromBoard {
     Parameter(Parameter),
     /// Sent on its own when a fault is found, and again with every hello until a restart.
     Fault(FaultReport),
+    /// Answers a state on which the board knows body rates: those that came with it, or its own gyroscope's.
+    Forces(ForcesOut),
 }
 
 impl Message for FromBoard {
-    const KINDS: u8 = 8;
+    const KINDS: u8 = 9;
 
     fn opens_session(&self) -> bool {
         false
@@ -93,6 +96,18 @@ pub struct CommandOut {
     pub result: Result<Step, NoCommand>,
 }
 
+/// The motor forces that answer a state, with the exact bits of the step's numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ForcesOut {
+    /// The board's tick of the step.
+    pub tick: Tick,
+    /// The tick of the state that was stepped on, as it came.
+    pub state_tick: Tick,
+    /// The forces of M1 to M4 and what of them was given up, or why there are none.
+    pub result: Result<MotorStep, NoCommand>,
+}
+
 /// Why a state has no command. The motors are at zero, or will be by the end of this tick.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -105,6 +120,8 @@ pub enum NoCommand {
     Reference(ReferenceError),
     /// The state cannot be flown on, or the law has no answer.
     Step(StepError),
+    /// There are no body rates: the gyroscope does not answer, or there is none and the state came without.
+    NoBodyRates,
 }
 
 /// Telemetry: what the loop has been doing since start-up.
@@ -206,6 +223,9 @@ impl fmt::Display for NoCommand {
             Self::NoReference => f.write_str("board: no reference; send one with the state or start a trajectory"),
             Self::Reference(error) => error.fmt(f),
             Self::Step(error) => error.fmt(f),
+            Self::NoBodyRates => {
+                f.write_str("board: no body rates; send them with the state, or look at the gyroscope")
+            }
         }
     }
 }

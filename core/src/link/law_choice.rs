@@ -19,6 +19,8 @@ pub enum Table {
     LqrF,
     /// A loaded one, see [`super::GainStore::table`]: slot 0 is the one in use, slot 1 the one before.
     Loaded(u8),
+    /// The actuator-aware law's for this craft, straight to motor forces; takes neither feed-forward nor error form.
+    ActuatorAware,
 }
 
 /// A table and how its law is to be flown.
@@ -39,7 +41,7 @@ impl LawChoice {
         Self { table, feed_forward: FeedForward::Without, error_form: ErrorForm::HeadingFrame }
     }
 
-    /// The law, if its table is one of those in the image.
+    /// The law of thrust and body rates, if its table is one of those in the image.
     pub fn built_in(&self) -> Option<AnyLaw<'static>> {
         let Self { table, feed_forward, error_form } = *self;
         let equilibrium = |gain| Some(AnyLaw::Equilibrium(Equilibrium { gain, error_form, feed_forward }));
@@ -49,7 +51,7 @@ impl LawChoice {
             Table::LqrE => equilibrium(&paper::LQR_E),
             Table::LyapF => flat_output(&paper::LYAP_F),
             Table::LqrF => flat_output(&paper::LQR_F),
-            Table::Loaded(_) => None,
+            Table::Loaded(_) | Table::ActuatorAware => None,
         }
     }
 }

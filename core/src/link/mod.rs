@@ -44,13 +44,15 @@ pub use counters::{Counters, Rejected};
 pub use decoder::{Decoder, Received};
 pub use encoder::{EncodeError, Encoder};
 pub use from_board::{
-    CommandOut, FaultReport, FromBoard, Identity, LoopStatistics, NoCommand, Refusal, Telemetry, Version,
+    CommandOut, FaultReport, ForcesOut, FromBoard, Identity, LoopStatistics, NoCommand, Refusal, Telemetry, Version,
 };
 pub use gain_store::GainStore;
 pub use law_choice::{LawChoice, Table};
 pub use schedule_store::{ScheduleSlot, ScheduleStore};
 pub use size::{CHUNK_BYTES, FRAME_BYTES, MESSAGE_BYTES};
-pub use to_board::{LimitsSetting, Parameter, ParameterId, StateIn, ToBoard, TrajectoryCommand, TrajectoryId};
+pub use to_board::{
+    LimitsSetting, Parameter, ParameterId, RigidStateIn, StateIn, ToBoard, TrajectoryCommand, TrajectoryId,
+};
 pub use trajectory_store::{
     BlobError, TRAJECTORY_BLOB_BYTES, TRAJECTORY_PIECES, TrajectorySlot, TrajectoryStore, encode_trajectory,
 };

@@ -9,9 +9,10 @@ use super::upload::{Chunk, UploadBegin};
 use crate::clock::Tick;
 use crate::command::{Limits, LimitsError};
 use crate::reference::FlatSample;
+use crate::rigid_state::RigidState;
 use crate::state::State;
 
-/// A message to the board. States are answered by a command, the hello by an identity, everything else by an
+/// A message to the board. States are answered by a command or by motor forces, the hello by an identity, everything else by an
 /// acknowledgement, a refusal, or what was asked for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -47,10 +48,13 @@ pub enum ToBoard {
     },
     /// Ask for telemetry now, whatever its period.
     TelemetryRequest,
+    /// A state with body rates, for a board without a gyroscope; the reference comes from the stored trajectory that is
+    /// playing.
+    RigidState(RigidStateIn),
 }
 
 impl Message for ToBoard {
-    const KINDS: u8 = 14;
+    const KINDS: u8 = 15;
 
     fn opens_session(&self) -> bool {
         matches!(self, Self::Hello)
@@ -65,6 +69,16 @@ pub struct StateIn {
     pub tick: Tick,
     /// Position, attitude and velocity as measured or estimated; checked by the step.
     pub state: State,
+}
+
+/// A state with body rates and when it was.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct RigidStateIn {
+    /// The host's tick to which the state belongs; comes back with the forces.
+    pub tick: Tick,
+    /// Position, attitude, velocity and body rates as measured or estimated; checked by the step.
+    pub state: RigidState,
 }
 
 /// A stored trajectory.
@@ -111,6 +125,10 @@ pub enum ParameterId {
     TelemetryPeriodTicks,
     /// [`Parameter::UploadsRefused`].
     UploadsRefused,
+    /// [`Parameter::BatteryVoltage`].
+    BatteryVoltage,
+    /// [`Parameter::BodyRateBandwidth`].
+    BodyRateBandwidth,
 }
 
 /// A parameter and its value.
@@ -131,6 +149,10 @@ pub enum Parameter {
     TelemetryPeriodTicks(Tick),
     /// Commits since start-up that did not put an upload to use. Cannot be set.
     UploadsRefused(u32),
+    /// What the motors' duties are reckoned with, V. May be set in flight, as the battery drains.
+    BatteryVoltage(f32),
+    /// Bandwidth of the loop that follows a law's body rates about body x, y, z, rad/s.
+    BodyRateBandwidth([f32; 3]),
 }
 
 impl Parameter {
@@ -144,6 +166,8 @@ impl Parameter {
             Self::OverrunsTolerated(_) => ParameterId::OverrunsTolerated,
             Self::TelemetryPeriodTicks(_) => ParameterId::TelemetryPeriodTicks,
             Self::UploadsRefused(_) => ParameterId::UploadsRefused,
+            Self::BatteryVoltage(_) => ParameterId::BatteryVoltage,
+            Self::BodyRateBandwidth(_) => ParameterId::BodyRateBandwidth,
         }
     }
 }

@@ -29,6 +29,7 @@ mod image {
         Step, Tick, Tracker, Trajectory,
     };
     use quatrack_firmware::counter::Counter;
+    use quatrack_firmware::craft::NoCraft;
     use quatrack_firmware::flight::{DECIMATION as TICKS_PER_STEP, Flight, Store, TICK_RATE};
     use quatrack_firmware::semihosting::{File, Mode, exit};
     use quatrack_firmware::timing::Timing;
@@ -52,7 +53,7 @@ mod image {
 
     fn run(store: &'static mut Store, turning: [&'static mut [Piece]; 2]) -> Option<()> {
         let peripherals = Peripherals::take()?;
-        let counter = Counter::start(peripherals.TIM2, &peripherals.RCC);
+        let counter = Counter::start(peripherals.TIM5, &peripherals.RCC);
         let mut states = File::open(c"states.bin", Mode::Read)?;
         let mut counts = File::open(c"counts.bin", Mode::Write)?;
         let overhead = overhead(counter);
@@ -281,7 +282,7 @@ mod image {
     /// What the control interrupt runs.
     #[inline(never)]
     fn control(flight: &mut Flight, timing: &Timing, counter: Counter) {
-        tick::control(flight, timing, counter);
+        tick::control(flight, timing, counter, &mut NoCraft);
     }
 
     /// On-board reference: polynomial to jerk, and the flat map.

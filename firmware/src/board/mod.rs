@@ -1,3 +1,6 @@
-//! Boards: one module for each, with its pins and clocks.
+//! Boards: one module for each, with its pins and clocks, over what the STM32F405's peripherals do behind the traits of
+//! `embedded-hal`.
 
 pub mod crazyflie_2_1;
+pub mod i2c;
+pub mod pwm;

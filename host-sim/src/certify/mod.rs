@@ -33,5 +33,5 @@ pub use limits::StabilityLimit;
 pub use margins::{AllChannels, ChannelMargins, DiskMargin, LoopMargins};
 pub use minimum::{Judged, MarginTooSmall, Minimum, Quantity, judge, require};
 pub use plant::{Controller, LagModel, Plant, Predictor, Timing};
-pub use region::{Region, RegionCertificate, Variation, certify_region};
+pub use region::{Region, RegionBounds, RegionCertificate, Variation, certify_region, motor_lag_limit};
 pub use structured::{StructuredBounds, structured_bounds};

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::CertifyError;
 use super::certificate::single_precision;
+use super::limits::StabilityLimit;
 use super::linear_loop::LinearLoop;
 use super::plant::{Controller, Plant, Predictor, Timing};
 use super::sampled_loop::SampledLoop;
@@ -41,6 +42,37 @@ pub struct Region {
     pub delays_s: Vec<f64>,
 }
 
+/// How far a region reaches to either side of the vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RegionBounds {
+    /// Shortest and longest time constant of the motors, s.
+    pub lag_s: [f64; 2],
+    /// How much of its mass the vehicle may have more or less.
+    pub mass_share: f64,
+    /// The same for its inertia.
+    pub inertia_share: f64,
+    /// How late commands may act, s.
+    pub delay_s: f64,
+}
+
+impl RegionBounds {
+    /// What a default table is held to: 50 to 126 ms of lag, with the mass off by 20 %, the inertia by 30 % and 10 ms of
+    /// delay.
+    pub const ANY_CRAZYFLIE: Self = Self { lag_s: [0.050, 0.126], mass_share: 0.2, inertia_share: 0.3, delay_s: 0.010 };
+
+    /// The grid of the region: seven lags, and ends and middle of what else varies.
+    pub fn grid(&self) -> Region {
+        let [shortest_s, longest_s] = self.lag_s;
+        let around = |share: f64| if share > 0.0 { vec![1.0 - share, 1.0, 1.0 + share] } else { vec![1.0] };
+        Region {
+            mass_factors: around(self.mass_share),
+            inertia_factors: around(self.inertia_share),
+            delays_s: if self.delay_s > 0.0 { vec![0.0, 0.5 * self.delay_s, self.delay_s] } else { vec![0.0] },
+            ..Region::of_lags(shortest_s, longest_s)
+        }
+    }
+}
+
 /// What was found over a region.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RegionCertificate {
@@ -63,15 +95,9 @@ impl Region {
         Self { lags_s, mass_factors: vec![1.0], inertia_factors: vec![1.0], delays_s: vec![0.0] }
     }
 
-    /// What a default table is held to: 50 to 126 ms of lag, with the mass off by 20 %, the inertia by 30 % and 10 ms of
-    /// delay.
+    /// [`RegionBounds::ANY_CRAZYFLIE`].
     pub fn of_any_crazyflie() -> Self {
-        Self {
-            mass_factors: vec![0.8, 1.0, 1.2],
-            inertia_factors: vec![0.7, 1.0, 1.3],
-            delays_s: vec![0.0, 0.005, 0.01],
-            ..Self::of_lags(0.050, 0.126)
-        }
+        RegionBounds::ANY_CRAZYFLIE.grid()
     }
 
     /// What a table for a known lag is held to: half of it to one and a half of it.
@@ -123,6 +149,41 @@ pub fn certify_region(
     }
     let (worst, spectral_radius) = worst.ok_or(CertifyError::EmptyRegion)?;
     Ok(RegionCertificate { region: region.clone(), points, worst, spectral_radius })
+}
+
+/// The longest motor lag up to which the loop stays stable, everything else as designed; walked to in steps of 4 % from the
+/// design's own and then halved.
+///
+/// # Errors
+/// As [`certify_region`].
+pub fn motor_lag_limit(
+    vehicle: &Vehicle,
+    gain_in_parts: &DMatrix<f64>,
+    design_lag_s: f64,
+    period_s: f64,
+) -> Result<StabilityLimit, CertifyError> {
+    const STEP: f64 = 1.04;
+    const LONGEST_S: f64 = 3.0;
+    const HALVINGS: i32 = 30;
+    let controller = Controller::actuator_aware(&single_precision(gain_in_parts)?, design_lag_s, period_s);
+    let stable = |lag_s: f64| {
+        let variation = Variation { lag_s, mass_factor: 1.0, inertia_factor: 1.0, delay_s: 0.0 };
+        spectral_radius(vehicle, &controller, period_s, &variation).map(|radius| radius < 1.0)
+    };
+    let channels = String::from("all");
+    let (mut low_s, mut high_s) = (design_lag_s, design_lag_s * STEP);
+    while stable(high_s)? {
+        if high_s >= LONGEST_S {
+            return Ok(StabilityLimit { channels, stable_to_s: high_s, resolution_s: None });
+        }
+        (low_s, high_s) = (high_s, high_s * STEP);
+    }
+    let resolution_s = (high_s - low_s) * f64::from(-HALVINGS).exp2();
+    for _ in 0..HALVINGS {
+        let middle_s = 0.5 * (low_s + high_s);
+        if stable(middle_s)? { low_s = middle_s } else { high_s = middle_s }
+    }
+    Ok(StabilityLimit { channels, stable_to_s: low_s, resolution_s: Some(resolution_s) })
 }
 
 /// The largest modulus of the poles per sample.

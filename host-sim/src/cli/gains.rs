@@ -5,8 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use quatrack::gains::table::GainTable;
-use quatrack_sim::gains::{self, Certified, Checked, Design, Failed, GainsError, Signal};
+use quatrack_sim::gains::{self, Certified, Checked, Design, Failed, GainsError, Signal, Table};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -219,7 +218,7 @@ fn show(path: &Path, json: Option<&Path>) -> Result<(), Failure> {
             (of_document(&document), document)
         }
         "bin" => {
-            let table = GainTable::from_bytes(&read(path)?)
+            let table = Table::from_bytes(&read(path)?)
                 .map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
             (of_table(&table), table_json(&table))
         }
@@ -268,7 +267,7 @@ fn of_document(document: &Value) -> String {
 }
 
 /// What a binary table says.
-fn of_table(table: &GainTable) -> String {
+fn of_table(table: &Table) -> String {
     let (head, certificate) = (table.head(), &table.head().certificate);
     let rates = head.limits.body_rates_max_rad_s();
     let (one, all) = (&certificate.one_channel, &certificate.all_channels);
@@ -290,9 +289,8 @@ fn of_table(table: &GainTable) -> String {
     );
     let (rows, columns) = gains::signals(table.kind());
     let names = |signals: &[Signal]| signals.iter().map(|signal| signal.name.to_owned()).collect::<Vec<_>>();
-    let gain = table.rows();
     let entries: Vec<Vec<f64>> =
-        gain.entries().chunks(columns.len()).map(|row| row.iter().map(|k| f64::from(*k)).collect()).collect();
+        table.by_rows().iter().map(|row| row.iter().map(|k| f64::from(*k)).collect()).collect();
     out += &matrix(&names(rows), &names(columns), &entries);
     let _ = write!(
         out,
@@ -314,11 +312,9 @@ fn of_table(table: &GainTable) -> String {
     out
 }
 
-fn table_json(table: &GainTable) -> Value {
+fn table_json(table: &Table) -> Value {
     let (head, certificate) = (table.head(), &table.head().certificate);
     let rates = head.limits.body_rates_max_rad_s();
-    let columns = usize::from(table.kind().dimensions().1);
-    let k: Vec<Vec<f32>> = table.rows().entries().chunks(columns).map(<[f32]>::to_vec).collect();
     json!({
         "name": head.name.as_str(),
         "kind": table.kind().to_string(),
@@ -338,7 +334,8 @@ fn table_json(table: &GainTable) -> Value {
         "delay_max_s": certificate.delay_max_s,
         "motor_lag_max_s": certificate.motor_lag_max_s,
         "f32_distance": certificate.f32_distance,
-        "k_f32": k,
+        "motor_lag_s": table.motor_lag_s(),
+        "k_f32": table.by_rows(),
     })
 }
 

@@ -18,7 +18,7 @@ use serde::Serialize;
 use super::vehicle::VehicleChoice;
 use super::{Failure, output};
 
-/// Flies take-off, landing, a step of 1 m, a shove of half a metre and a start upside down with the vehicle's default
+/// Flies take-off, landing, a step of 1 m, a shove of half a metre, a gust and a start upside down with the vehicle's default
 /// actuator-aware table, and an eight at 2.1 m/s with that table and with the paper's LQR-E behind the core's body-rate
 /// loop. The f32 core runs at 500 Hz against a rigid body with lagging motors that saturate.
 #[derive(clap::Args)]

@@ -15,11 +15,11 @@ use super::{Failure, output};
 /// without feed-forward, nothing limited and everything, either sign of the quaternion; and with a gain without a zero.
 /// Every command is compared with the host's.
 ///
-/// Builds its three images inside a checkout. An instruction is not a cycle: the counts compare programs, not clocks.
+/// Builds its four images inside a checkout. An instruction is not a cycle: the counts compare programs, not clocks.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Folder with the three images (quatrack-measure, quatrack-control-path, quatrack-firmware-pipes), or one of them
-    /// in it, instead of building them.
+    /// Folder with the four images (quatrack-measure, quatrack-control-path, quatrack-motor-path,
+    /// quatrack-firmware-pipes), or one of them in it, instead of building them.
     #[arg(long, value_name = "FILE")]
     image: Option<PathBuf>,
     /// Write the figures as JSON.
@@ -42,15 +42,17 @@ fn counted(args: &Args) -> Result<Report, PilError> {
     let images = match &args.image {
         Some(path) => {
             let folder = if path.is_dir() { path.as_path() } else { path.parent().unwrap_or(path) };
-            let [counting, control_path, flying] =
-                [Image::Measure, Image::ControlPath, Image::Pipes].map(|image| folder.join(image.binary()));
-            Images { counting, control_path, flying }
+            let [counting, control_path, motor_path, flying] =
+                [Image::Measure, Image::ControlPath, Image::MotorPath, Image::Pipes]
+                    .map(|image| folder.join(image.binary()));
+            Images { counting, control_path, motor_path, flying }
         }
         None => {
             let checkout = image::checkout()?;
             let build = |image| image::build(&checkout, image);
             Images {
                 control_path: build(Image::ControlPath)?,
+                motor_path: build(Image::MotorPath)?,
                 counting: build(Image::Measure)?,
                 flying: build(Image::Pipes)?,
             }

@@ -61,7 +61,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         output::write_json(path, &report)?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
-    if report.bit_exact { Ok(()) } else { Err(Failure::verdict("the target's commands are not the host's")) }
+    if report.bit_exact && report.motors.bit_exact {
+        Ok(())
+    } else {
+        Err(Failure::verdict("the target's commands are not the host's"))
+    }
 }
 
 fn flown(args: &Args) -> Result<lock_step::Report, PilError> {

@@ -9,8 +9,9 @@
 
 use nalgebra::{DMatrix, Matrix4};
 use num_complex::Complex64;
+use serde::Serialize;
 
-use super::discretise::{require_period, zero_order_hold};
+use super::discretise::{Held, require_period, zero_order_hold};
 use super::synthesis::{diagonal, without_noise};
 use super::{DesignError, dlqr};
 use crate::model::GRAVITY_M_S2;
@@ -24,7 +25,7 @@ pub const ERRORS: usize = 19;
 pub const FORCES: usize = 12;
 
 /// Diagonal weights of a sum over the samples.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ActuatorAwareWeights {
     /// Of position, 1/m^2.
     pub position: [f64; 3],
@@ -55,7 +56,8 @@ impl ActuatorAwareWeights {
         command: 1e4,
     };
 
-    fn state(&self) -> Vec<f64> {
+    /// Diagonal of Q, in the order of the errors.
+    pub(crate) fn state(&self) -> Vec<f64> {
         let Self { position, velocity, rotation, body_rates, force, integral, .. } = self;
         [position, velocity, rotation, body_rates]
             .into_iter()
@@ -74,8 +76,10 @@ pub struct ActuatorAwareDesign {
     pub gain: DMatrix<f64>,
     /// The same with commands and forces in parts: thrust, roll, pitch, yaw.
     pub gain_in_parts: DMatrix<f64>,
-    /// P of the Riccati equation, 19 x 19, forces in parts.
+    /// P of the Riccati equation, 19 x 19.
     pub p: DMatrix<f64>,
+    /// The problem under held commands that P and the gain solve, the sum of the position error as three more states.
+    pub held: Held,
     /// Poles per sample.
     pub poles: Vec<Complex64>,
     /// Relative residual of P, evaluated in 32 digits.
@@ -147,7 +151,8 @@ pub fn actuator_aware(
     Ok(ActuatorAwareDesign {
         gain: of_motors(&gain_in_parts),
         gain_in_parts,
-        p: solution.p,
+        p: changed_on_both_sides(&solution.p),
+        held: Held { a: changed_on_both_sides(&a), b: of_motors_input(&b), period_s },
         poles: solution.poles,
         relative_residual: solution.relative_residual,
         last_correction: solution.last_correction,
@@ -164,6 +169,34 @@ pub fn of_motors(in_parts: &DMatrix<f64>) -> DMatrix<f64> {
 /// The reverse of [`of_motors`].
 pub fn in_parts(of_motors: &DMatrix<f64>) -> DMatrix<f64> {
     changed(of_motors, &parts())
+}
+
+/// The hover model with forces of the motors and the integral of the position error: 19 x 19 and 19 x 4.
+pub fn hover_pair_with_integral(vehicle: &Vehicle, lag_s: f64) -> (DMatrix<f64>, DMatrix<f64>) {
+    let (a, b) = hover_pair(vehicle, lag_s, 1.0, 1.0);
+    let mut a = a.resize(ERRORS, ERRORS, 0.0);
+    for i in 0..3 {
+        a[(PLANT_STATES + i, i)] = 1.0;
+    }
+    (changed_on_both_sides(&a), of_motors_input(&b.resize_vertically(ERRORS, 0.0)))
+}
+
+/// diag(1, H, 1), 19 x 19: from forces of the motors to parts.
+fn to_parts() -> DMatrix<f64> {
+    let mut whole = DMatrix::identity(ERRORS, ERRORS);
+    whole.view_mut((FORCES, FORCES), (4, 4)).copy_from(&parts());
+    whole
+}
+
+/// A matrix of states in parts as one of states with the motors' forces.
+fn changed_on_both_sides(in_parts: &DMatrix<f64>) -> DMatrix<f64> {
+    to_parts().transpose() * in_parts * to_parts()
+}
+
+/// What commands in parts do to states in parts, of the motors' both.
+fn of_motors_input(in_parts: &DMatrix<f64>) -> DMatrix<f64> {
+    let h = parts();
+    to_parts().transpose() * in_parts * DMatrix::from_fn(4, 4, |i, j| h[(i, j)])
 }
 
 /// `M K diag(1, M', 1)`.

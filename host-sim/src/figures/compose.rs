@@ -70,14 +70,19 @@ fn lines<'a>(figure: &TrackingFigure<'a>) -> Vec<Line<'a>> {
     lines
 }
 
+/// How far from a reference that rests the axes reach at most, m.
+const STRAY_FROM_REST_M: f64 = 1.0;
+
 /// One range per coordinate, m: the reference and what of the flights stays near it.
 fn axes(figure: &TrackingFigure<'_>) -> [Range; 3] {
     let range = |curve: &Curve<'_>, i: usize| Range::of(curve.position_m.iter().map(|p: &Vector3<f64>| p[i]));
     let reference: [Range; 3] =
         std::array::from_fn(|i| range(&figure.reference, i).unwrap_or(Range { low: 0.0, high: 0.0 }));
     let longest = reference.iter().map(|axis| axis.extent()).fold(SHORTEST_M, f64::max);
+    // A reference that rests has no size to measure a flight by.
+    let stray_m = if longest > SHORTEST_M { STRAY_SHARE * longest } else { STRAY_FROM_REST_M };
     std::array::from_fn(|i| {
-        let limit = reference[i].widened(STRAY_SHARE * longest);
+        let limit = reference[i].widened(stray_m);
         let union = figure.flights.iter().filter_map(|flight| range(flight, i)).fold(reference[i], |union, flight| {
             Range { low: union.low.min(flight.low), high: union.high.max(flight.high) }
         });

@@ -9,8 +9,9 @@ use nalgebra::{UnitQuaternion, Vector3};
 use super::motor_laws::{AwareTable, FlightError, fly};
 use super::motor_loop::{PERIOD_S, STEPS_A_SAMPLE};
 use super::rigid_loop::{Conditions, RigidFlight, fly_rigid};
+use crate::model::GRAVITY_M_S2;
 use crate::plant::{Craft, Ground, RigidState, Shove};
-use crate::trajectory::fifth_order::{Braking, Course, FifthOrder, Rest, RestToRest};
+use crate::trajectory::fifth_order::{Braking, Course, FifthOrder, Jump, Rest, RestToRest};
 use crate::vehicle::Vehicle;
 
 /// Height at which manoeuvres in the air begin, m.
@@ -35,15 +36,17 @@ pub enum Manoeuvre {
     Landing,
     /// The reference jumps by 1 m to the front.
     Step,
-    /// A force from the side that throws the craft about half a metre off.
+    /// Shoved half a metre to the side and let go.
     Shove,
+    /// A force as large as the weight from the side, for 0.2 s.
+    Gust,
     /// From rest upside down at 15 m: upright first, then to rest in 3 s.
     UpsideDown,
 }
 
 impl Manoeuvre {
     /// All of them.
-    pub const ALL: [Self; 5] = [Self::TakeOff, Self::Landing, Self::Step, Self::Shove, Self::UpsideDown];
+    pub const ALL: [Self; 6] = [Self::TakeOff, Self::Landing, Self::Step, Self::Shove, Self::Gust, Self::UpsideDown];
 
     /// For tables and files.
     pub fn name(self) -> &'static str {
@@ -52,6 +55,7 @@ impl Manoeuvre {
             Self::Landing => "landing",
             Self::Step => "step",
             Self::Shove => "shove",
+            Self::Gust => "gust",
             Self::UpsideDown => "upside-down",
         }
     }
@@ -62,7 +66,8 @@ impl Manoeuvre {
             Self::TakeOff => "take-off from the ground to 1 m in 2 s",
             Self::Landing => "landing from 1 m in 2.5 s",
             Self::Step => "a step of the reference by 1 m",
-            Self::Shove => "a shove of half a metre from the side",
+            Self::Shove => "shoved half a metre to the side",
+            Self::Gust => "its weight from the side for 0.2 s",
             Self::UpsideDown => "start upside down",
         }
     }
@@ -83,9 +88,17 @@ impl Manoeuvre {
                 (RigidState::at_rest(standing_m, 0.0), Box::new(RestToRest::new(standing_m, aloft_m, 2.0, 4.0)))
             }
             Self::Landing => (hovering, Box::new(RestToRest::new(aloft_m, standing_m, 2.5, 3.5))),
-            Self::Step => (hovering, Box::new(rest(aloft_m + Vector3::x(), 5.0))),
+            Self::Step => {
+                let to_m = aloft_m + Vector3::x();
+                (hovering, Box::new(Jump { from_m: aloft_m, to_m, at_s: 0.5, duration_s: 5.5 }))
+            }
             Self::Shove => {
-                craft = craft.with_load(shove(vehicle));
+                let aside = RigidState { position_m: aloft_m + 0.5 * Vector3::y(), ..hovering };
+                (aside, Box::new(rest(aloft_m, 5.0)))
+            }
+            Self::Gust => {
+                let force_n = vehicle.mass_kg() * GRAVITY_M_S2 * Vector3::y();
+                craft = craft.with_load(Shove { from_s: 0.5, to_s: 0.7, force_n });
                 (hovering, Box::new(rest(aloft_m, 5.0)))
             }
             Self::UpsideDown => return recover(vehicle, &craft, table),
@@ -131,13 +144,6 @@ fn recover(vehicle: &Vehicle, craft: &Craft, table: &AwareTable) -> Result<Rigid
             control.as_mut().ok_or("the motors' thrusts are not finite")?.step(measured, &point)
         },
     ))
-}
-
-/// 0.2 s of a force to the left, half a second after the start.
-fn shove(vehicle: &Vehicle) -> Shove {
-    const ACCELERATION_M_S2: f64 = 12.5;
-    let force_n = Vector3::new(0.0, vehicle.mass_kg() * ACCELERATION_M_S2, 0.0);
-    Shove { from_s: 0.5, to_s: 0.7, force_n }
 }
 
 /// What a flight came to.

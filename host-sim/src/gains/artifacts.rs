@@ -22,7 +22,7 @@ pub struct Artifact {
 }
 
 /// Keys of the document whose numbers are figures of the certificate.
-pub(super) const FIGURES: [&str; 2] = ["figures", "certificate"];
+pub(super) const FIGURES: [&str; 3] = ["figures", "certificate", "region"];
 
 /// The folder beside a design that its files are written to.
 pub fn default_folder(design: &Path) -> PathBuf {
@@ -47,7 +47,7 @@ pub fn artifacts(certified: &Certified, folder: &Path) -> Vec<Artifact> {
 pub(super) fn document(certified: &Certified) -> Value {
     let Certified { design, designed, .. } = certified;
     let past: Vec<Value> = designed.past_command_gains.iter().map(by_rows).collect();
-    json!({
+    let mut document = json!({
         "name": design.name.as_str(),
         "description": design.description,
         "design": design.essence(),
@@ -63,7 +63,11 @@ pub(super) fn document(certified: &Certified) -> Value {
         "certificate": without_dust(json!(certified.certificate)),
         "statement": certified.statement,
         "certificate_sha256": certified.statement.hash().to_string(),
-    })
+    });
+    if let Some(region) = &certified.region {
+        document["region"] = json!(region);
+    }
+    document
 }
 
 /// Every figure that a design can ask for, in the units that it asks in, beside what this one asks. No limit is null.
@@ -94,6 +98,7 @@ pub fn rust_source(certified: &Certified) -> String {
         Gains::Equilibrium(_) => "EquilibriumGain",
         Gains::FlatOutput(_) => "FlatOutputGain",
         Gains::Integral(_) => "IntegralGain",
+        Gains::ActuatorAware(_) => "ActuatorAwareGain",
     };
     let mut text = format!(
         "// {} for {} at {} Hz: made by `quatrack gains design` and not edited by hand.\n\

@@ -1,13 +1,15 @@
 //! A design carried out: design in; gains, certificate and table out, or the figure that fails.
 
-use quatrack::gains::table::{GainTable, Hash, Name, TABLE_BYTES_MAX, TableHead, Vehicle};
+use quatrack::gains::table::{ActuatorTable, GainTable, Hash, Name, TableHead, Vehicle};
 use serde::Serialize;
 
 use super::GainsError;
 use super::design::{Design, Problem};
-use super::designed::Designed;
+use super::designed::{Designed, Gains};
 use super::statement::{Statement, sha256};
-use crate::certify::{Certificate, Minimum, certify, require};
+use super::table::Table;
+use crate::certify::{Certificate, Minimum, RegionCertificate, certify, certify_region, motor_lag_limit, require};
+use crate::design::codegen::rounded;
 
 /// A design with its gains, and what they promise.
 #[derive(Debug, Clone)]
@@ -20,10 +22,12 @@ pub struct Certified {
     pub designed: Designed,
     /// Every figure of the gains as rounded to f32.
     pub certificate: Certificate,
+    /// Over the region that an actuator-aware design asks for.
+    pub region: Option<RegionCertificate>,
     /// What the table says of them.
     pub statement: Statement,
     /// The table; none where no law on board flies the gains, as those that remember past commands.
-    pub table: Option<GainTable>,
+    pub table: Option<Table>,
 }
 
 /// What the hash of a design is taken of: all that its gains, its limits and its acceptance depend on.
@@ -50,7 +54,19 @@ impl Design {
     pub fn certify(&self) -> Result<Certified, GainsError> {
         let designed = Designed::of(self)?;
         let (plant, controller, timing) = designed.closed_loop(self.rate.hz());
-        let certificate = certify(&plant, &controller, &timing, self.rate_loop_gain_1_s)?;
+        let mut certificate = certify(&plant, &controller, &timing, self.rate_loop_gain_1_s)?;
+        let mut region = None;
+        if let (Problem::ActuatorAware { motor_lag_s, region: bounds, .. }, Some(gain)) =
+            (&self.problem, &designed.gain_in_parts)
+        {
+            let found = certify_region(&self.vehicle, gain, *motor_lag_s, timing.period_s, &bounds.grid())?;
+            if !(found.spectral_radius < 1.0) {
+                return Err(GainsError::Region { spectral_radius: found.spectral_radius, worst: found.worst });
+            }
+            region = Some(found);
+            // The plant has its motors' lag already: what is told is the whole of it, not what may come on top.
+            certificate.lag = vec![motor_lag_limit(&self.vehicle, gain, *motor_lag_s, timing.period_s)?];
+        }
         require(&certificate, &self.minimum)?;
         let design_hash = sha256(&self.essence());
         let statement = Statement::new(self, &design_hash, &designed, &certificate);
@@ -62,12 +78,15 @@ impl Design {
             design_hash,
             certificate: statement.on_board(),
         };
-        let table = if designed.past_command_gains.is_empty() {
-            Some(GainTable::new(head, &designed.gains.rows()).map_err(GainsError::Table)?)
-        } else {
-            None
+        let table = match (&designed.gains, &self.problem) {
+            _ if !designed.past_command_gains.is_empty() => None,
+            (Gains::ActuatorAware(gain), Problem::ActuatorAware { motor_lag_s, .. }) => {
+                Some(ActuatorTable::new(head, *motor_lag_s as f32, &rounded(gain)).map(Table::Actuator))
+            }
+            (gains, _) => gains.rows().map(|rows| GainTable::new(head, &rows).map(Table::Gains)),
         };
-        Ok(Certified { design: self.clone(), design_hash, designed, certificate, statement, table })
+        let table = table.transpose().map_err(GainsError::Table)?;
+        Ok(Certified { design: self.clone(), design_hash, designed, certificate, region, statement, table })
     }
 
     pub(super) fn essence(&self) -> Essence<'_> {
@@ -99,7 +118,6 @@ impl Design {
 impl Certified {
     /// The table as a file; nothing where there is none.
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
-        let mut buffer = [0; TABLE_BYTES_MAX];
-        Some(self.table.as_ref()?.to_bytes(&mut buffer)?.to_vec())
+        self.table.as_ref()?.to_bytes()
     }
 }

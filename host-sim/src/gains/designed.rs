@@ -6,8 +6,12 @@ use quatrack::gains::table::{Rows, TableKind};
 
 use super::GainsError;
 use super::design::{Design, Method, Problem};
-use super::names::{EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, INTEGRAL_STATES, Signal};
+use super::names::{
+    EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, INTEGRAL_STATES, MOTOR_INPUTS, MOTOR_STATES,
+    Signal,
+};
 use crate::certify::{Controller, Plant, Timing};
+use crate::design::actuator_aware::{ERRORS, actuator_aware, hover_pair_with_integral};
 use crate::design::codegen::rounded;
 use crate::design::discretise::{Held, zero_order_hold};
 use crate::design::integral::{integral_pair, sampled_integral_problem, sampled_lqi};
@@ -18,6 +22,7 @@ use crate::design::synthesis::{
     EquilibriumDesign, EquilibriumWeights, FlatDesign, FlatWeights, dense_flat_chain, diagonal, lqr_equilibrium,
     lqr_flat, lyapunov_equilibrium, lyapunov_flat,
 };
+use crate::vehicle::Vehicle;
 
 /// A gain with all that it came from.
 #[derive(Debug, Clone)]
@@ -36,6 +41,10 @@ pub struct Designed {
     pub poles: Poles,
     /// Relative residual of P.
     pub relative_residual: f64,
+    /// An actuator-aware gain with forces in parts, in which it is certified.
+    pub gain_in_parts: Option<DMatrix<f64>>,
+    /// What the gain was designed for, where that is a vehicle with its motors and their lag, s.
+    motors: Option<(Vehicle, f64)>,
     /// The problem per sample that P and the gain solve, if it is one.
     pub sampled: Option<SampledProblem>,
 }
@@ -89,6 +98,8 @@ pub enum Gains {
     FlatOutput(Box<SMatrix<f64, 7, 10>>),
     /// 4 x 12, with the sums of the position error.
     Integral(Box<SMatrix<f64, 4, 12>>),
+    /// 4 x 19, to the motors' forces.
+    ActuatorAware(Box<SMatrix<f64, 4, 19>>),
 }
 
 impl Gains {
@@ -98,6 +109,7 @@ impl Gains {
             Self::Equilibrium(_) => TableKind::Equilibrium,
             Self::FlatOutput(_) => TableKind::FlatOutput,
             Self::Integral(_) => TableKind::Integral,
+            Self::ActuatorAware(_) => TableKind::ActuatorAware,
         }
     }
 
@@ -107,21 +119,23 @@ impl Gains {
             Self::Equilibrium(gain) => DMatrix::from_column_slice(4, 9, gain.as_slice()),
             Self::FlatOutput(gain) => DMatrix::from_column_slice(7, 10, gain.as_slice()),
             Self::Integral(gain) => DMatrix::from_column_slice(4, 12, gain.as_slice()),
+            Self::ActuatorAware(gain) => DMatrix::from_column_slice(4, 19, gain.as_slice()),
         }
     }
 
-    /// As the core flies it, every entry the nearest f32.
-    pub fn rows(&self) -> Rows {
+    /// As the core flies it, every entry the nearest f32; nothing for motor forces, whose table is one of its own.
+    pub fn rows(&self) -> Option<Rows> {
         match self {
-            Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),
-            Self::FlatOutput(gain) => Rows::FlatOutput(rounded(gain)),
-            Self::Integral(gain) => Rows::Integral(rounded(gain)),
+            Self::Equilibrium(gain) => Some(Rows::Equilibrium(rounded(gain))),
+            Self::FlatOutput(gain) => Some(Rows::FlatOutput(rounded(gain))),
+            Self::Integral(gain) => Some(Rows::Integral(rounded(gain))),
+            Self::ActuatorAware(_) => None,
         }
     }
 
-    /// The same, each row a list.
+    /// Every entry the nearest f32, each row a list.
     pub fn by_rows(&self) -> Vec<Vec<f32>> {
-        self.rows().entries().chunks(usize::from(self.kind().dimensions().1)).map(<[f32]>::to_vec).collect()
+        self.dense().row_iter().map(|row| row.iter().map(|entry| *entry as f32).collect()).collect()
     }
 }
 
@@ -156,6 +170,25 @@ impl Designed {
                 let weights = Weights { q: diagonal(&state), r: diagonal(&weights.equilibrium.input) };
                 Ok(Self::sampled(designed, LinearModel::integral(), gains, weights, SampledProblem { held, cost }))
             }
+            Problem::ActuatorAware { motor_lag_s, weights, .. } => {
+                let period_s = Sampling::at_rate(rate_hz).period_s;
+                let designed = actuator_aware(&design.vehicle, *motor_lag_s, weights, period_s)?;
+                let (a, b) = hover_pair_with_integral(&design.vehicle, *motor_lag_s);
+                let (q, r) = (diagonal(&weights.state()), diagonal(&[weights.command; 4]));
+                let cost = SampledCost { q: q.clone(), s: DMatrix::zeros(ERRORS, 4), r: r.clone() };
+                Ok(Self {
+                    model: LinearModel { a, b, states: &MOTOR_STATES, inputs: &MOTOR_INPUTS },
+                    weights: Some(Weights { q, r }),
+                    gains: Gains::ActuatorAware(Box::new(of_shape(&designed.gain))),
+                    past_command_gains: Vec::new(),
+                    p: designed.p,
+                    poles: Poles::Sampled(designed.poles),
+                    relative_residual: designed.relative_residual,
+                    gain_in_parts: Some(designed.gain_in_parts),
+                    motors: Some((design.vehicle.clone(), *motor_lag_s)),
+                    sampled: Some(SampledProblem { held: designed.held, cost }),
+                })
+            }
             Problem::FlatOutput(Method::Lyapunov { mu_1_s }) => Ok(Self::flat(lyapunov_flat(*mu_1_s)?, None)),
             Problem::FlatOutput(Method::Lqr { weights }) => Ok(Self::flat(lqr_flat(weights)?, Some(of_flat(weights)))),
             Problem::FlatOutput(Method::SampledLqr { weights, delay_samples }) => {
@@ -171,8 +204,13 @@ impl Designed {
 
     /// What is certified: the plant, the controller before it is rounded, and when it runs.
     pub fn closed_loop(&self, rate_hz: u32) -> (Plant, Controller, Timing) {
+        if let (Some(gain), Some((vehicle, lag_s))) = (&self.gain_in_parts, &self.motors) {
+            let timing = Timing::at_rate(rate_hz);
+            let plant = Plant::hover_with_motors(vehicle, *lag_s, 1.0, 1.0);
+            return (plant, Controller::actuator_aware(gain, *lag_s, timing.period_s), timing);
+        }
         let plant = match &self.gains {
-            Gains::Equilibrium(_) => Plant::equilibrium(),
+            Gains::Equilibrium(_) | Gains::ActuatorAware(_) => Plant::equilibrium(),
             Gains::FlatOutput(_) => Plant::flat_chain(),
             Gains::Integral(_) => Plant::equilibrium_with_integral(),
         };
@@ -190,6 +228,8 @@ impl Designed {
             p: DMatrix::from_column_slice(9, 9, design.p.as_slice()),
             poles: Poles::Continuous(design.poles),
             relative_residual: design.relative_residual,
+            gain_in_parts: None,
+            motors: None,
             sampled: None,
         }
     }
@@ -203,6 +243,8 @@ impl Designed {
             p: DMatrix::from_column_slice(10, 10, design.p.as_slice()),
             poles: Poles::Continuous(design.poles),
             relative_residual: design.relative_residual,
+            gain_in_parts: None,
+            motors: None,
             sampled: None,
         }
     }
@@ -222,6 +264,8 @@ impl Designed {
             p: design.p,
             poles: Poles::Sampled(design.poles),
             relative_residual: design.relative_residual,
+            gain_in_parts: None,
+            motors: None,
             sampled: Some(problem),
         }
     }

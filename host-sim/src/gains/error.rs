@@ -75,6 +75,17 @@ pub enum GainsError {
     /// The certificate falls short of the design's own minimum.
     #[error("refused: {0}")]
     Minimum(#[from] MarginTooSmall),
+    /// The gain is not stable all over the region that the design asks for.
+    #[error(
+        "refused: in its region the spectral radius reaches {spectral_radius:.6} at {worst:?}; it must stay below 1: \
+         raise motor_lag_ms, lower the weights or narrow [region]"
+    )]
+    Region {
+        /// The largest spectral radius.
+        spectral_radius: f64,
+        /// Where.
+        worst: crate::certify::Variation,
+    },
     /// The core would refuse the table.
     #[error("the table would be refused on board: {0}")]
     Table(TableError),
@@ -83,6 +94,9 @@ pub enum GainsError {
 impl GainsError {
     /// Whether the design was understood and the answer is no, as opposed to a file that cannot be used.
     pub fn is_verdict(&self) -> bool {
-        matches!(self, Self::Certify(CertifyError::Unstable { .. }) | Self::Minimum(_) | Self::Table(_))
+        matches!(
+            self,
+            Self::Certify(CertifyError::Unstable { .. }) | Self::Minimum(_) | Self::Region { .. } | Self::Table(_)
+        )
     }
 }

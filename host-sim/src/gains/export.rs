@@ -81,7 +81,7 @@ impl Export {
             matrices.push(matrix(&format!("K_past_{number}"), inputs, inputs, past.clone()));
         }
         matrices.push(matrix("P", states, states, designed.p.clone()));
-        if !matches!(designed.gains, Gains::FlatOutput(_)) {
+        if matches!(designed.gains, Gains::Equilibrium(_) | Gains::Integral(_)) {
             matrices.extend(hover_staircase(inputs)?);
         }
         Ok(Self {

@@ -18,6 +18,8 @@ pub(super) struct DesignFile {
     pub(super) mu_1_s: Option<f64>,
     pub(super) delay_samples: Option<u32>,
     pub(super) rate_loop_gain_1_s: Option<f64>,
+    pub(super) motor_lag_ms: Option<f64>,
+    pub(super) region: Option<RegionEntry>,
     pub(super) weights: Option<Weights>,
     #[serde(default)]
     pub(super) limits: LimitsEntry,
@@ -40,6 +42,20 @@ pub(super) enum MethodName {
     SampledLqr,
     Lqi,
     Along,
+    ActuatorAware,
+}
+
+/// Craft and links that an actuator-aware gain must be stable on, besides its own.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RegionEntry {
+    pub(super) motor_lag_ms: [f64; 2],
+    #[serde(default)]
+    pub(super) mass_percent: f64,
+    #[serde(default)]
+    pub(super) inertia_percent: f64,
+    #[serde(default)]
+    pub(super) delay_ms: f64,
 }
 
 /// Diagonal weights of errors and inputs, by group.
@@ -52,6 +68,9 @@ pub(super) struct Weights {
     pub(super) acceleration: Option<[f64; 3]>,
     pub(super) q3: Option<f64>,
     pub(super) position_integral: Option<[f64; 3]>,
+    pub(super) rotation: Option<[f64; 3]>,
+    pub(super) body_rates: Option<[f64; 3]>,
+    pub(super) force_input: Option<f64>,
     pub(super) thrust_input: Option<f64>,
     pub(super) body_rate_input: Option<[f64; 3]>,
     pub(super) acceleration_input: Option<[f64; 3]>,
@@ -100,6 +119,7 @@ impl MethodName {
             Self::SampledLqr => "\"sampled-lqr\"",
             Self::Lqi => "\"lqi\"",
             Self::Along => "\"along\"",
+            Self::ActuatorAware => "\"actuator-aware\"",
         }
     }
 }

@@ -5,6 +5,7 @@
 //!   artifacts    NAME.json, NAME.rs, NAME.bin
 //!     certified  gains, certificate, the table; the design's own minimum
 //!       statement  what the table promises on board, the same on every processor
+//!       table      of any kind, as bytes
 //!       designed   model and gain, in f64
 //!         design   what belongs together and is in range
 //!           file   TOML
@@ -24,6 +25,7 @@ mod file;
 mod names;
 mod significant;
 mod statement;
+mod table;
 
 pub use artifacts::{Artifact, artifacts, default_folder, json_document, rust_source};
 pub use certified::Certified;
@@ -34,3 +36,4 @@ pub use error::GainsError;
 pub use export::{Export, Matrix};
 pub use names::{Signal, signals};
 pub use statement::Statement;
+pub use table::Table;

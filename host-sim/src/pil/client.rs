@@ -2,10 +2,11 @@
 
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use quatrack::State;
 use quatrack::link::{
-    CommandOut, Decoder, Encoder, FRAME_BYTES, FaultReport, FromBoard, Identity, Parameter, StateIn, Telemetry, ToBoard,
+    CommandOut, Decoder, Encoder, FRAME_BYTES, FaultReport, ForcesOut, FromBoard, Identity, Parameter, RigidStateIn,
+    StateIn, Telemetry, ToBoard,
 };
+use quatrack::{RigidState, State};
 
 use super::PilError;
 use super::emulator::Emulator;
@@ -147,6 +148,18 @@ impl Client {
         let message = ToBoard::State(StateIn { tick, state: *state });
         self.exchange(&message, "the board does not answer a state", |answer, _| match answer {
             FromBoard::Command(command) if command.state_tick == tick => Some(*command),
+            _ => None,
+        })
+    }
+
+    /// Sends a state with body rates and waits for the motor forces that answer it.
+    ///
+    /// # Errors
+    /// [`PilError`].
+    pub fn step_rigid(&mut self, tick: u32, state: &RigidState) -> Result<ForcesOut, PilError> {
+        let message = ToBoard::RigidState(RigidStateIn { tick, state: *state });
+        self.exchange(&message, "the board does not answer a state with body rates", |answer, _| match answer {
+            FromBoard::Forces(forces) if forces.state_tick == tick => Some(*forces),
             _ => None,
         })
     }

@@ -27,6 +27,8 @@ pub enum Image {
     Measure,
     /// The control path alone, for its size.
     ControlPath,
+    /// The same down to the motors.
+    MotorPath,
 }
 
 impl Image {
@@ -37,6 +39,7 @@ impl Image {
             Self::Pipes => "quatrack-firmware-pipes",
             Self::Measure => "quatrack-measure",
             Self::ControlPath => "quatrack-control-path",
+            Self::MotorPath => "quatrack-motor-path",
         }
     }
 
@@ -46,6 +49,7 @@ impl Image {
             Self::Pipes => &["--features", "semihosting"],
             Self::Measure => &["--no-default-features", "--features", "semihosting"],
             Self::ControlPath => &["--no-default-features"],
+            Self::MotorPath => &["--no-default-features", "--features", "motors"],
         }
     }
 }

@@ -10,24 +10,27 @@ use serde::Serialize;
 use super::PilError;
 use super::client::Client;
 use super::flights::{COURSES, HostCore, Plans, RATE_HZ, fly};
+use super::motors::{self, MotorReport};
 use crate::flight::metrics::Metrics;
 use crate::reproduction::report::digits;
 use crate::reproduction::table::{Controller, Course};
 
 /// Ages beyond which the board ends a flight, ticks. A host that is held up for seconds is no danger here.
-const PATIENCE_TICKS: u32 = 10_000;
+pub(super) const PATIENCE_TICKS: u32 = 10_000;
 
 /// What came of all flights.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// IAE of the flights that the target commanded, m s; nothing for a flight that was cut short.
     pub iae: BTreeMap<Course, BTreeMap<Controller, Option<f64>>>,
-    /// Whether every command had the host's bits.
+    /// Whether every command and every motor force had the host's bits.
     pub bit_exact: bool,
     /// Commands compared.
     pub steps: u64,
     /// FNV-1a of all commands, in the order of flight.
     pub hash: String,
+    /// The flights down to the motors.
+    pub motors: MotorReport,
     /// The first command that differed.
     #[serde(skip)]
     pub difference: Option<Difference>,
@@ -60,26 +63,33 @@ pub struct Difference {
 pub fn fly_all(client: &mut Client, limit: Option<u32>, advance: &dyn Fn()) -> Result<Report, PilError> {
     let plans = Plans::solve()?;
     prepare(client)?;
+    let of_commands = limit.map(|limit| limit - of_motors(limit));
     let flights = COURSES.iter().flat_map(|course| Controller::ALL.map(|controller| (*course, controller)));
     let mut comparison = Comparison { hash: Fnv1a::new(), steps: 0, difference: None };
     let mut iae: BTreeMap<Course, BTreeMap<Controller, Option<f64>>> = BTreeMap::new();
     for (index, (course, controller)) in flights.enumerate() {
-        let share = limit.map(|limit| share(limit, index as u32));
+        let share = of_commands.map(|limit| share(limit, index as u32, FLIGHTS));
         let flown = fly_one(client, &plans, (course, controller), share, &mut comparison, advance)?;
         iae.entry(course).or_default().insert(controller, flown);
     }
-    client.request(&ToBoard::Disarm)?;
+    let motors = motors::fly_all(client, &plans, limit.map(of_motors), advance)?;
     let telemetry = client.telemetry()?;
     Ok(Report {
         iae,
-        bit_exact: comparison.difference.is_none(),
+        bit_exact: comparison.difference.is_none() && motors.bit_exact,
         steps: comparison.steps,
-        hash: format!("{:016x}", comparison.hash.0),
+        hash: comparison.hash.to_string(),
+        motors,
         difference: comparison.difference,
         worst_step_ns: telemetry.statistics.worst_step_ns,
         stack_bytes: telemetry.statistics.stack_bytes,
         overruns: telemetry.statistics.overruns,
     })
+}
+
+/// Of a number of steps, those down to the motors: as many in every flight.
+fn of_motors(limit: u32) -> u32 {
+    limit * motors::FLIGHTS / (FLIGHTS + motors::FLIGHTS)
 }
 
 /// Steps of all flights together.
@@ -89,16 +99,25 @@ pub fn step_count(limit: Option<u32>) -> u64 {
         .map(|course| super::stored::pieces(*course).iter().map(|piece| piece.duration_ns).sum::<u64>())
         .map(|duration_ns| duration_ns * u64::from(RATE_HZ) / 1_000_000_000 + 1)
         .sum();
-    limit.map_or(whole * FLIGHTS, u64::from)
+    // Each course once with every law.
+    let laws = (FLIGHTS + motors::FLIGHTS) / COURSES.len() as u32;
+    limit.map_or(whole * u64::from(laws), u64::from)
 }
 
-/// Flights of both courses.
-const FLIGHTS: u64 = Controller::ALL.len() as u64;
+/// Flights of both courses under commands.
+const FLIGHTS: u32 = (COURSES.len() * Controller::ALL.len()) as u32;
 
-/// What flight `index` of eight gets of a number of steps.
-fn share(limit: u32, index: u32) -> u32 {
-    let flights = COURSES.len() as u32 * FLIGHTS as u32;
+/// What one of several flights gets of a number of steps.
+pub(super) fn share(limit: u32, index: u32, flights: u32) -> u32 {
     limit / flights + u32::from(index < limit % flights)
+}
+
+/// The board's name for a course.
+pub(super) fn trajectory_id(course: Course) -> TrajectoryId {
+    match course {
+        Course::Mild => TrajectoryId::Mild,
+        Course::Aggressive => TrajectoryId::Aggressive,
+    }
 }
 
 fn prepare(client: &mut Client) -> Result<(), PilError> {
@@ -126,10 +145,7 @@ fn fly_one(
     let mut host = HostCore::new(course, controller)?;
     client.request(&ToBoard::Disarm)?;
     client.request(&ToBoard::SelectLaw(law(controller)))?;
-    client.request(&ToBoard::Trajectory(TrajectoryCommand::Start(match course {
-        Course::Mild => TrajectoryId::Mild,
-        Course::Aggressive => TrajectoryId::Aggressive,
-    })))?;
+    client.request(&ToBoard::Trajectory(TrajectoryCommand::Start(trajectory_id(course))))?;
     client.request(&ToBoard::Arm)?;
     let ticks_per_step = client.identity().tick_rate_hz / RATE_HZ;
     let mut failed = None;
@@ -204,17 +220,23 @@ pub(super) fn words(command: &Command) -> [u32; 4] {
 }
 
 /// The hash FNV-1a of 64 bits.
-struct Fnv1a(u64);
+pub(super) struct Fnv1a(u64);
 
 impl Fnv1a {
-    const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
     }
 
-    fn add(&mut self, word: u32) {
+    pub(super) fn add(&mut self, word: u32) {
         for byte in word.to_le_bytes() {
             self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         }
+    }
+}
+
+impl fmt::Display for Fnv1a {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
     }
 }
 
@@ -246,11 +268,12 @@ impl fmt::Display for Report {
             }
             writeln!(f)?;
         }
-        let verdict = if self.bit_exact { "every bit as on the host" } else { "NOT as on the host" };
+        let verdict = if self.difference.is_none() { "every bit as on the host" } else { "NOT as on the host" };
         writeln!(f, "\n{} commands, {verdict}; hash {}", self.steps, self.hash)?;
         if let Some(difference) = &self.difference {
             write!(f, "{difference}")?;
         }
+        writeln!(f, "\n{}", self.motors)?;
         let (step_us, stack, overruns) = (f64::from(self.worst_step_ns) / 1e3, self.stack_bytes, self.overruns);
         writeln!(f, "on the target: longest step {step_us} us, stack {stack} bytes, {overruns} overruns")
     }

@@ -79,6 +79,8 @@ pub struct Report {
     /// Code and tables of the control path, without stored trajectories: all that its own image puts in flash, start-up
     /// code and vector table included.
     pub flash_bytes: u32,
+    /// The same down to the motors: every law, the actuator-aware one included, to four forces.
+    pub flash_to_motors_bytes: u32,
     /// Variables of the image that flies, uploads included.
     pub ram_bytes: u32,
     /// Most stack that it used in flight.
@@ -93,6 +95,8 @@ pub struct Images {
     pub counting: PathBuf,
     /// The control path alone.
     pub control_path: PathBuf,
+    /// The same down to the motors.
+    pub motor_path: PathBuf,
     /// Flies, over pipes.
     pub flying: PathBuf,
 }
@@ -179,6 +183,7 @@ pub fn count(images: &Images, limit: Option<usize>) -> Result<Report, PilError> 
     let mut client = emulated::connect(&images.flying, Transport::Pipes, None, interrupt)?;
     report.stack_bytes = lock_step::fly_all(&mut client, Some(STACK_STEPS), &|| {})?.stack_bytes;
     report.flash_bytes = control_path.flash_bytes;
+    report.flash_to_motors_bytes = image::size(&images.motor_path)?.flash_bytes;
     (report.ram_bytes, report.image_flash_bytes) = (flying.ram_bytes, flying.flash_bytes);
     Ok(report)
 }
@@ -225,6 +230,7 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<Report, PilError> {
         tick: tick.count(),
         steps: flights.iter().map(|flight| flight.steps.len()).sum(),
         flash_bytes: 0,
+        flash_to_motors_bytes: 0,
         ram_bytes: 0,
         stack_bytes: 0,
         image_flash_bytes: 0,
@@ -248,6 +254,7 @@ impl fmt::Display for Report {
         row("reference, turning", &self.reference_turning)?;
         row("whole tick", &self.tick)?;
         writeln!(f, "\ncontrol path   flash {:>6} bytes, without stored trajectories", self.flash_bytes)?;
+        writeln!(f, "to the motors  flash {:>6} bytes, the actuator-aware law included", self.flash_to_motors_bytes)?;
         let Self { image_flash_bytes, ram_bytes, stack_bytes, .. } = self;
         writeln!(
             f,

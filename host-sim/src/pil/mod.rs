@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! lock_step        the paper's flights under the target's commands, compared with the host's
+//!   motors         the same down to the motors, on a rigid craft
 //! measure          instructions a step, flash, RAM
 //!   worst          what makes a step cost most, on the host
 //!   flights        the paper's flights, flown by the core on the host
@@ -22,6 +23,7 @@ pub mod interrupt;
 pub mod line;
 pub mod lock_step;
 pub mod measure;
+pub mod motors;
 pub mod stored;
 mod worst;
 

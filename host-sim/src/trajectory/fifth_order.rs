@@ -78,6 +78,29 @@ impl Course for Rest {
     }
 }
 
+/// Rest at one place and, from a time on, at another: what no craft can follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jump {
+    /// Before, m.
+    pub from_m: Vector3<f64>,
+    /// After, m.
+    pub to_m: Vector3<f64>,
+    /// When, s.
+    pub at_s: f64,
+    /// Length in time, s.
+    pub duration_s: f64,
+}
+
+impl Course for Jump {
+    fn duration_s(&self) -> f64 {
+        self.duration_s
+    }
+
+    fn at(&self, t_s: f64) -> FifthOrder {
+        FifthOrder::at_rest(if t_s < self.at_s { self.from_m } else { self.to_m }, 0.0)
+    }
+}
+
 /// `S = 35 s^4 - 84 s^5 + 70 s^6 - 20 s^7`, from 0 to 1 with three derivatives of 0 at both ends.
 const SMOOTH: Piece = Piece { duration_s: 1.0, coefficients: [[0.0, 0.0, 0.0, 0.0, 35.0, -84.0, 70.0, -20.0]; 4] };
 

@@ -17,7 +17,7 @@ pub use error::VehicleError;
 
 use crate::model::GRAVITY_M_S2;
 
-/// The built-in vehicles: name and file.
+/// The built-in vehicles: what they are asked for by, and their file.
 const BUILT_IN: [(&str, &str); 3] = [
     ("crazyflie-2.1", include_str!("../../../gains/vehicles/crazyflie-2.1.toml")),
     ("crazyflie-2.1-upgrade-kit", include_str!("../../../gains/vehicles/crazyflie-2.1-upgrade-kit.toml")),
@@ -80,14 +80,14 @@ impl Vehicle {
         BUILT_IN.map(|(name, _)| name)
     }
 
-    /// A built-in vehicle.
+    /// A built-in vehicle, by one of [`Self::names`] or by its own name, which is shorter for the upgrade kit.
     ///
     /// # Errors
     /// [`VehicleError::Unknown`].
     pub fn by_name(name: &str) -> Result<Self, VehicleError> {
         let (_, text) = BUILT_IN
             .iter()
-            .find(|(held, _)| *held == name)
+            .find(|(held, _)| *held == name || held.strip_suffix("-kit") == Some(name))
             .ok_or_else(|| VehicleError::Unknown { name: name.to_owned(), known: Self::names().join(", ") })?;
         Self::from_toml(text)
     }

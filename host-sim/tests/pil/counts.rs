@@ -11,8 +11,12 @@ const STEPS: usize = 200;
 
 fn report() -> Report {
     let build = |image| image::build(&image::checkout().unwrap(), image).unwrap();
-    let images =
-        Images { counting: build(Image::Measure), control_path: build(Image::ControlPath), flying: pipes_image() };
+    let images = Images {
+        counting: build(Image::Measure),
+        control_path: build(Image::ControlPath),
+        motor_path: build(Image::MotorPath),
+        flying: pipes_image(),
+    };
     count(&images, Some(STEPS)).unwrap()
 }
 
@@ -40,4 +44,5 @@ fn every_part_stays_within_its_bound_when_everything_is_turned_fed_forward_and_l
     assert!(report.reference_turning.max <= report.reference.max + 130, "{:?}", report.reference_turning);
     assert!(report.tick.max <= 800, "{:?}", report.tick);
     assert!(report.flash_bytes <= 16 * 1024, "{} bytes", report.flash_bytes);
+    assert!(report.flash_to_motors_bytes > report.flash_bytes, "{} bytes", report.flash_to_motors_bytes);
 }

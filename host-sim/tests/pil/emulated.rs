@@ -55,8 +55,10 @@ fn commands_have_the_bits_of_the_host_and_the_same_hash_on_every_run() {
     let (first, second) = (fly(), fly());
     assert_eq!(first.difference, None);
     assert!(first.bit_exact);
-    assert_eq!((first.steps, first.overruns), (800, 0));
+    assert_eq!((first.steps + first.motors.steps, first.overruns), (800, 0));
     assert_eq!(first.hash, second.hash);
+    assert_eq!(first.motors.difference, None);
+    assert_eq!(first.motors.hash, second.motors.hash);
 }
 
 #[test]

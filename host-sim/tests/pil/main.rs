@@ -5,5 +5,6 @@ mod emulated;
 mod failures;
 mod gain_tables;
 mod hard_fault;
+mod motors;
 mod support;
 mod two_ways;

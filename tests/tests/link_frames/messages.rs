@@ -9,8 +9,8 @@ use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{ArmError, Fault, Mode, StopReason};
 use quatrack::trajectory::TrajectoryError;
 use quatrack::{
-    Command, ErrorForm, FeedForward, FlatSample, Limited, Quaternion, ReferenceError, State, StateError, Step,
-    StepError,
+    Command, ErrorForm, FeedForward, FlatSample, Limited, MotorLimited, MotorStep, Quaternion, ReferenceError,
+    RigidState, State, StateError, Step, StepError,
 };
 
 fn float() -> impl Strategy<Value = f32> + Clone {
@@ -28,6 +28,13 @@ fn state_in() -> impl Strategy<Value = StateIn> {
     })
 }
 
+fn rigid_state_in() -> impl Strategy<Value = RigidStateIn> {
+    (state_in(), vector()).prop_map(|(StateIn { tick, state }, body_rates_rad_s)| RigidStateIn {
+        tick,
+        state: RigidState { state, body_rates_rad_s },
+    })
+}
+
 fn flat_sample() -> impl Strategy<Value = FlatSample> {
     (vector(), vector(), vector(), vector(), float(), float()).prop_map(|(r, v, a, j, heading, rate)| FlatSample {
         position_m: r,
@@ -41,7 +48,7 @@ fn flat_sample() -> impl Strategy<Value = FlatSample> {
 
 fn law_choice() -> impl Strategy<Value = LawChoice> {
     let table = prop_oneof![
-        sample::select(vec![Table::LyapE, Table::LqrE, Table::LyapF, Table::LqrF]),
+        sample::select(vec![Table::LyapE, Table::LqrE, Table::LyapF, Table::LqrF, Table::ActuatorAware]),
         any::<u8>().prop_map(Table::Loaded)
     ];
     let feed_forward = sample::select(vec![FeedForward::Without, FeedForward::With]);
@@ -65,6 +72,8 @@ fn parameter() -> impl Strategy<Value = Parameter> {
         any::<u32>().prop_map(Parameter::OverrunsTolerated),
         any::<u32>().prop_map(Parameter::TelemetryPeriodTicks),
         any::<u32>().prop_map(Parameter::UploadsRefused),
+        float().prop_map(Parameter::BatteryVoltage),
+        array::uniform3(float()).prop_map(Parameter::BodyRateBandwidth),
     ]
 }
 
@@ -103,6 +112,7 @@ pub(crate) fn to_board() -> impl Strategy<Value = ToBoard> {
         Just(ToBoard::UploadQuery),
         any::<u32>().prop_map(|id| ToBoard::UploadCommit { id }),
         Just(ToBoard::TelemetryRequest),
+        rigid_state_in().prop_map(ToBoard::RigidState),
     ]
 }
 
@@ -136,6 +146,9 @@ fn field() -> impl Strategy<Value = Field> {
         Field::Jerk,
         Field::Heading,
         Field::HeadingRate,
+        Field::BodyRates,
+        Field::SnapAndCrackle,
+        Field::HeadingDerivatives,
     ])
 }
 
@@ -156,6 +169,7 @@ fn no_command() -> impl Strategy<Value = NoCommand> {
         reference.prop_map(NoCommand::Reference),
         state.prop_map(|error| NoCommand::Step(StepError::State(error))),
         Just(NoCommand::Step(StepError::Singular)),
+        Just(NoCommand::NoBodyRates),
     ]
 }
 
@@ -164,6 +178,11 @@ fn step() -> impl Strategy<Value = Step> {
         command: Command { thrust_m_s2, body_rates_rad_s: rates },
         limited: Limited::from_bits(limited),
     })
+}
+
+fn motor_step() -> impl Strategy<Value = MotorStep> {
+    (array::uniform4(float()), any::<u16>())
+        .prop_map(|(forces_n, limited)| MotorStep { forces_n, limited: MotorLimited::from_bits(limited) })
 }
 
 fn refusal() -> impl Strategy<Value = Refusal> {
@@ -263,9 +282,16 @@ pub(crate) fn from_board() -> impl Strategy<Value = FromBoard> {
         state_tick,
         result,
     });
+    let result = prop_oneof![motor_step().prop_map(Ok), no_command().prop_map(Err)];
+    let forces = (any::<u32>(), any::<u32>(), result).prop_map(|(tick, state_tick, result)| ForcesOut {
+        tick,
+        state_tick,
+        result,
+    });
     prop_oneof![
         identity.prop_map(FromBoard::Hello),
         command.prop_map(FromBoard::Command),
+        forces.prop_map(FromBoard::Forces),
         telemetry().prop_map(FromBoard::Telemetry),
         any::<u32>().prop_map(|sequence| FromBoard::Ack { sequence }),
         (any::<u32>(), refusal()).prop_map(|(sequence, reason)| FromBoard::Nack { sequence, reason }),

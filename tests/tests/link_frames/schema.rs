@@ -9,7 +9,10 @@ use quatrack::link::*;
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{ArmError, Fault, Mode, StopReason};
 use quatrack::trajectory::TrajectoryError;
-use quatrack::{Command, ErrorForm, FeedForward, FlatSample, Limited, Quaternion, State, StateError, Step, StepError};
+use quatrack::{
+    Command, ErrorForm, FeedForward, FlatSample, Limited, MotorLimited, MotorStep, Quaternion, RigidState, State,
+    StateError, Step, StepError,
+};
 
 fn state_in() -> StateIn {
     let state = State {
@@ -51,6 +54,13 @@ fn to_board() -> Vec<ToBoard> {
         ToBoard::UploadQuery,
         ToBoard::UploadCommit { id: 1 },
         ToBoard::TelemetryRequest,
+        ToBoard::RigidState(RigidStateIn {
+            tick: 300,
+            state: RigidState { state: state_in().state, body_rates_rad_s: Vector3::new(7.0, 8.0, 9.0) },
+        }),
+        ToBoard::SelectLaw(LawChoice::new(Table::ActuatorAware)),
+        ToBoard::SetParameter(Parameter::BatteryVoltage(3.75)),
+        ToBoard::SetParameter(Parameter::BodyRateBandwidth([25.0, 25.0, 10.0])),
     ]
 }
 
@@ -111,6 +121,12 @@ fn from_board() -> Vec<FromBoard> {
         FromBoard::Upload(Progress { id: 1, wanted_offset: 96, length: 300 }),
         FromBoard::Parameter(Parameter::Decimation(2)),
         FromBoard::Fault(FaultReport { fault: Fault::ClockStopped, tick: 7, address: 0x0800_0000 }),
+        FromBoard::Forces(ForcesOut {
+            tick: 7,
+            state_tick: 300,
+            result: Ok(MotorStep { forces_n: [0.0625, 0.125, 0.25, 0.5], limited: MotorLimited::from_bits(0x0123) }),
+        }),
+        FromBoard::Forces(ForcesOut { tick: 7, state_tick: 300, result: Err(NoCommand::NoBodyRates) }),
     ]
 }
 

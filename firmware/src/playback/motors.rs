@@ -1,0 +1,33 @@
+//! The same sources, to the motors: a stored trajectory to its fifth derivative; what the link sends to its jerk, and
+//! without what lies beyond.
+
+use quatrack::{Airframe, FifthOrderSample, MotorReference, Player, ReferenceError, Tick};
+
+use super::{NOWHERE, Playback, Source};
+use crate::motor_control::MotorReferenceSource;
+
+impl MotorReferenceSource for Playback {
+    fn motor_reference(&mut self, now: Tick, airframe: &Airframe) -> Result<MotorReference, ReferenceError> {
+        let tick = self.trajectory_tick(now);
+        let sample = match &mut self.source {
+            Source::Flash(player) if self.moving => return player.motor_reference(tick, airframe),
+            Source::Link(sample) => return MotorReference::from_flat(&FifthOrderSample::of_jerk(*sample), airframe),
+            Source::Flash(player) => player.at(tick),
+            Source::Uploaded(bookmark) => {
+                let trajectory = self.store.active().trajectory();
+                match trajectory.and_then(|trajectory| Player::resume(trajectory, *bookmark)) {
+                    Some(mut player) if self.moving => {
+                        let reference = player.motor_reference(tick, airframe);
+                        *bookmark = player.bookmark();
+                        return reference;
+                    }
+                    Some(mut player) => player.at(tick),
+                    // Another trajectory has been put to use since this one was started.
+                    None => NOWHERE,
+                }
+            }
+            Source::Nothing => NOWHERE,
+        };
+        MotorReference::hover(sample.position_m, sample.heading_rad, airframe)
+    }
+}

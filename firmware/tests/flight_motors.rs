@@ -1,0 +1,291 @@
+//! The flight down to its motors, without a board: the forces are the core's to the bit, and whatever ends a flight ends
+//! with none.
+
+use embedded_hal::i2c::ErrorKind;
+use embedded_hal_mock::eh1::delay::NoopDelay;
+use embedded_hal_mock::eh1::i2c::{Mock as Bus, Transaction as OnBus};
+use embedded_hal_mock::eh1::pwm::{Mock as Channel, Transaction as OnChannel};
+use quatrack::gains::paper;
+use quatrack::link::{ForcesOut, FromBoard, LawChoice, NoCommand, RigidStateIn, StateIn, Table, TrajectoryId};
+use quatrack::nalgebra::Vector3;
+use quatrack::supervisor::{Fault, Mode, StopReason};
+use quatrack::{
+    ActuatorAware, ActuatorMemory, BodyRateLoop, ByBodyRates, Equilibrium, Limits, MotorForces, MotorLag, MotorLaw,
+    MotorTracker, Rate, RigidState, State, StateError, StepError, Tick,
+};
+use quatrack_firmware::craft::{BoardCraft, BodyRates, Craft};
+use quatrack_firmware::drivers::battery::CellVoltage;
+use quatrack_firmware::drivers::bmi088::{Address, Bandwidth, Gyro, Range};
+use quatrack_firmware::drivers::motors::Motors;
+use quatrack_firmware::drivers::thrust_curve::ThrustCurve;
+use quatrack_firmware::flight::{CONFIG, Flight, LOCK_STEP};
+use quatrack_firmware::laws::Refused;
+use quatrack_firmware::motor_control::{AIRFRAME, table};
+use quatrack_firmware::stored;
+
+const LAWS: [Table; 2] = [Table::LqrE, Table::ActuatorAware];
+const NONE: MotorForces = [0.0; 4];
+
+/// Somewhere below the start and turning: every law asks for thrust, and for something else at every step.
+fn state(step: u16) -> RigidState {
+    let k = f32::from(step);
+    let position_m = Vector3::new(0.01 * k, -0.005, -0.1);
+    RigidState { state: State::at_rest(position_m), body_rates_rad_s: Vector3::new(0.2, -0.01 * k, 0.1) }
+}
+
+fn board(table: Table) -> Flight {
+    let mut flight = Flight::new(Box::leak(Box::default()), None);
+    flight.select(LawChoice::new(table)).expect("it is in flash");
+    assert_eq!(flight.law().table, table);
+    flight.playback.start(stored::player(TrajectoryId::Mild).expect("it is in flash"));
+    flight
+}
+
+/// A flight in the air at a tick, on rates that came with the state.
+fn flying(table: Table, now: Tick) -> Flight {
+    let mut flight = board(table);
+    flight.hear(now);
+    flight.arm(now).expect("the link has just been heard");
+    flight.accept_rigid(RigidStateIn { tick: 7, state: state(0) }, now);
+    flight.step(now, false, BodyRates::NoGyroscope);
+    assert_eq!(flight.mode(), Mode::Flying);
+    assert!(flight.forces_n().iter().sum::<f32>() > 4.0 * AIRFRAME.hover_force_n(), "it climbs");
+    flight
+}
+
+fn answered(flight: &mut Flight) -> ForcesOut {
+    match flight.take_message() {
+        Some(FromBoard::Forces(forces)) => forces,
+        other => panic!("not answered by forces: {other:?}"),
+    }
+}
+
+fn stopped(flight: &Flight) -> Option<StopReason> {
+    assert_eq!((*flight.forces_n(), *flight.driven_forces_n()), (NONE, NONE), "a flight that has ended holds no force");
+    match flight.mode() {
+        Mode::Disarmed(reason) => reason,
+        mode => panic!("still {mode}"),
+    }
+}
+
+/// The same law in the core, down to the motors.
+fn core(table: Table, limits: Limits) -> MotorTracker<'static> {
+    let rate = Rate::from_hz(500).unwrap();
+    let law = match table {
+        Table::ActuatorAware => {
+            MotorLaw::ActuatorAware(ActuatorAware::new(&table::ACTUATOR_AWARE, &AIRFRAME, rate).unwrap())
+        }
+        _ => MotorLaw::BodyRates(ByBodyRates {
+            tracker: quatrack::Tracker::new(Equilibrium::new(&paper::LQR_E), limits),
+            body_rates: BodyRateLoop::behind_lag(&AIRFRAME),
+            lag: MotorLag::new(AIRFRAME.figures().motor_lag_s, rate).unwrap(),
+        }),
+    };
+    MotorTracker::new(law, &AIRFRAME)
+}
+
+#[test]
+fn forces_are_the_cores_to_the_bit() {
+    for table in LAWS {
+        let mut flight = flying(table, 100);
+        let tracker = core(table, flight.limits().check().unwrap());
+        let mut memory = ActuatorMemory::at_rest();
+        let mut player = stored::player(TrajectoryId::Mild).unwrap();
+        for step in 0..200 {
+            let now = 100 + 2 * Tick::from(step);
+            if step > 0 {
+                flight.accept_rigid(RigidStateIn { tick: now, state: state(step) }, now);
+                flight.hear(now);
+                flight.step(now, false, BodyRates::NoGyroscope);
+            }
+            let reference = player.motor_reference(now - 100, &AIRFRAME).unwrap();
+            let expected = tracker.step(&mut memory, &state(step), &reference).unwrap();
+            let found = answered(&mut flight).result.unwrap();
+            assert_eq!(found.forces_n.map(f32::to_bits), expected.forces_n.map(f32::to_bits), "{table:?}, step {step}");
+            assert_eq!(found.limited, expected.limited);
+            assert_eq!(flight.forces_n(), &expected.forces_n);
+        }
+    }
+}
+
+#[test]
+fn a_law_that_takes_over_in_flight_knows_the_motors() {
+    let mut flight = flying(Table::LqrE, 0);
+    let first = *flight.forces_n();
+    flight.select(LawChoice::new(Table::ActuatorAware)).expect("it is in flash");
+    flight.step(2, false, BodyRates::NoGyroscope);
+    // As the core has it: the forces that the lag gives after one step of the first law, from motors at rest.
+    let lag = MotorLag::new(AIRFRAME.figures().motor_lag_s, Rate::from_hz(500).unwrap()).unwrap();
+    let mut memory = ActuatorMemory::new(lag.next(&NONE, &first)).unwrap();
+    let reference = stored::player(TrajectoryId::Mild).unwrap().motor_reference(2, &AIRFRAME).unwrap();
+    let limits = flight.limits().check().unwrap();
+    let expected = core(Table::ActuatorAware, limits).step(&mut memory, &state(0), &reference).unwrap();
+    assert_eq!(flight.forces_n(), &expected.forces_n);
+}
+
+#[test]
+fn before_it_is_armed_and_after_a_disarm_there_are_no_forces() {
+    for table in LAWS {
+        let mut flight = board(table);
+        flight.accept_rigid(RigidStateIn { tick: 0, state: state(0) }, 0);
+        flight.step(0, false, BodyRates::Measured(Vector3::zeros()));
+        assert_eq!(flight.forces_n(), &NONE);
+        assert!(!flight.takes_body_rates(), "nobody asks the gyroscope");
+        let mut flight = flying(table, 0);
+        flight.disarm();
+        assert_eq!(stopped(&flight), Some(StopReason::Requested));
+    }
+}
+
+#[test]
+fn whatever_ends_a_flight_ends_with_no_forces() {
+    for table in LAWS {
+        let mut old = flying(table, 0);
+        let now = CONFIG.state_age_max_ticks + 1;
+        old.hear(now);
+        old.watch(now, false);
+        assert_eq!(stopped(&old), Some(StopReason::StaleState));
+
+        let mut silent = flying(table, 0);
+        silent.config.state_age_max_ticks = 10_000;
+        silent.step(CONFIG.link_silence_max_ticks + 1, false, BodyRates::NoGyroscope);
+        assert_eq!(stopped(&silent), Some(StopReason::LinkLost));
+
+        let mut late = flying(table, 0);
+        for tick in 1..=CONFIG.overruns_tolerated + 1 {
+            late.step(tick, true, BodyRates::NoGyroscope);
+        }
+        assert_eq!(stopped(&late), Some(StopReason::Overrun));
+
+        let mut aimless = flying(table, 0);
+        aimless.playback.stop();
+        aimless.step(2, false, BodyRates::NoGyroscope);
+        assert_eq!(stopped(&aimless), Some(StopReason::NoReference));
+
+        let mut faulted = flying(table, 0);
+        faulted.fail(Fault::StackExhausted, 2);
+        assert_eq!(faulted.forces_n(), &NONE);
+        faulted.step(4, false, BodyRates::NoGyroscope);
+        assert_eq!((faulted.forces_n(), faulted.mode()), (&NONE, Mode::Faulted(Fault::StackExhausted)));
+    }
+}
+
+#[test]
+fn body_rates_that_are_none_end_the_flight() {
+    for table in LAWS {
+        for value in [f32::NAN, f32::INFINITY] {
+            let mut flight = flying(table, 0);
+            let _ = flight.take_message();
+            let mut bad = state(1);
+            bad.body_rates_rad_s.y = value;
+            flight.accept_rigid(RigidStateIn { tick: 2, state: bad }, 2);
+            flight.step(2, false, BodyRates::NoGyroscope);
+            assert_eq!(stopped(&flight), Some(StopReason::StepFailed));
+            let refused = answered(&mut flight).result;
+            assert!(
+                matches!(refused, Err(NoCommand::Step(StepError::State(StateError::NonFinite { .. })))),
+                "{refused:?}"
+            );
+        }
+        let mut deaf = flying(table, 0);
+        deaf.step(2, false, BodyRates::Failed);
+        assert_eq!(stopped(&deaf), Some(StopReason::StepFailed), "a gyroscope that fails is not flown without");
+    }
+}
+
+#[test]
+fn without_body_rates_a_law_that_needs_none_commands_and_drives_nothing() {
+    let mut flight = flying(Table::LqrE, 0);
+    flight.accept(StateIn { tick: 2, state: state(1).state }, 2);
+    flight.step(2, false, BodyRates::NoGyroscope);
+    assert_eq!((flight.mode(), flight.forces_n()), (Mode::Flying, &NONE));
+    assert!(matches!(flight.take_message(), Some(FromBoard::Command(command)) if command.result.is_ok()));
+
+    let mut flight = flying(Table::ActuatorAware, 0);
+    flight.accept(StateIn { tick: 2, state: state(1).state }, 2);
+    flight.step(2, false, BodyRates::NoGyroscope);
+    assert_eq!(stopped(&flight), Some(StopReason::StepFailed));
+    let answer = flight.take_message();
+    assert!(matches!(answer, Some(FromBoard::Command(command)) if command.result == Err(NoCommand::NoBodyRates)));
+}
+
+#[test]
+fn the_gyroscope_counts_before_what_came_with_the_state() {
+    for table in LAWS {
+        let (mut sent, mut measured) = (flying(table, 0), flying(table, 0));
+        let rates = state(5).body_rates_rad_s;
+        let with_rates = RigidState { body_rates_rad_s: rates, ..state(1) };
+        sent.accept_rigid(RigidStateIn { tick: 2, state: with_rates }, 2);
+        sent.step(2, false, BodyRates::NoGyroscope);
+        measured.accept_rigid(RigidStateIn { tick: 2, state: state(1) }, 2);
+        measured.step(2, false, BodyRates::Measured(rates));
+        assert_eq!(measured.forces_n(), sent.forces_n(), "{table:?}");
+        // And where none came.
+        measured.accept(StateIn { tick: 4, state: state(2).state }, 4);
+        measured.step(4, false, BodyRates::Measured(rates));
+        assert!(matches!(measured.take_message(), Some(FromBoard::Forces(forces)) if forces.result.is_ok()));
+    }
+}
+
+#[test]
+fn in_lock_step_with_a_simulation_the_motors_stay_off() {
+    let mut flight = board(Table::ActuatorAware);
+    flight.set_decimation(LOCK_STEP);
+    flight.hear(0);
+    flight.arm(0).unwrap();
+    flight.accept_rigid(RigidStateIn { tick: 0, state: state(0) }, 0);
+    flight.step(0, false, BodyRates::NoGyroscope);
+    assert!(answered(&mut flight).result.is_ok());
+    assert_ne!(flight.forces_n(), &NONE, "the simulation has its forces");
+    assert_eq!(flight.driven_forces_n(), &NONE);
+    assert!(!flight.takes_body_rates());
+}
+
+#[test]
+fn the_actuator_aware_table_is_flown_at_its_rate_alone() {
+    let mut flight = board(Table::ActuatorAware);
+    flight.set_decimation(LOCK_STEP);
+    assert_eq!(flight.law().table, Table::ActuatorAware, "states are taken to come at its rate");
+    flight.set_decimation(1);
+    assert_eq!(flight.law().table, Table::LqrE, "dropped at 1 kHz, as loaded tables are");
+    assert_eq!(flight.select(LawChoice::new(Table::ActuatorAware)), Err(Refused::NoTable));
+    flight.set_decimation(2);
+    assert_eq!(flight.select(LawChoice::new(Table::ActuatorAware)), Ok(()));
+}
+
+#[test]
+fn a_boards_craft_is_its_gyroscope_and_its_motors() {
+    let mut bus = Bus::new(&[
+        OnBus::write_read(0x68, vec![0x00], vec![0x0F]),
+        OnBus::write(0x68, vec![0x14, 0xB6]),
+        OnBus::write(0x68, vec![0x0F, 0x04]),
+        OnBus::write_read(0x68, vec![0x0F], vec![0x04]),
+        OnBus::write(0x68, vec![0x10, 0x02]),
+        OnBus::write_read(0x68, vec![0x10], vec![0x82]),
+        OnBus::write(0x68, vec![0x16, 0x0D]),
+        OnBus::write(0x68, vec![0x18, 0x01]),
+        OnBus::write(0x68, vec![0x15, 0x80]),
+        OnBus::write_read(0x68, vec![0x02], vec![0x00, 0x40, 0, 0, 0, 0]),
+        OnBus::write_read(0x68, vec![0x02], vec![0; 6]).with_error(ErrorKind::Bus),
+    ]);
+    let gyro = Gyro::start(bus.clone(), Address::Low, Range::Degrees125, Bandwidth::Hz116, &mut NoopDelay::new());
+    // Off at the start; hover, 166 of 256 at 3.7 V; off again.
+    let channels = [(); 4].map(|()| {
+        Channel::new(&[
+            OnChannel::set_duty_cycle(0),
+            OnChannel::max_duty_cycle(256),
+            OnChannel::set_duty_cycle(166),
+            OnChannel::max_duty_cycle(256),
+            OnChannel::set_duty_cycle(0),
+        ])
+    });
+    let motors = Motors::new(channels.clone(), ThrustCurve::CRAZYFLIE_2_1).unwrap();
+    let mut craft = BoardCraft { gyro: gyro.ok(), motors };
+    let BodyRates::Measured(rates) = craft.body_rates() else { panic!("the chip has answered") };
+    assert!((rates.x - 62.5_f32.to_radians()).abs() < 1e-6 && rates.y == 0.0, "{rates}");
+    assert_eq!(craft.body_rates(), BodyRates::Failed);
+    craft.drive(&[AIRFRAME.hover_force_n(); 4], CellVoltage::NOMINAL);
+    craft.drive(&NONE, CellVoltage::NOMINAL);
+    bus.done();
+    channels.into_iter().for_each(|mut channel| channel.done());
+}
