@@ -240,21 +240,27 @@ impl ForceRange {
     #[inline(always)]
     pub(crate) fn saturate(&self, commands: &MotorForces) -> Option<(MotorForces, MotorLimited)> {
         let is_within = |command: f32| command.to_bits().wrapping_sub(self.least) <= self.span;
-        let [u1, u2, u3, u4] = *commands;
-        if is_within(u1) && is_within(u2) && is_within(u3) && is_within(u4) {
-            return Some((*commands, MotorLimited::NOTHING));
-        }
-        // NaN and infinities stay visible in a sum.
-        if ((u1 + u2) + (u3 + u4)).to_bits() << 1 >= f32::INFINITY.to_bits() << 1 {
-            return None;
-        }
-        // Signed: what is below zero comes first.
-        let (least, most) = (self.min_n.to_bits() as i32, self.max_n.to_bits() as i32);
         let cut = |command: f32| {
+            // Signed: what is below zero comes first.
             let order = command.to_bits() as i32;
-            let at_least = if order < least { self.min_n } else { command };
-            if order > most { self.max_n } else { at_least }
+            let at_least = if order < self.min_n.to_bits() as i32 { self.min_n } else { command };
+            if order > self.max_n.to_bits() as i32 { self.max_n } else { at_least }
         };
-        Some(([cut(u1), cut(u2), cut(u3), cut(u4)], MotorLimited { bits: MotorLimited::MOTORS }))
+        let [u1, u2, u3, u4] = *commands;
+        // NaN and infinities stay visible in a sum.
+        let is_finite = || ((u1 + u2) + (u3 + u4)).to_bits() << 1 < f32::INFINITY.to_bits() << 1;
+        let limited = MotorLimited { bits: MotorLimited::MOTORS };
+        // Each way out leaves alone what has been looked at: the later a motor is the first to be cut, the fewer are left.
+        if !is_within(u1) {
+            if is_finite() { Some(([cut(u1), cut(u2), cut(u3), cut(u4)], limited)) } else { None }
+        } else if !is_within(u2) {
+            if is_finite() { Some(([u1, cut(u2), cut(u3), cut(u4)], limited)) } else { None }
+        } else if !is_within(u3) {
+            if is_finite() { Some(([u1, u2, cut(u3), cut(u4)], limited)) } else { None }
+        } else if !is_within(u4) {
+            if is_finite() { Some(([u1, u2, u3, cut(u4)], limited)) } else { None }
+        } else {
+            Some((*commands, MotorLimited::NOTHING))
+        }
     }
 }
