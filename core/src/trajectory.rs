@@ -235,13 +235,6 @@ impl Piece {
         (Vector3::new(x, y, z), Vector3::new(vx, vy, vz), motion)
     }
 
-    /// Whether it lasts longer than some time.
-    #[cold]
-    #[inline(never)]
-    fn lasts(&self, time_ns: u64) -> bool {
-        time_ns < self.duration_ns
-    }
-
     /// The rest at which it begins.
     fn start(&self) -> FlatSample {
         // A polynomial begins with its first coefficient.
@@ -508,8 +501,8 @@ impl<'a> Player<'a> {
         if tick >= self.end_tick {
             return self.trajectory.summary.end;
         }
-        let time_ns = self.seek(tick);
-        self.piece.at_leisure(time_ns)
+        let elapsed_ns = self.search(self.clock.time_ns(tick));
+        self.piece.at_leisure(elapsed_ns)
     }
 
     /// Finds the piece of a tick before the end, and the time since that began.
@@ -518,9 +511,9 @@ impl<'a> Player<'a> {
         let time_ns = self.clock.time_ns(tick);
         let past_ns = time_ns.wrapping_sub(self.end_ns);
         if time_ns < self.end_ns {
-            // Wraps to more than any piece lasts where that is still to begin; few last longer than 32 bits.
+            // Wraps to more than 32 bits where the piece is still to begin; few pieces last that long.
             let elapsed_ns = past_ns.wrapping_add(self.piece.duration_ns);
-            if elapsed_ns <= u64::from(u32::MAX) || self.piece.lasts(elapsed_ns) {
+            if elapsed_ns <= u64::from(u32::MAX) {
                 return elapsed_ns;
             }
         } else if let Some((next, following)) = self.following.split_first()
@@ -533,11 +526,11 @@ impl<'a> Player<'a> {
         self.search(time_ns)
     }
 
-    /// The same for who skips pieces or goes back.
+    /// The same for who skips pieces or goes back, and later than 4.3 s within one.
     #[cold]
     #[inline(never)]
     fn search(&mut self, time_ns: u64) -> u64 {
-        if time_ns < self.end_ns {
+        if time_ns < self.end_ns - self.piece.duration_ns {
             (self.piece, self.following) = (self.trajectory.first, self.trajectory.following);
             self.end_ns = self.piece.duration_ns;
         }
