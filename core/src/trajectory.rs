@@ -235,6 +235,13 @@ impl Piece {
         (Vector3::new(x, y, z), Vector3::new(vx, vy, vz), motion)
     }
 
+    /// Whether it lasts longer than some time.
+    #[cold]
+    #[inline(never)]
+    fn lasts(&self, time_ns: u64) -> bool {
+        time_ns < self.duration_ns
+    }
+
     /// The rest at which it begins.
     fn start(&self) -> FlatSample {
         // A polynomial begins with its first coefficient.
@@ -511,9 +518,9 @@ impl<'a> Player<'a> {
         let time_ns = self.clock.time_ns(tick);
         let past_ns = time_ns.wrapping_sub(self.end_ns);
         if time_ns < self.end_ns {
-            // Wraps to more than 32 bits where the piece is still to begin; few pieces last that long.
+            // Wraps to more than any piece lasts where that is still to begin; few last longer than 32 bits.
             let elapsed_ns = past_ns.wrapping_add(self.piece.duration_ns);
-            if elapsed_ns <= u64::from(u32::MAX) {
+            if elapsed_ns <= u64::from(u32::MAX) || self.piece.lasts(elapsed_ns) {
                 return elapsed_ns;
             }
         } else if let Some((next, following)) = self.following.split_first()
@@ -526,14 +533,12 @@ impl<'a> Player<'a> {
         self.search(time_ns)
     }
 
-    /// The same for who skips pieces or goes back, and later than 4.3 s within one.
+    /// The same from the start, for who skips pieces or goes back.
     #[cold]
     #[inline(never)]
     fn search(&mut self, time_ns: u64) -> u64 {
-        if time_ns < self.end_ns - self.piece.duration_ns {
-            (self.piece, self.following) = (self.trajectory.first, self.trajectory.following);
-            self.end_ns = self.piece.duration_ns;
-        }
+        (self.piece, self.following) = (self.trajectory.first, self.trajectory.following);
+        self.end_ns = self.piece.duration_ns;
         while time_ns >= self.end_ns {
             let Some((next, following)) = self.following.split_first() else { break };
             (self.piece, self.following) = (next, following);
