@@ -264,3 +264,34 @@ impl ForceRange {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_force_is_cut_to_its_range_whichever_others_are() {
+        let range = ForceRange::of(&Airframe::CRAZYFLIE_2_1);
+        let (min, max) = (range.min_n, range.max_n);
+        let values = [-0.3, -0.0, 0.5 * min, min, 0.5 * (min + max), max, 2.0 * max];
+        for case in 0..values.len().pow(4) {
+            let asked = [1, 7, 49, 343].map(|place| values[case / place % values.len()]);
+            let cut = asked.map(|force| force.max(min).min(max));
+            assert_eq!(range.saturate(&asked), Some((cut, MotorLimited::from_bits(if cut == asked { 0 } else { 8 }))));
+        }
+    }
+
+    #[test]
+    fn a_force_that_is_no_number_is_refused_wherever_it_is() {
+        let range = ForceRange::of(&Airframe::CRAZYFLIE_2_1);
+        for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
+            for motor in 0..4 {
+                for others in [0.05, 0.5, -0.5] {
+                    let mut asked = [others; 4];
+                    asked[motor] = value;
+                    assert_eq!(range.saturate(&asked), None, "{asked:?}");
+                }
+            }
+        }
+    }
+}

@@ -69,8 +69,9 @@ impl Tally {
 /// What the control path costs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// A step of each law, with validation, sign handling and saturation: each controller's, `any E table` for a gain without a zero,
-    /// `actuator-aware` down to the motors, and `any actuator-aware table` for a gain that does not decouple.
+    /// A step of each law, with validation, sign handling and saturation: each controller's, `any E table` for a gain
+    /// without a zero, `actuator-aware` down to the motors, and `any actuator-aware table` for a gain that does not
+    /// decouple.
     pub law: BTreeMap<String, Count>,
     /// The reference of a tick: polynomial to jerk, and the flat map.
     pub reference: Count,
