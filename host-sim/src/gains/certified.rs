@@ -60,7 +60,7 @@ impl Design {
             (&self.problem, &designed.gain_in_parts)
         {
             let found = certify_region(&self.vehicle, gain, *motor_lag_s, timing.period_s, &bounds.grid())?;
-            if !(found.spectral_radius < 1.0) {
+            if found.spectral_radius.is_nan() || found.spectral_radius >= 1.0 {
                 return Err(GainsError::Region { spectral_radius: found.spectral_radius, worst: found.worst });
             }
             region = Some(found);
@@ -80,10 +80,13 @@ impl Design {
         };
         let table = match (&designed.gains, &self.problem) {
             _ if !designed.past_command_gains.is_empty() => None,
-            (Gains::ActuatorAware(gain), Problem::ActuatorAware { motor_lag_s, .. }) => {
-                Some(ActuatorTable::new(head, *motor_lag_s as f32, &rounded(gain)).map(Table::Actuator))
+            (Gains::ActuatorAware(gain), Problem::ActuatorAware { motor_lag_s, .. }) => Some(
+                ActuatorTable::new(head, *motor_lag_s as f32, &rounded(gain))
+                    .map(|table| Table::Actuator(Box::new(table))),
+            ),
+            (gains, _) => {
+                gains.rows().map(|rows| GainTable::new(head, &rows).map(|table| Table::Gains(Box::new(table))))
             }
-            (gains, _) => gains.rows().map(|rows| GainTable::new(head, &rows).map(Table::Gains)),
         };
         let table = table.transpose().map_err(GainsError::Table)?;
         Ok(Certified { design: self.clone(), design_hash, designed, certificate, region, statement, table })

@@ -340,7 +340,8 @@ fn method<W>(file: &DesignFile, weights: W, delay_samples: usize) -> Result<Meth
             key: "method".into(),
             value: name.quoted().into(),
             must:
-                "\"lyapunov\", \"lqr\", \"sampled-lqr\", \"lqi\" or \"actuator-aware\": gains along a trajectory are not certified, and so make no table"
+                "\"lyapunov\", \"lqr\", \"sampled-lqr\", \"lqi\" or \"actuator-aware\": gains along a trajectory are not \
+                 certified, and so make no table"
                     .into(),
         }),
     }

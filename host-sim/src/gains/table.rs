@@ -5,12 +5,12 @@ use quatrack::gains::table::{
 };
 
 /// A table as a board loads it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Table {
     /// For the laws of thrust and body rates.
-    Gains(GainTable),
+    Gains(Box<GainTable>),
     /// For the law of motor forces.
-    Actuator(ActuatorTable),
+    Actuator(Box<ActuatorTable>),
 }
 
 impl Table {
@@ -20,8 +20,8 @@ impl Table {
     /// [`TableError`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, TableError> {
         match ActuatorTable::from_bytes(bytes) {
-            Err(TableError::OtherKind { .. }) => GainTable::from_bytes(bytes).map(Self::Gains),
-            read => read.map(Self::Actuator),
+            Err(TableError::OtherKind { .. }) => GainTable::from_bytes(bytes).map(|table| Self::Gains(Box::new(table))),
+            read => read.map(|table| Self::Actuator(Box::new(table))),
         }
     }
 
