@@ -235,6 +235,13 @@ impl Piece {
         (Vector3::new(x, y, z), Vector3::new(vx, vy, vz), motion)
     }
 
+    /// Whether it lasts longer than some time.
+    #[cold]
+    #[inline(never)]
+    fn lasts(&self, time_ns: u64) -> bool {
+        time_ns < self.duration_ns
+    }
+
     /// The rest at which it begins.
     fn start(&self) -> FlatSample {
         // A polynomial begins with its first coefficient.
@@ -375,10 +382,10 @@ pub struct Player<'a> {
     trajectory: Trajectory<'a>,
     clock: TickClock,
     end_tick: Tick,
-    /// The piece of the last tick and when it begins.
+    /// The piece of the last tick and when it ends.
     piece: &'a Piece,
     following: &'a [Piece],
-    start_ns: u64,
+    end_ns: u64,
 }
 
 /// Where on which trajectory a step is, for laws whose gains belong to one.
@@ -397,9 +404,9 @@ pub struct Bookmark {
     clock: TickClock,
     end_tick: Tick,
     duration_ns: u64,
-    /// Pieces before the current one, and when that begins.
+    /// Pieces before the current one, and when that ends.
     passed: usize,
-    start_ns: u64,
+    end_ns: u64,
 }
 
 impl<'a> Player<'a> {
@@ -408,20 +415,20 @@ impl<'a> Player<'a> {
         let clock = TickClock::new(rate);
         let end_tick = clock.first_tick_at(trajectory.summary.duration_ns);
         let (piece, following) = (trajectory.first, trajectory.following);
-        Self { trajectory, clock, end_tick, piece, following, start_ns: 0 }
+        Self { trajectory, clock, end_tick, piece, following, end_ns: piece.duration_ns }
     }
 
     /// Where it is.
     pub fn bookmark(&self) -> Bookmark {
-        let Self { trajectory, clock, end_tick, start_ns, .. } = *self;
+        let Self { trajectory, clock, end_tick, end_ns, .. } = *self;
         // The piece of the last tick is none of those that follow.
         let passed = trajectory.following.len() - self.following.len();
-        Bookmark { clock, end_tick, duration_ns: trajectory.summary.duration_ns, passed, start_ns }
+        Bookmark { clock, end_tick, duration_ns: trajectory.summary.duration_ns, passed, end_ns }
     }
 
     /// A player that goes on where another one of the same trajectory was; nothing for another trajectory.
     pub fn resume(trajectory: Trajectory<'a>, bookmark: Bookmark) -> Option<Self> {
-        let Bookmark { clock, end_tick, duration_ns, passed, start_ns } = bookmark;
+        let Bookmark { clock, end_tick, duration_ns, passed, end_ns } = bookmark;
         if trajectory.summary.duration_ns != duration_ns {
             return None;
         }
@@ -430,7 +437,7 @@ impl<'a> Player<'a> {
             None => trajectory.first,
             Some(last) => trajectory.following.get(last)?,
         };
-        Some(Self { trajectory, clock, end_tick, piece, following, start_ns })
+        Some(Self { trajectory, clock, end_tick, piece, following, end_ns })
     }
 
     /// The first tick at or after the trajectory's end.
@@ -459,11 +466,11 @@ impl<'a> Player<'a> {
     /// # Errors
     /// [`ReferenceError`] where the trajectory asks for what cannot be flown.
     pub fn motor_reference(&mut self, tick: Tick, airframe: &Airframe) -> Result<MotorReference, ReferenceError> {
-        let Summary { end, shape, .. } = self.trajectory.summary;
         if tick >= self.end_tick {
-            return MotorReference::of_finite(&FifthOrderSample::of_jerk(end), airframe);
+            return MotorReference::of_finite(&FifthOrderSample::of_jerk(self.trajectory.summary.end), airframe);
         }
         let t = seconds(self.seek(tick));
+        let shape = self.trajectory.summary.shape;
         // First, while there is little else to be kept.
         let turn = (!shape.straight).then(|| Turn::new(derivatives(&self.piece.heading, t)));
         let (position_m, velocity_m_s, motion) = self.piece.motion(t, shape);
@@ -501,29 +508,42 @@ impl<'a> Player<'a> {
         if tick >= self.end_tick {
             return self.trajectory.summary.end;
         }
-        let time_ns = self.seek(tick);
-        self.piece.at_leisure(time_ns)
+        let elapsed_ns = self.search(self.clock.time_ns(tick));
+        self.piece.at_leisure(elapsed_ns)
     }
 
     /// Finds the piece of a tick before the end, and the time since that began.
     #[inline]
     fn seek(&mut self, tick: Tick) -> u64 {
         let time_ns = self.clock.time_ns(tick);
-        if time_ns < self.start_ns {
-            self.rewind();
-        }
-        let mut elapsed_ns = time_ns - self.start_ns;
-        while elapsed_ns >= self.piece.duration_ns {
-            let Some((next, following)) = self.following.split_first() else { break };
-            elapsed_ns -= self.piece.duration_ns;
+        let past_ns = time_ns.wrapping_sub(self.end_ns);
+        if time_ns < self.end_ns {
+            // Wraps to more than any piece lasts where that is still to begin; few last longer than 32 bits.
+            let elapsed_ns = past_ns.wrapping_add(self.piece.duration_ns);
+            if elapsed_ns <= u64::from(u32::MAX) || self.piece.lasts(elapsed_ns) {
+                return elapsed_ns;
+            }
+        } else if let Some((next, following)) = self.following.split_first()
+            && past_ns < next.duration_ns
+        {
             (self.piece, self.following) = (next, following);
-            self.start_ns = time_ns - elapsed_ns;
+            self.end_ns += next.duration_ns;
+            return past_ns;
         }
-        elapsed_ns
+        self.search(time_ns)
     }
 
+    /// The same from the start, for who skips pieces or goes back.
     #[cold]
-    fn rewind(&mut self) {
-        (self.piece, self.following, self.start_ns) = (self.trajectory.first, self.trajectory.following, 0);
+    #[inline(never)]
+    fn search(&mut self, time_ns: u64) -> u64 {
+        (self.piece, self.following) = (self.trajectory.first, self.trajectory.following);
+        self.end_ns = self.piece.duration_ns;
+        while time_ns >= self.end_ns {
+            let Some((next, following)) = self.following.split_first() else { break };
+            (self.piece, self.following) = (next, following);
+            self.end_ns += next.duration_ns;
+        }
+        time_ns + self.piece.duration_ns - self.end_ns
     }
 }

@@ -88,12 +88,12 @@ impl Turning {
         let thrust = sqrt(a.x * a.x + a.y * a.y + hz * hz);
         let inverse = 1.0 / thrust;
         let (nx, ny, nz) = (a.x * inverse, a.y * inverse, hz * inverse);
+        let half = 0.5 * (1.0 + nz);
+        let (root, scale) = (sqrt(half), 0.5 / half);
         // Fails for NaN.
         if !(thrust >= MIN_THRUST_M_S2 && nz >= MIN_AXIS_Z) {
             return Err(fault(thrust, nz));
         }
-        let half = 0.5 * (1.0 + nz);
-        let (root, scale) = (sqrt(half), 0.5 / half);
 
         // World to F: the component across n that the tilt turns away, then that along n.
         let across = |v: &Vector3<f32>| {

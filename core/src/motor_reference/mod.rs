@@ -147,8 +147,7 @@ impl MotorReference {
         };
         // Every derivative is in one of the commands; what is not finite stays so in their sum.
         let sum = (commands.thrust + commands.roll) + (commands.pitch + commands.yaw);
-        let in_range = sum.abs() <= f32::MAX;
-        if !in_range {
+        if sum.to_bits() << 1 >= f32::INFINITY.to_bits() << 1 {
             return Err(beyond_range(sum));
         }
         Ok(Self {

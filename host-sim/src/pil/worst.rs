@@ -3,6 +3,8 @@
 //! The reference turns, errors are in its heading frame, the reference's input is left out and fed forward, the limits are
 //! off, below and above what is commanded, and the measured quaternion changes its sign every step.
 
+pub(super) mod motors;
+
 use quatrack::law::EquilibriumGain;
 use quatrack::link::{LawChoice, LimitsSetting};
 use quatrack::{
@@ -37,13 +39,14 @@ fn dense() -> [[f32; 9]; 4] {
     paper::LQR_E.gain().rows().map(|row| row.map(|entry| if entry == 0.0 { 0.1 } else { entry }))
 }
 
-/// What the target is told before the flights: the dense gain and the limits.
+/// What the target is told before the flights: the dense gain, the limits and the dense gain to the motors.
 pub(super) fn head() -> Vec<u8> {
     let limits = LIMITS.iter().flat_map(|limits| {
         let [p, q, r] = limits.body_rates_max_rad_s;
         [limits.thrust_min_m_s2, limits.thrust_max_m_s2, p, q, r]
     });
-    dense().into_iter().flatten().chain(limits).flat_map(f32::to_le_bytes).collect()
+    let to_motors = motors::dense().into_iter().flatten();
+    dense().into_iter().flatten().chain(limits).chain(to_motors).flat_map(f32::to_le_bytes).collect()
 }
 
 /// What the target is to answer.
@@ -74,7 +77,7 @@ impl Host {
         let dense = EquilibriumGain::new(dense()).map_err(|_| refused("the dense gain"))?;
         let [off, below, above] = LIMITS.map(|limits| limits.check().map_err(|_| refused("the limits")));
         let limits = [off?, below?, above?];
-        Ok(Self { controller, dense, limits, stored: Player::new(stored, rate), turning: turn(pieces), rate })
+        Ok(Self { controller, dense, limits, stored: Player::new(stored, rate), turning: turn(pieces, TURN), rate })
     }
 
     /// Every command of a step.
@@ -86,12 +89,12 @@ impl Host {
         let sign = |q: Quaternion| if step.is_multiple_of(2) { q } else { -q };
         let reference = Player::new(Trajectory::new(&self.turning).ok()?, self.rate).reference(step).ok()?;
         let state = State { attitude: sign(recorded.attitude * reference.heading().quaternion()), ..*recorded };
-        let mut hash = 0x811c_9dc5_u32;
+        let mut hash = HASH;
         for limits in self.limits {
             for feed_forward in FEED_FORWARD {
                 let Step { command, .. } =
                     Tracker::new(self.law(feed_forward)?, limits).step(&state, &reference).ok()?;
-                hash = lock_step::words(&command).iter().fold(hash, |h, word| (h ^ word).wrapping_mul(0x0100_0193));
+                hash = hashed(hash, lock_step::words(&command));
             }
         }
         let command = match self.controller {
@@ -114,9 +117,16 @@ impl Host {
     }
 }
 
-/// The same pieces with a heading that grows all the while, by the very operations of the target.
-fn turn(pieces: &[Piece]) -> Vec<Piece> {
-    let [mut heading, rate] = TURN;
+/// Of nothing.
+const HASH: u32 = 0x811c_9dc5;
+
+/// A hash carried on.
+fn hashed<const N: usize>(hash: u32, words: [u32; N]) -> u32 {
+    words.iter().fold(hash, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193))
+}
+
+/// The same pieces with a heading that grows all the while, from a start at a rate, by the very operations of the target.
+fn turn(pieces: &[Piece], [mut heading, rate]: [f32; 2]) -> Vec<Piece> {
     let turned = pieces.iter().map(|piece| {
         let start = heading;
         heading += rate * (piece.duration_ns as f32 * 1e-9);
