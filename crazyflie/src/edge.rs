@@ -197,6 +197,7 @@ fn is_all_the_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
 
 /// Modes and the frame of the velocity, as two words of the target.
 #[inline]
+#[allow(clippy::unnecessary_cast, reason = "an enum is four bytes where enums are not short")]
 fn words(setpoint: &abi::Setpoint) -> [u32; 2] {
     let abi::Modes { x, y, z, roll, pitch, yaw, quat } = &setpoint.mode;
     let word = |bytes: [u8; 4]| u32::from_ne_bytes(bytes);
