@@ -12,6 +12,8 @@ use crate::analysis::eigenvalues;
 
 /// Steps of the scaling and of the phases.
 const MAX_STEPS: usize = 200;
+/// Sweeps of the quick scaling.
+const OSBORNE_SWEEPS: usize = 4;
 
 /// Bounds of `mu(M)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +33,30 @@ pub fn structured_bounds(m: &DMatrix<Complex64>) -> Option<StructuredBounds> {
 /// Only the upper bound.
 pub(super) fn structured_upper_bound(m: &DMatrix<Complex64>) -> Option<f64> {
     scaled_norm(m).map(|(_, upper)| upper)
+}
+
+/// An upper bound for matrices by the thousand: the smaller of the largest singular values of M and of `D M D^-1`, D such
+/// that its row and column sums are nearly equal (Osborne 1960). Both are bounds for any D.
+pub(super) fn quick_upper_bound(m: &DMatrix<Complex64>) -> Option<f64> {
+    let n = m.nrows();
+    if n == 0 || m.ncols() != n || !m.iter().all(|value| value.re.is_finite() && value.im.is_finite()) {
+        return None;
+    }
+    let mut d = DVector::from_element(n, 1.0);
+    for _ in 0..OSBORNE_SWEEPS {
+        for i in 0..n {
+            let others = || (0..n).filter(|j| *j != i);
+            let row: f64 = others().map(|j| (m[(i, j)].norm() / d[j]).powi(2)).sum();
+            let column: f64 = others().map(|j| (m[(j, i)].norm() * d[j]).powi(2)).sum();
+            if row > 0.0 && column > 0.0 {
+                // d_i^2 row = column / d_i^2.
+                d[i] = (column / row).powf(0.25);
+            }
+        }
+    }
+    let norm = |m: &DMatrix<Complex64>| (m.adjoint() * m).symmetric_eigenvalues().max().sqrt();
+    let scaled = DMatrix::from_fn(n, n, |i, j| m[(i, j)] * (d[i] / d[j]));
+    Some(norm(m).min(norm(&scaled)))
 }
 
 /// `D M D^-1` of smallest norm that was found, and that norm.
@@ -106,7 +132,7 @@ fn lower_bound(m: &DMatrix<Complex64>, scaled: &DMatrix<Complex64>) -> Option<f6
 }
 
 /// Of a complex matrix: the real matrix `[re -im; im re]` has its eigenvalues and their conjugates.
-fn spectral_radius(m: &DMatrix<Complex64>) -> Option<f64> {
+pub(super) fn spectral_radius(m: &DMatrix<Complex64>) -> Option<f64> {
     let n = m.nrows();
     let embedded = DMatrix::from_fn(2 * n, 2 * n, |i, j| {
         let value = m[(i % n, j % n)];

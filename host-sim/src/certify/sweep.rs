@@ -31,6 +31,15 @@ pub(super) fn grid(low: f64, high: f64, resonances: &[Complex64]) -> Vec<f64> {
 /// Highest value and where it is, over the points and refined between them; nothing if the function fails everywhere.
 pub(super) fn peak(points: &[f64], function: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
     let values: Vec<f64> = points.iter().map(|point| function(*point).unwrap_or(f64::NEG_INFINITY)).collect();
+    refined_peak(points, &values, function)
+}
+
+/// The same where the values at the points are known.
+pub(super) fn refined_peak(
+    points: &[f64],
+    values: &[f64],
+    function: impl Fn(f64) -> Option<f64>,
+) -> Option<(f64, f64)> {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let mut best: Option<(f64, f64)> = None;
     for (i, value) in values.iter().enumerate() {

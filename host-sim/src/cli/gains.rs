@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use quatrack::gains::table::GainTable;
+use quatrack::gains::table::{GainTable, ScheduleTable, TableError, TableHead, TableKind};
 use quatrack_sim::gains::{self, Certified, Checked, Design, Failed, GainsError, Signal};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -219,8 +219,8 @@ fn show(path: &Path, json: Option<&Path>) -> Result<(), Failure> {
             (of_document(&document), document)
         }
         "bin" => {
-            let table = GainTable::from_bytes(&read(path)?)
-                .map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+            let table =
+                Binary::read(&read(path)?).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
             (of_table(&table), table_json(&table))
         }
         _ => {
@@ -258,17 +258,85 @@ fn of_document(document: &Value) -> String {
     let names = |signals: &Value| -> Vec<String> {
         signals.as_array().into_iter().flatten().map(|signal| text(&signal["name"])).collect()
     };
-    let entries: Vec<Vec<f64>> = gain["k"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .map(|row| row.as_array().into_iter().flatten().filter_map(Value::as_f64).collect())
-        .collect();
-    out + &matrix(&names(&gain["rows"]), &names(&gain["columns"]), &entries) + "\n" + &figures(document)
+    let entries = |k: &Value| -> Vec<Vec<f64>> {
+        let numbers = |row: &Value| row.as_array().into_iter().flatten().filter_map(Value::as_f64).collect();
+        k.as_array().into_iter().flatten().map(numbers).collect()
+    };
+    let (rows, columns) = (names(&gain["rows"]), names(&gain["columns"]));
+    let knots = &gain["knots"];
+    if knots.is_object() {
+        let gains: Vec<_> = gain["k"].as_array().into_iter().flatten().map(entries).collect();
+        let _ = writeln!(out, "  {}", told_knots(gains.len(), &knots["steps_per_knot"], &knots["trajectory"]));
+        out += &over_time(&rows, &columns, &gains);
+    } else {
+        out += &matrix(&rows, &columns, &entries(&gain["k"]));
+    }
+    out + "\n" + &figures(document)
+}
+
+fn told_knots(count: usize, steps_per_knot: &Value, trajectory: &Value) -> String {
+    let trajectory = trajectory.as_str().unwrap_or_default();
+    format!("{count} knots, one in {steps_per_knot} control steps, for the trajectory {trajectory}")
+}
+
+/// The gain that is flown behind the last knot, and the one furthest from it.
+fn over_time(rows: &[String], columns: &[String], gains: &[Vec<Vec<f64>>]) -> String {
+    let Some(last) = gains.last() else { return String::new() };
+    let distance = |gain: &[Vec<f64>]| -> f64 {
+        let pairs = gain.iter().flatten().zip(last.iter().flatten());
+        pairs.map(|(entry, last)| (entry - last).powi(2)).sum()
+    };
+    let mut out = format!("\n  the last, flown from there on\n{}", matrix(rows, columns, last));
+    let furthest = gains.iter().enumerate().max_by(|(_, x), (_, y)| distance(x).total_cmp(&distance(y)));
+    if let Some((knot, gain)) = furthest {
+        let _ = write!(out, "\n  knot {knot}, furthest from it\n{}", matrix(rows, columns, gain));
+    }
+    out
+}
+
+/// A binary table of either form.
+enum Binary {
+    Fixed(GainTable),
+    OverTime { head: TableHead, steps_per_knot: u16, trajectory: u32, gains: Vec<[[f32; 9]; 4]> },
+}
+
+impl Binary {
+    fn read(bytes: &[u8]) -> Result<Self, TableError> {
+        if TableKind::of(bytes)? != TableKind::AlongTrajectory {
+            return GainTable::from_bytes(bytes).map(Self::Fixed);
+        }
+        let table = ScheduleTable::from_bytes(bytes)?;
+        let schedule = table.schedule();
+        Ok(Self::OverTime {
+            head: *table.head(),
+            steps_per_knot: schedule.steps_per_knot(),
+            trajectory: schedule.trajectory(),
+            gains: (0..schedule.knots()).filter_map(|knot| schedule.gain(knot)).collect(),
+        })
+    }
+
+    fn head(&self) -> &TableHead {
+        match self {
+            Self::Fixed(table) => table.head(),
+            Self::OverTime { head, .. } => head,
+        }
+    }
+
+    fn kind(&self) -> TableKind {
+        match self {
+            Self::Fixed(table) => table.kind(),
+            Self::OverTime { .. } => TableKind::AlongTrajectory,
+        }
+    }
+}
+
+/// The entries of one gain by rows.
+fn by_rows(entries: &[f32], columns: usize) -> Vec<Vec<f32>> {
+    entries.chunks(columns).map(<[f32]>::to_vec).collect()
 }
 
 /// What a binary table says.
-fn of_table(table: &GainTable) -> String {
+fn of_table(table: &Binary) -> String {
     let (head, certificate) = (table.head(), &table.head().certificate);
     let rates = head.limits.body_rates_max_rad_s();
     let (one, all) = (&certificate.one_channel, &certificate.all_channels);
@@ -290,10 +358,19 @@ fn of_table(table: &GainTable) -> String {
     );
     let (rows, columns) = gains::signals(table.kind());
     let names = |signals: &[Signal]| signals.iter().map(|signal| signal.name.to_owned()).collect::<Vec<_>>();
-    let gain = table.rows();
-    let entries: Vec<Vec<f64>> =
-        gain.entries().chunks(columns.len()).map(|row| row.iter().map(|k| f64::from(*k)).collect()).collect();
-    out += &matrix(&names(rows), &names(columns), &entries);
+    let (rows, columns) = (names(rows), names(columns));
+    let entries = |entries: &[f32]| -> Vec<Vec<f64>> {
+        entries.chunks(columns.len()).map(|row| row.iter().map(|k| f64::from(*k)).collect()).collect()
+    };
+    match table {
+        Binary::Fixed(table) => out += &matrix(&rows, &columns, &entries(table.rows().entries())),
+        Binary::OverTime { steps_per_knot, trajectory, gains, .. } => {
+            let trajectory = format!("{trajectory:08x}").into();
+            let _ = writeln!(out, "  {}", told_knots(gains.len(), &(*steps_per_knot).into(), &trajectory));
+            let gains: Vec<_> = gains.iter().map(|gain| entries(gain.as_flattened())).collect();
+            out += &over_time(&rows, &columns, &gains);
+        }
+    }
     let _ = write!(
         out,
         "\n  gain margin of one channel                     {:>16}\n\
@@ -314,12 +391,11 @@ fn of_table(table: &GainTable) -> String {
     out
 }
 
-fn table_json(table: &GainTable) -> Value {
+fn table_json(table: &Binary) -> Value {
     let (head, certificate) = (table.head(), &table.head().certificate);
     let rates = head.limits.body_rates_max_rad_s();
     let columns = usize::from(table.kind().dimensions().1);
-    let k: Vec<Vec<f32>> = table.rows().entries().chunks(columns).map(<[f32]>::to_vec).collect();
-    json!({
+    let mut document = json!({
         "name": head.name.as_str(),
         "kind": table.kind().to_string(),
         "vehicle": head.vehicle.name.as_str(),
@@ -338,8 +414,16 @@ fn table_json(table: &GainTable) -> Value {
         "delay_max_s": certificate.delay_max_s,
         "motor_lag_max_s": certificate.motor_lag_max_s,
         "f32_distance": certificate.f32_distance,
-        "k_f32": k,
-    })
+    });
+    document["k_f32"] = match table {
+        Binary::Fixed(table) => json!(by_rows(table.rows().entries(), columns)),
+        Binary::OverTime { steps_per_knot, trajectory, gains, .. } => {
+            document["steps_per_knot"] = json!(steps_per_knot);
+            document["trajectory"] = json!(format!("{trajectory:08x}"));
+            gains.iter().map(|gain| json!(by_rows(gain.as_flattened(), columns))).collect()
+        }
+    };
+    document
 }
 
 /// A matrix with a line for each row; zeros as dots, so that its structure shows.

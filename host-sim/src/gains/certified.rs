@@ -1,13 +1,16 @@
 //! A design carried out: design in; gains, certificate and table out, or the figure that fails.
 
-use quatrack::gains::table::{GainTable, Hash, Name, TABLE_BYTES_MAX, TableHead, Vehicle};
+use quatrack::gains::table::{
+    GainTable, Hash, Name, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable, TABLE_BYTES_MAX, TableError, TableHead,
+    Vehicle,
+};
 use serde::Serialize;
 
 use super::GainsError;
 use super::design::{Design, Problem};
-use super::designed::Designed;
+use super::designed::{Designed, TableRows};
 use super::statement::{Statement, sha256};
-use crate::certify::{Certificate, Minimum, certify, require};
+use crate::certify::{Certificate, Minimum, require};
 
 /// A design with its gains, and what they promise.
 #[derive(Debug, Clone)]
@@ -23,7 +26,21 @@ pub struct Certified {
     /// What the table says of them.
     pub statement: Statement,
     /// The table; none where no law on board flies the gains, as those that remember past commands.
-    pub table: Option<GainTable>,
+    pub table: Option<Table>,
+}
+
+/// A table that a board loads.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Table {
+    /// One gain.
+    Fixed(GainTable),
+    /// Gains over time, which the core reads where they stand.
+    OverTime {
+        /// What it says beside the gains.
+        head: TableHead,
+        /// The whole of it.
+        bytes: Vec<u8>,
+    },
 }
 
 /// What the hash of a design is taken of: all that its gains, its limits and its acceptance depend on.
@@ -49,8 +66,7 @@ impl Design {
     /// with the first figure that falls short; [`GainsError::Table`] for gains that the core refuses.
     pub fn certify(&self) -> Result<Certified, GainsError> {
         let designed = Designed::of(self)?;
-        let (plant, controller, timing) = designed.closed_loop(self.rate.hz());
-        let certificate = certify(&plant, &controller, &timing, self.rate_loop_gain_1_s)?;
+        let certificate = designed.certify(self)?;
         require(&certificate, &self.minimum)?;
         let design_hash = sha256(&self.essence());
         let statement = Statement::new(self, &design_hash, &designed, &certificate);
@@ -63,11 +79,23 @@ impl Design {
             certificate: statement.on_board(),
         };
         let table = if designed.past_command_gains.is_empty() {
-            Some(GainTable::new(head, &designed.gains.rows()).map_err(GainsError::Table)?)
+            Some(self.table(head, &designed.gains.rows()).map_err(GainsError::Table)?)
         } else {
             None
         };
         Ok(Certified { design: self.clone(), design_hash, designed, certificate, statement, table })
+    }
+
+    fn table(&self, head: TableHead, rows: &TableRows) -> Result<Table, TableError> {
+        let gains = match rows {
+            TableRows::Fixed(rows) => return Ok(Table::Fixed(GainTable::new(head, rows)?)),
+            TableRows::OverTime(gains) => gains,
+        };
+        let (trajectory, steps_per_knot) = self.problem.schedule().unwrap_or_default();
+        let rows = ScheduleRows { trajectory, steps_per_knot, gains };
+        let mut buffer = [0; SCHEDULE_BYTES_MAX];
+        let bytes = ScheduleTable::write(&mut buffer, &head, &rows)?.bytes().to_vec();
+        Ok(Table::OverTime { head, bytes })
     }
 
     pub(super) fn essence(&self) -> Essence<'_> {
@@ -99,7 +127,19 @@ impl Design {
 impl Certified {
     /// The table as a file; nothing where there is none.
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
-        let mut buffer = [0; TABLE_BYTES_MAX];
-        Some(self.table.as_ref()?.to_bytes(&mut buffer)?.to_vec())
+        match self.table.as_ref()? {
+            Table::Fixed(table) => table.to_bytes(&mut [0; TABLE_BYTES_MAX]).map(<[u8]>::to_vec),
+            Table::OverTime { bytes, .. } => Some(bytes.clone()),
+        }
+    }
+}
+
+impl Table {
+    /// What it says beside the gains.
+    pub fn head(&self) -> &TableHead {
+        match self {
+            Self::Fixed(table) => table.head(),
+            Self::OverTime { head, .. } => head,
+        }
     }
 }

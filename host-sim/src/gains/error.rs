@@ -83,6 +83,11 @@ pub enum GainsError {
 impl GainsError {
     /// Whether the design was understood and the answer is no, as opposed to a file that cannot be used.
     pub fn is_verdict(&self) -> bool {
-        matches!(self, Self::Certify(CertifyError::Unstable { .. }) | Self::Minimum(_) | Self::Table(_))
+        matches!(
+            self,
+            Self::Certify(CertifyError::Unstable { .. } | CertifyError::UnstableAtKnot { .. })
+                | Self::Minimum(_)
+                | Self::Table(_)
+        )
     }
 }
