@@ -144,3 +144,30 @@ pub(super) fn spectral_radius(m: &DMatrix<Complex64>) -> Option<f64> {
     });
     Some(eigenvalues(&embedded).ok()?.iter().map(|value| value.norm()).fold(0.0, f64::max))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quick_bound_is_one_and_not_far_above_the_best() {
+        // Dense, triangular, badly scaled: entries of modulus around 1 from a rotation.
+        for (spread, triangular) in [(0.0, false), (2.0, false), (0.0, true), (4.0, true)] {
+            let entry = |i: usize, j: usize| {
+                let size = 1.0 + 0.3 * ((3 * i + 5 * j) as f64).sin();
+                let scale = (spread * (i as f64 - j as f64) / 3.0).exp();
+                if triangular && j > i {
+                    Complex64::ZERO
+                } else {
+                    Complex64::from_polar(size * scale, (7 * i + 4 * j * j) as f64)
+                }
+            };
+            let m = DMatrix::from_fn(4, 4, entry);
+            let best = structured_bounds(&m).unwrap();
+            let quick = quick_upper_bound(&m).unwrap();
+            assert!(quick >= best.lower && quick >= best.upper * (1.0 - 1e-9), "{quick} below {best:?}");
+            assert!(quick <= 1.2 * best.upper, "{quick} far above {best:?}");
+        }
+        assert_eq!(quick_upper_bound(&DMatrix::from_element(2, 2, Complex64::new(f64::NAN, 0.0))), None);
+    }
+}
