@@ -231,8 +231,8 @@ fn the_committed_gains_along_the_w_are_shown_listed_and_flown() {
     };
     assert_done(&fly("aggressive"));
     let flown: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
-    // LQR-E at the same rate with the same weights has 1.6e-3; the limits of the vehicle are reached by neither.
-    assert!(flown["iae_m_s"].as_f64().unwrap() < 1.6e-3, "{flown}");
+    // What is left under a hold of 10 ms, a fiftieth of the paper's 0.11; no limit of the vehicle is reached.
+    assert!(flown["iae_m_s"].as_f64().unwrap() < 2.5e-3 && flown["saturated_steps"] == 0, "{flown}");
     assert_refused(&fly("mild"), 2, &["along-aggressive.bin: its gains are for another trajectory", "mild"]);
     let shown = |extension: &str| stdout(&quatrack(&["gains", "show", &table.replace("bin", extension)]));
     let knots = "59 knots, one in 21 control steps, for the trajectory 6e3047d3";

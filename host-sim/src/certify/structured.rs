@@ -166,7 +166,8 @@ mod tests {
             let best = structured_bounds(&m).unwrap();
             let quick = quick_upper_bound(&m).unwrap();
             assert!(quick >= best.lower && quick >= best.upper * (1.0 - 1e-9), "{quick} below {best:?}");
-            assert!(quick <= 1.2 * best.upper, "{quick} far above {best:?}");
+            // Of a triangular matrix the best scaling is an infinite one, which sweeps do not reach.
+            assert!(triangular || quick <= 1.2 * best.upper, "{quick} far above {best:?}");
         }
         assert_eq!(quick_upper_bound(&DMatrix::from_element(2, 2, Complex64::new(f64::NAN, 0.0))), None);
     }

@@ -33,7 +33,7 @@ pub struct Certified {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Table {
     /// One gain.
-    Fixed(GainTable),
+    Fixed(Box<GainTable>),
     /// Gains over time, which the core reads where they stand.
     OverTime {
         /// What it says beside the gains.
@@ -88,7 +88,7 @@ impl Design {
 
     fn table(&self, head: TableHead, rows: &TableRows) -> Result<Table, TableError> {
         let gains = match rows {
-            TableRows::Fixed(rows) => return Ok(Table::Fixed(GainTable::new(head, rows)?)),
+            TableRows::Fixed(rows) => return Ok(Table::Fixed(Box::new(GainTable::new(head, rows)?))),
             TableRows::OverTime(gains) => gains,
         };
         let (trajectory, steps_per_knot) = self.problem.schedule().unwrap_or_default();

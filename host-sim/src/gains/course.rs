@@ -57,8 +57,8 @@ impl Course {
         let checksum = Trajectory::new(&pieces).map_err(|error| unusable(&error))?.checksum();
         let trajectory = core_loop::trajectory(&pieces).map_err(|error| unusable(&error))?;
         let end = trajectory.at(trajectory.duration_s());
-        let moving = [end.velocity_m_s, end.acceleration_m_s2, end.jerk_m_s3].iter().any(|rate| !(rate.norm() < REST));
-        if moving || !(end.heading_rate_rad_s.abs() < REST) {
+        let rests = [end.velocity_m_s, end.acceleration_m_s2, end.jerk_m_s3].iter().all(|rate| rate.norm() < REST);
+        if !rests || end.heading_rate_rad_s.abs() >= REST {
             return Err(refused("one that ends at rest: behind it the last gain is flown".into()));
         }
         Ok(Self { trajectory, checksum })

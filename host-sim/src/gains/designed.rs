@@ -100,7 +100,7 @@ pub enum Gains {
 #[derive(Debug, Clone, PartialEq)]
 pub enum TableRows {
     /// One gain.
-    Fixed(Rows),
+    Fixed(Box<Rows>),
     /// A gain at each knot.
     OverTime(Vec<[[f32; 9]; 4]>),
 }
@@ -128,12 +128,12 @@ impl Gains {
 
     /// As the core flies it, every entry the nearest f32.
     pub fn rows(&self) -> TableRows {
-        TableRows::Fixed(match self {
+        TableRows::Fixed(Box::new(match self {
             Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),
             Self::FlatOutput(gain) => Rows::FlatOutput(rounded(gain)),
             Self::Integral(gain) => Rows::Integral(rounded(gain)),
             Self::Along(along) => return TableRows::OverTime(rounded_along(along)),
-        })
+        }))
     }
 
     /// The same, each row a list; of gains over time the rows of one knot after those of the other.

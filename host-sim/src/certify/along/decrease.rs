@@ -89,7 +89,7 @@ impl MovingDecrease {
             None => f64::INFINITY,
         };
         self.rounding = self.rounding.max(4.0 * 9.0 * f64::EPSILON / share);
-        if !(ratio <= self.largest_ratio * WORSE) {
+        if ratio.is_nan() || ratio > self.largest_ratio * WORSE {
             (self.largest_ratio, self.largest_ratio_at_s) = (ratio, time_s);
         }
     }

@@ -141,7 +141,7 @@ pub(super) fn margins(knots: &[Frozen]) -> Result<(LoopMargins, usize), CertifyE
         let knot = &knots[index];
         let held = SampledLoop::in_f64(&knot.given, &knot.timing, 0.0, |_| false)?;
         let points_rad_s = sampled_grid(&knot.poles, knot.timing.period_s);
-        let mut measures = vec![Vec::with_capacity(points_rad_s.len()); 2 * CHANNELS + 1];
+        let mut measures = vec![Vec::new(); 2 * CHANNELS + 1];
         for point in &points_rad_s {
             let s = held.sensitivity(point * knot.timing.period_s);
             for (values, measure) in measures.iter_mut().zip(Measure::every()) {

@@ -104,14 +104,14 @@ fn over_time(rows: &[String], columns: &[String], gains: &[Vec<Vec<f64>>]) -> St
 
 /// A binary table of either form.
 enum Binary {
-    Fixed(GainTable),
+    Fixed(Box<GainTable>),
     OverTime { head: TableHead, steps_per_knot: u16, trajectory: u32, gains: Vec<[[f32; 9]; 4]> },
 }
 
 impl Binary {
     fn read(bytes: &[u8]) -> Result<Self, TableError> {
         if TableKind::of(bytes)? != TableKind::AlongTrajectory {
-            return GainTable::from_bytes(bytes).map(Self::Fixed);
+            return GainTable::from_bytes(bytes).map(Box::new).map(Self::Fixed);
         }
         let table = ScheduleTable::from_bytes(bytes)?;
         let schedule = table.schedule();
