@@ -9,6 +9,7 @@ const LQR_E: &str = include_str!("../../gains/lqr-e.toml");
 const LQR_F: &str = include_str!("../../gains/lqr-f.toml");
 const LYAP_F: &str = include_str!("../../gains/lyap-f.toml");
 const LQI_E: &str = include_str!("../../gains/lqi-e.toml");
+const ALONG: &str = include_str!("../../gains/along-aggressive.toml");
 const SAMPLED: &str = include_str!("../../gains/sampled-lqr-e.toml");
 
 fn read(text: &str) -> Result<Design, GainsError> {
@@ -68,7 +69,18 @@ fn what_cannot_be_used_is_named_with_its_value_and_the_remedy() {
         ),
         (LQR_E, "\"lqr\"", "\"lqi\"", &["weights.position_integral is missing; method = \"lqi\" needs it"]),
         (LQR_F, "\"lqr\"", "\"lqi\"", &["method = \"lqi\" does not belong to linearisation = \"flat-output\""]),
-        (LQR_E, "\"lqr\"", "\"along\"", &["method = \"along\": must be", "not certified"]),
+        (LQR_E, "\"lqr\"", "\"along\"", &["trajectory is missing; method = \"along\" needs it"]),
+        (LQR_F, "\"lqr\"", "\"along\"", &["method = \"along\" does not belong to linearisation = \"flat-output\""]),
+        (
+            LQR_E,
+            "\"lqr\"",
+            "\"lqr\"\ntrajectory = \"mild\"",
+            &["trajectory = \"mild\" does not belong to method = \"lqr\""],
+        ),
+        (ALONG, "\"aggressive\"", "\"no/such.csv\"", &["trajectory = \"no/such.csv\"", "cannot be read"]),
+        (ALONG, "\"aggressive\"", "\"../plans/mild.toml\"", &["mild.toml", "a plan", "quatrack plan"]),
+        (ALONG, "[50.0, 50.0, 50.0]", "[50.0, 0.0, 50.0]", &["weights = 0: must be above 0 for each error"]),
+        (ALONG, "_hz = 100", "_hz = 100\ndelay_samples = 1", &["delay_samples = 1 does not belong"]),
         (LQI_E, "\"lqi\"", "\"lqr\"", &["weights.position_integral = [50.0, 50.0, 50.0] does not belong"]),
         (LQR_E, "= 20.0", "= 0.0", &["rate_loop_gain_1_s = 0"]),
         (LQR_E, "gain_factor_all = 2.0", "gain_factor_all = 0.9", &["minimum.gain_factor_all = 0.9: must be above 1"]),

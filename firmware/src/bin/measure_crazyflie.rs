@@ -63,7 +63,7 @@ mod image {
 
     fn run() -> Option<()> {
         let peripherals = Peripherals::take()?;
-        let counter = Counter::start(peripherals.TIM2, &peripherals.RCC);
+        let counter = Counter::start(peripherals.TIM5, &peripherals.RCC);
         let mut calls = File::open(c"calls.bin", Mode::Read)?;
         let mut counts = File::open(c"counts.bin", Mode::Write)?;
         let start = counter.now();

@@ -5,6 +5,7 @@ use num_complex::Complex64;
 use serde::Serialize;
 
 use super::CertifyError;
+use super::along::AlongFigures;
 use super::decrease::{self, Decrease};
 use super::limits::{Disturbance, StabilityLimit, limits};
 use super::linear_loop::LinearLoop;
@@ -42,6 +43,9 @@ pub struct Certificate {
     pub lag: Vec<StabilityLimit>,
     /// Largest time constant of the motors inside a rate loop, by channel and for all at once, s; absent if not asked for.
     pub motors_in_rate_loop: Option<Vec<StabilityLimit>>,
+    /// Of gains over time; the figures above are then the worst of their knots.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub along: Option<AlongFigures>,
 }
 
 /// Distance of the gain as flown from the gain as designed.
@@ -146,6 +150,7 @@ pub fn certify(
         motors_in_rate_loop: motors_in_rate_loop
             .map(|rate_gain_1_s| search(Disturbance::Lag(LagModel::MotorsInRateLoop { rate_gain_1_s })))
             .transpose()?,
+        along: None,
     })
 }
 
@@ -197,7 +202,7 @@ fn rounding(designed: &Controller, flown: &Controller) -> Rounding {
 
 /// Sorted by real part, and by imaginary part where the real parts differ by rounding only: the order of poles that
 /// several axes share is then the same on every processor.
-fn pairs(values: &[Complex64]) -> Vec<[f64; 2]> {
+pub(super) fn pairs(values: &[Complex64]) -> Vec<[f64; 2]> {
     let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
     let mut sorted = values.to_vec();
     sorted.sort_by(|x, y| x.re.total_cmp(&y.re));

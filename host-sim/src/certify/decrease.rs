@@ -18,7 +18,8 @@ pub struct Decrease {
     pub holds: bool,
     /// Smallest eigenvalue of P over its largest.
     pub p_smallest_over_largest: f64,
-    /// Smallest eigenvalue of `-(A' P + P A)`, or of `P - A' P A`, over its largest; 1 but for rounding.
+    /// Smallest eigenvalue of `-(A' P + P A)`, or of `P - A' P A`, over its largest; 1 but for rounding. Of gains over time
+    /// the least share of V that a control step takes off.
     pub decrease_smallest_over_largest: f64,
     /// What rounding can change an eigenvalue of the decrease by, over its largest.
     pub rounding: f64,

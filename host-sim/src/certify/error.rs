@@ -35,6 +35,27 @@ pub enum CertifyError {
         /// Largest modulus of the poles per sample.
         spectral_radius: f64,
     },
+    /// The loop along a trajectory is not stable with the gain at one of its knots.
+    #[error(
+        "the loop is unstable at knot {knot}, {time_s:.3} s: frozen there, its spectral radius is {spectral_radius:.6}; \
+         raise the rate, lower the gain or fly slower"
+    )]
+    UnstableAtKnot {
+        /// Which knot, from 0.
+        knot: usize,
+        /// When, s.
+        time_s: f64,
+        /// Largest modulus of the poles per sample.
+        spectral_radius: f64,
+    },
+    /// Gains over time that are none: no knots, or no P for each control step.
+    #[error("gains over time: {knots} knots and {p} matrices P do not make one table; take both from one design")]
+    Schedule {
+        /// Knots.
+        knots: usize,
+        /// Matrices P.
+        p: usize,
+    },
     /// The rate loop of the lag model has no positive gain.
     #[error("the rate gain is {gain_1_s} 1/s; it must be a positive number")]
     RateGain {

@@ -67,13 +67,13 @@ const UNBOUNDED: f64 = 1e-9;
 
 /// Which disk.
 #[derive(Clone, Copy, PartialEq)]
-enum Disk {
+pub(super) enum Disk {
     Balanced,
     Sensitivity,
 }
 
 impl DiskMargin {
-    fn new(disk: Disk, peak: f64, critical_rad_s: f64) -> Self {
+    pub(super) fn new(disk: Disk, peak: f64, critical_rad_s: f64) -> Self {
         let alpha = 1.0 / peak;
         let (gain_min, open, phase_rad) = match disk {
             Disk::Balanced => {
@@ -152,25 +152,27 @@ pub(super) fn sampled(
     for part in loops.iter().filter(|part| !part.channels.is_empty()) {
         let held = SampledLoop::new(part, timing, &[])?;
         let period_s = timing.period_s;
-        // A pole at 0 has no frequency; the others as if they were continuous.
-        let poles: Vec<Complex64> = eigenvalues(&held.closed_loop())?
-            .into_iter()
-            .filter(|pole| pole.norm() > 1e-3)
-            .map(|pole| pole.ln() / period_s)
-            .collect();
-        let nyquist_rad_s = std::f64::consts::PI / period_s;
-        let (slowest, _) = extremes(poles.iter().map(|pole| pole.norm()));
-        let low_rad_s = (slowest * 1e-2).min(1e-2 * nyquist_rad_s);
+        let points_rad_s = sampled_grid(&eigenvalues(&held.closed_loop())?, period_s);
         parts.push((
             part,
             Sensitivity {
                 at: Box::new(move |frequency_rad_s| held.sensitivity(frequency_rad_s * period_s)),
-                points_rad_s: grid(low_rad_s, nyquist_rad_s, &poles),
+                points_rad_s,
                 identity_at_infinity: false,
             },
         ));
     }
     Ok(combined(&parts, names))
+}
+
+/// Frequencies to look at for poles per sample, rad/s.
+pub(super) fn sampled_grid(poles: &[Complex64], period_s: f64) -> Vec<f64> {
+    // A pole at 0 has no frequency; the others as if they were continuous.
+    let poles: Vec<Complex64> =
+        poles.iter().filter(|pole| pole.norm() > 1e-3).map(|pole| pole.ln() / period_s).collect();
+    let nyquist_rad_s = std::f64::consts::PI / period_s;
+    let (slowest, _) = extremes(poles.iter().map(|pole| pole.norm()));
+    grid((slowest * 1e-2).min(1e-2 * nyquist_rad_s), nyquist_rad_s, &poles)
 }
 
 /// Smallest and largest of what is positive; 1 where nothing is.

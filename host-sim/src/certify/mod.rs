@@ -8,11 +8,12 @@
 //! - the largest delay and the largest actuator lag up to which the sampled loop stays stable.
 //!
 //! A loop that falls apart into independent chains, as those of hover do, is taken apart first: its figures are then
-//! exact for all channels at once, too. [`certify_region`] holds an actuator-aware gain against a region of lags, masses,
+//! exact for all channels at once, too. [`certify_along`] does the same for gains over time. [`certify_region`] holds an actuator-aware gain against a region of lags, masses,
 //! inertias and delays. [`require`] holds a certificate against the least that a design asks for.
 //!
 //! Reference: Seiler, Packard and Gahinet, An Introduction to Disk Margins, IEEE Control Systems Magazine 2020.
 
+mod along;
 mod certificate;
 mod decrease;
 mod error;
@@ -26,6 +27,7 @@ mod sampled_loop;
 mod structured;
 mod sweep;
 
+pub use along::{AlongFigures, MovingDecrease, certify_along, moving_decrease};
 pub use certificate::{Certificate, ContinuousLoop, Rounding, SampledLoopFigures, certify};
 pub use decrease::Decrease;
 pub use error::CertifyError;

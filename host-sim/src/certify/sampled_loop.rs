@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use super::CertifyError;
 use super::linear_loop::LinearLoop;
 use super::plant::{Predictor, Timing};
-use crate::design::discretise::zero_order_hold_late;
+use crate::design::discretise::{HeldLate, zero_order_hold_late, zero_order_hold_late_in_f64};
 
 /// Halvings of a step of the angle before a zero of the determinant counts as lying on the circle.
 const MAX_HALVINGS: usize = 45;
@@ -42,18 +42,47 @@ pub(super) struct SampledLoop {
 impl SampledLoop {
     /// `extra_delays_s`: by channel, on top of the timing's whole samples.
     pub(super) fn new(given: &LinearLoop, timing: &Timing, extra_delays_s: &[f64]) -> Result<Self, CertifyError> {
+        // A part without a channel still moves.
+        let inputs = if given.b.ncols() == 0 { DMatrix::zeros(given.a.nrows(), 1) } else { given.b.clone() };
+        let held = |channel: usize| {
+            let delay_s = extra_delays_s.get(channel).copied().unwrap_or(0.0);
+            zero_order_hold_late(&given.a, &inputs.columns(channel, 1).into_owned(), timing.period_s, delay_s)
+        };
+        let channels = (0..inputs.ncols()).map(held).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self::assembled(given, timing, &channels))
+    }
+
+    /// The same in the digits of an f64, with one delay in the channels for which `late` holds: for loops by the thousand.
+    pub(super) fn in_f64(
+        given: &LinearLoop,
+        timing: &Timing,
+        delay_s: f64,
+        late: impl Fn(usize) -> bool,
+    ) -> Result<Self, CertifyError> {
+        let held = |delay_s| zero_order_hold_late_in_f64(&given.a, &given.b, timing.period_s, delay_s);
+        let (in_time, behind) = (held(0.0)?, held(delay_s)?);
+        let channel = |channel: usize| {
+            let from = if late(channel) { &behind } else { &in_time };
+            HeldLate {
+                a: from.a.clone(),
+                b_recent: from.b_recent.columns(channel, 1).into_owned(),
+                b_previous: from.b_previous.columns(channel, 1).into_owned(),
+                ..*from
+            }
+        };
+        let channels: Vec<HeldLate> = (0..given.b.ncols()).map(channel).collect();
+        Ok(Self::assembled(given, timing, &channels))
+    }
+
+    /// From the plant under each of its commands alone.
+    fn assembled(given: &LinearLoop, timing: &Timing, channels: &[HeldLate]) -> Self {
         let (n, m, p) = (given.a.nrows(), given.b.ncols(), given.integrated.len());
         let depth = given.past_command_gains.len();
         let predicted = given.predictor.as_ref().map_or(0, |_| m);
         let size = n + p + m * depth + predicted;
         let mut motion = DMatrix::zeros(size, size);
         let mut paths = Vec::with_capacity(m);
-        // A part without a channel still moves.
-        let inputs = if m == 0 { DMatrix::zeros(n, 1) } else { given.b.clone() };
-        for channel in 0..inputs.ncols() {
-            let input = inputs.columns(channel, 1).into_owned();
-            let delay_s = extra_delays_s.get(channel).copied().unwrap_or(0.0);
-            let held = zero_order_hold_late(&given.a, &input, timing.period_s, delay_s)?;
+        for (channel, held) in channels.iter().enumerate() {
             motion.view_mut((0, 0), (n, n)).copy_from(&held.a);
             if channel < m {
                 paths.push(Path {
@@ -87,7 +116,7 @@ impl SampledLoop {
                 memory[(first + channel, channel)] = 1.0 - decay;
             }
         }
-        Ok(Self { motion, paths, memory, gain })
+        Self { motion, paths, memory, gain }
     }
 
     /// The closed loop with every command on its way as a state.

@@ -12,6 +12,8 @@ use crate::analysis::eigenvalues;
 
 /// Steps of the scaling and of the phases.
 const MAX_STEPS: usize = 200;
+/// Sweeps of the quick scaling.
+const OSBORNE_SWEEPS: usize = 4;
 
 /// Bounds of `mu(M)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,6 +33,30 @@ pub fn structured_bounds(m: &DMatrix<Complex64>) -> Option<StructuredBounds> {
 /// Only the upper bound.
 pub(super) fn structured_upper_bound(m: &DMatrix<Complex64>) -> Option<f64> {
     scaled_norm(m).map(|(_, upper)| upper)
+}
+
+/// An upper bound for matrices by the thousand: the smaller of the largest singular values of M and of `D M D^-1`, D such
+/// that its row and column sums are nearly equal (Osborne 1960). Both are bounds for any D.
+pub(super) fn quick_upper_bound(m: &DMatrix<Complex64>) -> Option<f64> {
+    let n = m.nrows();
+    if n == 0 || m.ncols() != n || !m.iter().all(|value| value.re.is_finite() && value.im.is_finite()) {
+        return None;
+    }
+    let mut d = DVector::from_element(n, 1.0);
+    for _ in 0..OSBORNE_SWEEPS {
+        for i in 0..n {
+            let others = || (0..n).filter(|j| *j != i);
+            let row: f64 = others().map(|j| (m[(i, j)].norm() / d[j]).powi(2)).sum();
+            let column: f64 = others().map(|j| (m[(j, i)].norm() * d[j]).powi(2)).sum();
+            if row > 0.0 && column > 0.0 {
+                // d_i^2 row = column / d_i^2.
+                d[i] = (column / row).powf(0.25);
+            }
+        }
+    }
+    let norm = |m: &DMatrix<Complex64>| (m.adjoint() * m).symmetric_eigenvalues().max().sqrt();
+    let scaled = DMatrix::from_fn(n, n, |i, j| m[(i, j)] * (d[i] / d[j]));
+    Some(norm(m).min(norm(&scaled)))
 }
 
 /// `D M D^-1` of smallest norm that was found, and that norm.
@@ -106,7 +132,7 @@ fn lower_bound(m: &DMatrix<Complex64>, scaled: &DMatrix<Complex64>) -> Option<f6
 }
 
 /// Of a complex matrix: the real matrix `[re -im; im re]` has its eigenvalues and their conjugates.
-fn spectral_radius(m: &DMatrix<Complex64>) -> Option<f64> {
+pub(super) fn spectral_radius(m: &DMatrix<Complex64>) -> Option<f64> {
     let n = m.nrows();
     let embedded = DMatrix::from_fn(2 * n, 2 * n, |i, j| {
         let value = m[(i % n, j % n)];
@@ -117,4 +143,32 @@ fn spectral_radius(m: &DMatrix<Complex64>) -> Option<f64> {
         }
     });
     Some(eigenvalues(&embedded).ok()?.iter().map(|value| value.norm()).fold(0.0, f64::max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quick_bound_is_one_and_not_far_above_the_best() {
+        // Dense, triangular, badly scaled: entries of modulus around 1 from a rotation.
+        for (spread, triangular) in [(0.0, false), (2.0, false), (0.0, true), (4.0, true)] {
+            let entry = |i: usize, j: usize| {
+                let size = 1.0 + 0.3 * ((3 * i + 5 * j) as f64).sin();
+                let scale = (spread * (i as f64 - j as f64) / 3.0).exp();
+                if triangular && j > i {
+                    Complex64::ZERO
+                } else {
+                    Complex64::from_polar(size * scale, (7 * i + 4 * j * j) as f64)
+                }
+            };
+            let m = DMatrix::from_fn(4, 4, entry);
+            let best = structured_bounds(&m).unwrap();
+            let quick = quick_upper_bound(&m).unwrap();
+            assert!(quick >= best.lower && quick >= best.upper * (1.0 - 1e-9), "{quick} below {best:?}");
+            // Of a triangular matrix the best scaling is an infinite one, which sweeps do not reach.
+            assert!(triangular || quick <= 1.2 * best.upper, "{quick} far above {best:?}");
+        }
+        assert_eq!(quick_upper_bound(&DMatrix::from_element(2, 2, Complex64::new(f64::NAN, 0.0))), None);
+    }
 }

@@ -4,6 +4,8 @@ use num_complex::Complex64;
 
 /// Points a decade.
 const DENSITY: f64 = 40.0;
+/// Points closer than this share are one.
+const NEIGHBOURS: f64 = 1e-5;
 /// Golden sections: each shrinks the bracket to 62 %.
 const SECTIONS: usize = 60;
 /// A refined peak counts only where it is higher by this share: flat functions peak at a grid point then, on every
@@ -24,13 +26,23 @@ pub(super) fn grid(low: f64, high: f64, resonances: &[Complex64]) -> Vec<f64> {
     }
     points.retain(|point| *point >= low && *point <= high);
     points.sort_by(f64::total_cmp);
-    points.dedup();
+    // Next to each other two points differ by rounding alone, and neither looks like the side of a peak.
+    points.dedup_by(|later, earlier| *later - *earlier <= NEIGHBOURS * *earlier);
     points
 }
 
 /// Highest value and where it is, over the points and refined between them; nothing if the function fails everywhere.
 pub(super) fn peak(points: &[f64], function: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
     let values: Vec<f64> = points.iter().map(|point| function(*point).unwrap_or(f64::NEG_INFINITY)).collect();
+    refined_peak(points, &values, function)
+}
+
+/// The same where the values at the points are known.
+pub(super) fn refined_peak(
+    points: &[f64],
+    values: &[f64],
+    function: impl Fn(f64) -> Option<f64>,
+) -> Option<(f64, f64)> {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let mut best: Option<(f64, f64)> = None;
     for (i, value) in values.iter().enumerate() {

@@ -12,8 +12,9 @@
 //! ```
 //!
 //! At hover this is (E-LTI). Over each control period the pair at its middle is held and discretised exactly, in the digits
-//! of an f64: there are thousands of periods, and the gain is not solved for but run towards. The Riccati recursion then runs backwards from the end, where the stationary solution for the last pair stands in for what
-//! follows: trajectories end at rest.
+//! of an f64: there are thousands of periods, and the gain is not solved for but run towards. The Riccati recursion
+//! then runs backwards from the end, where the stationary solution for the last pair stands in for what follows:
+//! trajectories end at rest.
 
 use nalgebra::{DMatrix, Matrix3, Rotation3, SMatrix, Vector3};
 
@@ -25,17 +26,44 @@ use crate::model::attitude;
 use crate::model::flat::{ReferencePoint, unit};
 
 /// A table of gains over time.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct GainsAlong {
     /// Time between two knots, s; the first one is at 0.
     pub spacing_s: f64,
+    /// Control periods between two knots.
+    pub steps_per_knot: usize,
+    /// The control period, s.
+    pub period_s: f64,
     /// K at the knots, 4 x 9, columns `[x y z q1 q2 q3 vx vy vz]`, rows `[T p q r]`.
     pub gains: Vec<SMatrix<f64, 4, 9>>,
+    /// P before each control step, `x' P x` being what is still to be paid; the last one is that of the hover behind them.
+    pub p: Vec<SMatrix<f64, 9, 9>>,
     /// Largest distance of the interpolated gain from the gain at any control step, over the norm of that gain.
     pub interpolation_error: f64,
 }
 
+/// Steps of the grid that gains are put on from 0 to their largest entry, as a power of two: in f32 each is exact.
+const GRID_BITS: i32 = 19;
+
 impl GainsAlong {
+    /// The gains on an absolute grid, some 250,000 steps from 0 to the largest entry behind the last knot: a recursion over
+    /// thousands of periods ends with other last digits on another processor, and the same gains on the grid.
+    #[must_use]
+    pub fn on_grid(mut self) -> Self {
+        let step = self.grid_step();
+        for gain in &mut self.gains {
+            gain.apply(|entry| *entry = (*entry / step).round() * step);
+        }
+        self
+    }
+
+    /// Step of that grid, a power of two.
+    pub fn grid_step(&self) -> f64 {
+        let largest = self.gains.last().map_or(0.0, SMatrix::amax);
+        // A largest entry that is a power of two but for its last digits stands on one side of it.
+        f64::from((largest * (1.0 + 1e-6)).log2().ceil() as i32 - GRID_BITS).exp2()
+    }
+
     /// The gain at a time, linear between the knots and held beyond them.
     pub fn at(&self, time_s: f64) -> SMatrix<f64, 4, 9> {
         let last = self.gains.len().saturating_sub(1);
@@ -104,6 +132,7 @@ pub fn gains_along(
     let end = optimal(&held, &cost, 0)?;
     let mut p = end.p;
     let mut backwards = vec![fixed(&end.gain)];
+    let mut costs = vec![shaped(&p).unwrap_or_else(SMatrix::zeros)];
     for step in (0..steps).rev() {
         let (held, cost) = discretised((step as f64 + 0.5) * h);
         let pb = &p * &held.b;
@@ -118,10 +147,19 @@ pub fn gains_along(
         let next = closed.transpose() * &p * &closed + stage;
         p = (&next + next.transpose()) * 0.5;
         backwards.push(fixed(&gain));
+        costs.push(shaped(&p).unwrap_or_else(SMatrix::zeros));
     }
     backwards.reverse();
+    costs.reverse();
     let gains = backwards.iter().copied().step_by(steps_per_knot).collect();
-    let mut table = GainsAlong { spacing_s: h * steps_per_knot as f64, gains, interpolation_error: 0.0 };
+    let mut table = GainsAlong {
+        spacing_s: h * steps_per_knot as f64,
+        steps_per_knot,
+        period_s: h,
+        gains,
+        p: costs,
+        interpolation_error: 0.0,
+    };
     table.interpolation_error = backwards
         .iter()
         .enumerate()

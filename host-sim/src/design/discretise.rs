@@ -92,6 +92,41 @@ pub fn zero_order_hold_late(
     })
 }
 
+/// As [`zero_order_hold_late`], in the digits of an f64.
+///
+/// # Errors
+/// As [`zero_order_hold_late`].
+pub fn zero_order_hold_late_in_f64(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    period_s: f64,
+    delay_s: f64,
+) -> Result<HeldLate, DesignError> {
+    require_period(period_s)?;
+    require_fitting(a, b)?;
+    if !(delay_s.is_finite() && delay_s >= 0.0) {
+        return Err(DesignError::Delay { delay_s });
+    }
+    let (n, m) = b.shape();
+    let integrated = |duration_s: f64| {
+        let mut augmented = DMatrix::zeros(n + m, n + m);
+        augmented.view_mut((0, 0), (n, n)).copy_from(&(a * duration_s));
+        augmented.view_mut((0, n), (n, m)).copy_from(&(b * duration_s));
+        let whole = augmented.exp();
+        (whole.view((0, 0), (n, n)).into_owned(), whole.view((0, n), (n, m)).into_owned())
+    };
+    let late_s = delay_s % period_s;
+    let (before, b_recent) = integrated(period_s - late_s);
+    let (a, b_previous) = if late_s > 0.0 {
+        let (after, previous) = integrated(late_s);
+        (&before * after, &before * previous)
+    } else {
+        (before, DMatrix::zeros(n, m))
+    };
+    require_finite("exp(A t)", &a)?;
+    Ok(HeldLate { a, b_recent, b_previous, whole_samples: (delay_s / period_s).floor() as usize, period_s })
+}
+
 /// `e^(A t)` and `int_0^t e^(A s) ds B`.
 fn integrated(
     a: &DMatrix<f64>,

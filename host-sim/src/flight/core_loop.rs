@@ -9,7 +9,7 @@ use quatrack::{Command, Controller, FlightLaw, Limits, Memory, Piece, Player, Pr
 
 use super::closed_loop::HeldCommand;
 use crate::model::{InputVector, StateVector, attitude, position, velocity};
-use crate::trajectory::polynomial::PiecewisePolynomial;
+use crate::trajectory::polynomial::{self, PiecewisePolynomial, PolynomialError};
 
 fn vector(v: &Vector3<f64>) -> Vector3<f32> {
     v.map(|value| value as f32)
@@ -56,6 +56,18 @@ pub fn pieces(trajectory: &PiecewisePolynomial) -> Vec<Piece> {
             Piece { duration_ns, x, y, z, heading }
         })
         .collect()
+}
+
+/// Pieces of the board as a trajectory, every number as it stands there; [`pieces`] gives them back.
+///
+/// # Errors
+/// [`PolynomialError`] for pieces that do not follow each other.
+pub fn trajectory(pieces: &[Piece]) -> Result<PiecewisePolynomial, PolynomialError> {
+    let piece = |piece: &Piece| polynomial::Piece {
+        duration_s: piece.duration_ns as f64 * 1e-9,
+        coefficients: [&piece.x, &piece.y, &piece.z, &piece.heading].map(|c| c.map(f64::from)),
+    };
+    PiecewisePolynomial::new(pieces.iter().map(piece).collect())
 }
 
 /// The core's step at a rate, with the trajectory evaluated on board.

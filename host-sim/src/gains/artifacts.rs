@@ -47,18 +47,29 @@ pub fn artifacts(certified: &Certified, folder: &Path) -> Vec<Artifact> {
 pub(super) fn document(certified: &Certified) -> Value {
     let Certified { design, designed, .. } = certified;
     let past: Vec<Value> = designed.past_command_gains.iter().map(by_rows).collect();
+    let mut gain = json!({
+        "rows": designed.model.inputs,
+        "columns": designed.model.states,
+        "k": by_rows(&designed.gains.dense()),
+        "past_command_gains": past,
+        "relative_residual_of_p_below": residual_bound(designed.relative_residual),
+    });
+    if let (Gains::Along(along), Some((trajectory, steps_per_knot))) = (&designed.gains, design.problem.schedule()) {
+        gain["k"] =
+            along.gains.iter().map(|gain| by_rows(&DMatrix::from_column_slice(4, 9, gain.as_slice()))).collect();
+        gain["knots"] = json!({
+            "count": along.gains.len(),
+            "steps_per_knot": steps_per_knot,
+            "spacing_s": along.spacing_s,
+            "trajectory": format!("{trajectory:08x}"),
+        });
+    }
     let mut document = json!({
         "name": design.name.as_str(),
         "description": design.description,
         "design": design.essence(),
         "design_sha256": certified.design_hash.to_string(),
-        "gain": {
-            "rows": designed.model.inputs,
-            "columns": designed.model.states,
-            "k": by_rows(&designed.gains.dense()),
-            "past_command_gains": past,
-            "relative_residual_of_p_below": residual_bound(designed.relative_residual),
-        },
+        "gain": gain,
         "figures": figures(certified),
         "certificate": without_dust(json!(certified.certificate)),
         "statement": certified.statement,
@@ -94,12 +105,6 @@ pub fn json_document(certified: &Certified) -> Value {
 /// The table as a Rust constant with the name of the design.
 pub fn rust_source(certified: &Certified) -> String {
     let design = &certified.design;
-    let kind = match &certified.designed.gains {
-        Gains::Equilibrium(_) => "EquilibriumGain",
-        Gains::FlatOutput(_) => "FlatOutputGain",
-        Gains::Integral(_) => "IntegralGain",
-        Gains::ActuatorAware(_) => "ActuatorAwareGain",
-    };
     let mut text = format!(
         "// {} for {} at {} Hz: made by `quatrack gains design` and not edited by hand.\n\
          // Design {}\n// Certificate {}\n\n",
@@ -113,12 +118,35 @@ pub fn rust_source(certified: &Certified) -> String {
     for line in description.lines() {
         let _ = writeln!(text, "/// {}", line.trim());
     }
-    let _ = write!(
-        text,
-        "#[rustfmt::skip]\npub static {}: quatrack::law::{kind} = quatrack::law::{kind}::table([\n",
-        constant_name(design.name.as_str())
-    );
-    for row in certified.designed.gains.by_rows() {
+    let name = constant_name(design.name.as_str());
+    let rows = certified.designed.gains.by_rows();
+    let kind = match &certified.designed.gains {
+        Gains::Equilibrium(_) => "EquilibriumGain",
+        Gains::FlatOutput(_) => "FlatOutputGain",
+        Gains::Integral(_) => "IntegralGain",
+        Gains::ActuatorAware(_) => "ActuatorAwareGain",
+        Gains::Along(_) => {
+            let (trajectory, steps_per_knot) = design.problem.schedule().unwrap_or_default();
+            let kind = "quatrack::gains::table::ScheduleRows";
+            let _ = write!(
+                text,
+                "#[rustfmt::skip]\npub static {name}: {kind}<'static> = {kind} {{\n    trajectory: 0x{trajectory:08x},\n\
+                 \x20   steps_per_knot: {steps_per_knot},\n    gains: &[\n"
+            );
+            for knot in rows.chunks(4) {
+                text.push_str("        [\n");
+                for row in knot {
+                    let _ = writeln!(text, "            {row:?},");
+                }
+                text.push_str("        ],\n");
+            }
+            text.push_str("    ],\n};\n");
+            return text;
+        }
+    };
+    let _ =
+        write!(text, "#[rustfmt::skip]\npub static {name}: quatrack::law::{kind} = quatrack::law::{kind}::table([\n");
+    for row in rows {
         let _ = writeln!(text, "    {row:?},");
     }
     text.push_str("]);\n");

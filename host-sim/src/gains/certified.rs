@@ -1,15 +1,14 @@
 //! A design carried out: design in; gains, certificate and table out, or the figure that fails.
 
-use quatrack::gains::table::{ActuatorTable, GainTable, Hash, Name, TableHead, Vehicle};
+use quatrack::gains::table::{ActuatorTable, GainTable, Hash, Name, ScheduleRows, TableError, TableHead, Vehicle};
 use serde::Serialize;
 
 use super::GainsError;
 use super::design::{Design, Problem};
-use super::designed::{Designed, Gains};
+use super::designed::{Designed, TableRows};
 use super::statement::{Statement, sha256};
 use super::table::Table;
-use crate::certify::{Certificate, Minimum, RegionCertificate, certify, certify_region, motor_lag_limit, require};
-use crate::design::codegen::rounded;
+use crate::certify::{Certificate, Minimum, RegionCertificate, certify_region, motor_lag_limit, require};
 
 /// A design with its gains, and what they promise.
 #[derive(Debug, Clone)]
@@ -53,19 +52,19 @@ impl Design {
     /// with the first figure that falls short; [`GainsError::Table`] for gains that the core refuses.
     pub fn certify(&self) -> Result<Certified, GainsError> {
         let designed = Designed::of(self)?;
-        let (plant, controller, timing) = designed.closed_loop(self.rate.hz());
-        let mut certificate = certify(&plant, &controller, &timing, self.rate_loop_gain_1_s)?;
+        let mut certificate = designed.certify(self)?;
         let mut region = None;
         if let (Problem::ActuatorAware { motor_lag_s, region: bounds, .. }, Some(gain)) =
             (&self.problem, &designed.gain_in_parts)
         {
-            let found = certify_region(&self.vehicle, gain, *motor_lag_s, timing.period_s, &bounds.grid())?;
+            let period_s = 1.0 / f64::from(self.rate.hz());
+            let found = certify_region(&self.vehicle, gain, *motor_lag_s, period_s, &bounds.grid())?;
             if found.spectral_radius.is_nan() || found.spectral_radius >= 1.0 {
                 return Err(GainsError::Region { spectral_radius: found.spectral_radius, worst: found.worst });
             }
             region = Some(found);
             // The plant has its motors' lag already: what is told is the whole of it, not what may come on top.
-            certificate.lag = vec![motor_lag_limit(&self.vehicle, gain, *motor_lag_s, timing.period_s)?];
+            certificate.lag = vec![motor_lag_limit(&self.vehicle, gain, *motor_lag_s, period_s)?];
         }
         require(&certificate, &self.minimum)?;
         let design_hash = sha256(&self.essence());
@@ -78,18 +77,26 @@ impl Design {
             design_hash,
             certificate: statement.on_board(),
         };
-        let table = match (&designed.gains, &self.problem) {
-            _ if !designed.past_command_gains.is_empty() => None,
-            (Gains::ActuatorAware(gain), Problem::ActuatorAware { motor_lag_s, .. }) => Some(
-                ActuatorTable::new(head, *motor_lag_s as f32, &rounded(gain))
-                    .map(|table| Table::Actuator(Box::new(table))),
-            ),
-            (gains, _) => {
-                gains.rows().map(|rows| GainTable::new(head, &rows).map(|table| Table::Gains(Box::new(table))))
-            }
+        let table = if designed.past_command_gains.is_empty() {
+            Some(self.table(head, &designed.gains.rows()).map_err(GainsError::Table)?)
+        } else {
+            None
         };
-        let table = table.transpose().map_err(GainsError::Table)?;
         Ok(Certified { design: self.clone(), design_hash, designed, certificate, region, statement, table })
+    }
+
+    fn table(&self, head: TableHead, rows: &TableRows) -> Result<Table, TableError> {
+        match rows {
+            TableRows::Fixed(rows) => GainTable::new(head, rows).map(|table| Table::Gains(Box::new(table))),
+            TableRows::Motors(rows) => {
+                let lag_s = self.problem.motor_lag_s().unwrap_or_default();
+                ActuatorTable::new(head, lag_s as f32, rows).map(|table| Table::Actuator(Box::new(table)))
+            }
+            TableRows::OverTime(gains) => {
+                let (trajectory, steps_per_knot) = self.problem.schedule().unwrap_or_default();
+                Table::over_time(head, &ScheduleRows { trajectory, steps_per_knot, gains })
+            }
+        }
     }
 
     pub(super) fn essence(&self) -> Essence<'_> {

@@ -2,17 +2,18 @@
 
 use std::path::Path;
 
-use quatrack::gains::table::Name;
+use quatrack::gains::table::{KNOTS_MAX, Name};
 use quatrack::nalgebra::Vector3;
 use quatrack::{Limits, Rate};
 use serde::Serialize;
 
-use super::GainsError;
 use super::file::{self, DesignFile, LimitsEntry, Linearisation, MethodName, MinimumEntry, Weights};
+use super::{Course, GainsError};
 use crate::certify::{Minimum, RegionBounds};
 use crate::design::actuator_aware::ActuatorAwareWeights;
 use crate::design::integral::IntegralWeights;
 use crate::design::synthesis::{EquilibriumWeights, FlatWeights};
+use crate::trajectory::Trajectory as _;
 use crate::vehicle::Vehicle;
 
 /// Most samples of known delay.
@@ -65,6 +66,15 @@ pub enum Problem {
         /// Where the gain must be stable, too.
         region: RegionBounds,
     },
+    /// The error of the hover model about each point of a trajectory, under held commands: gains over time.
+    Along {
+        /// Diagonals of Q and R.
+        weights: EquilibriumWeights,
+        /// Which trajectory.
+        trajectory: Course,
+        /// Control steps from one knot to the next.
+        steps_per_knot: u16,
+    },
 }
 
 /// How the gain is computed.
@@ -98,6 +108,23 @@ impl Problem {
             Self::FlatOutput(method) => ("flat-output", method.named()),
             Self::Integral { .. } => ("equilibrium", "lqi"),
             Self::ActuatorAware { .. } => ("equilibrium", "actuator-aware"),
+            Self::Along { .. } => ("equilibrium", "along"),
+        }
+    }
+
+    /// The lag of the motors that a design for their forces reckons with, s.
+    pub fn motor_lag_s(&self) -> Option<f64> {
+        match self {
+            Self::ActuatorAware { motor_lag_s, .. } => Some(*motor_lag_s),
+            _ => None,
+        }
+    }
+
+    /// Of gains over time the trajectory's checksum and the control steps from one knot to the next.
+    pub fn schedule(&self) -> Option<(u32, u16)> {
+        match self {
+            Self::Along { trajectory, steps_per_knot, .. } => Some((trajectory.checksum(), *steps_per_knot)),
+            _ => None,
         }
     }
 
@@ -152,7 +179,7 @@ impl Design {
         Ok(Self {
             name,
             description: file.description.trim().to_owned(),
-            problem: problem(&file)?,
+            problem: problem(&file, folder, rate)?,
             limits: limits(&file.limits, &vehicle, &file.vehicle)?,
             vehicle,
             rate,
@@ -184,13 +211,16 @@ fn positive(key: &str, value: f64) -> Result<(), GainsError> {
     check((SMALLEST..=LARGEST).contains(&value), key, value, format!("from {SMALLEST:e} to {LARGEST:e}"))
 }
 
-fn problem(file: &DesignFile) -> Result<Problem, GainsError> {
+fn problem(file: &DesignFile, folder: &Path, rate: Rate) -> Result<Problem, GainsError> {
     let lyapunov = file.method == MethodName::Lyapunov;
     if let (Some(mu), false) = (file.mu_1_s, lyapunov) {
         return Err(misplaced("mu_1_s", &mu, &file.method));
     }
     if let (Some(delay), false) = (file.delay_samples, file.method == MethodName::SampledLqr) {
         return Err(misplaced("delay_samples", &delay, &file.method));
+    }
+    if let (Some(trajectory), false) = (&file.trajectory, file.method == MethodName::Along) {
+        return Err(misplaced("trajectory", &format!("\"{trajectory}\""), &file.method));
     }
     if lyapunov {
         let mu_1_s = file.mu_1_s.ok_or_else(|| missing("mu_1_s", &file.method, "mu_1_s = 2.0"))?;
@@ -232,9 +262,14 @@ fn problem(file: &DesignFile) -> Result<Problem, GainsError> {
             weights: IntegralWeights { equilibrium: equilibrium_weights(weights)?, integral },
         });
     }
+    if file.method == MethodName::Along {
+        return along(file, weights, folder, rate);
+    }
     Ok(match file.linearisation {
-        Linearisation::Equilibrium => Problem::Equilibrium(method(file, equilibrium_weights(weights)?, delay_samples)?),
-        Linearisation::FlatOutput => Problem::FlatOutput(method(file, flat_weights(weights)?, delay_samples)?),
+        Linearisation::Equilibrium => {
+            Problem::Equilibrium(quadratic(file.method, equilibrium_weights(weights)?, delay_samples))
+        }
+        Linearisation::FlatOutput => Problem::FlatOutput(quadratic(file.method, flat_weights(weights)?, delay_samples)),
     })
 }
 
@@ -332,19 +367,36 @@ fn not_of_motors(file: &DesignFile, weights: &Weights) -> Result<(), GainsError>
     }
 }
 
-fn method<W>(file: &DesignFile, weights: W, delay_samples: usize) -> Result<Method<W>, GainsError> {
-    match file.method {
-        MethodName::Lqr => Ok(Method::Lqr { weights }),
-        MethodName::SampledLqr => Ok(Method::SampledLqr { weights, delay_samples }),
-        name => Err(GainsError::Value {
-            key: "method".into(),
-            value: name.quoted().into(),
-            must:
-                "\"lyapunov\", \"lqr\", \"sampled-lqr\", \"lqi\" or \"actuator-aware\": gains along a trajectory are not \
-                 certified, and so make no table"
-                    .into(),
-        }),
+/// As many knots as a table holds.
+fn along(file: &DesignFile, weights: &Weights, folder: &Path, rate: Rate) -> Result<Problem, GainsError> {
+    if file.linearisation == Linearisation::FlatOutput {
+        return Err(misplaced("method", &file.method.quoted(), &file.linearisation));
     }
+    let weights = equilibrium_weights(weights)?;
+    if let Some(weight) = weights.state.iter().find(|weight| **weight <= 0.0) {
+        let must = "above 0 for each error with method = \"along\": what costs nothing need not decrease";
+        return Err(GainsError::Value { key: "weights".into(), value: weight.to_string(), must: must.into() });
+    }
+    let written = file
+        .trajectory
+        .as_ref()
+        .ok_or_else(|| missing("trajectory", &file.method, "trajectory = \"aggressive\", or the path of a file"))?;
+    let trajectory = Course::named(written, folder)?;
+    let steps = (trajectory.trajectory().duration_s() * f64::from(rate.hz())).ceil();
+    let steps_per_knot = (steps / (KNOTS_MAX - 1) as f64).ceil().max(1.0);
+    if steps_per_knot > f64::from(u16::MAX) {
+        return Err(GainsError::Value {
+            key: "trajectory".into(),
+            value: format!("\"{written}\""),
+            must: format!("shorter than {} control steps", u32::from(u16::MAX) * (KNOTS_MAX as u32 - 1)),
+        });
+    }
+    Ok(Problem::Along { weights, trajectory, steps_per_knot: steps_per_knot as u16 })
+}
+
+/// One of the two methods that are defined for both linearisations and have weights.
+fn quadratic<W>(name: MethodName, weights: W, delay_samples: usize) -> Method<W> {
+    if name == MethodName::Lqr { Method::Lqr { weights } } else { Method::SampledLqr { weights, delay_samples } }
 }
 
 fn misplaced(key: &str, value: &dyn ToString, with: &dyn ToString) -> GainsError {

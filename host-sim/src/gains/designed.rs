@@ -10,9 +10,10 @@ use super::names::{
     EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, INTEGRAL_STATES, MOTOR_INPUTS, MOTOR_STATES,
     Signal,
 };
-use crate::certify::{Controller, Plant, Timing};
+use crate::certify::{Certificate, CertifyError, Controller, Plant, Timing, certify, certify_along};
 use crate::design::actuator_aware::{ERRORS, actuator_aware, hover_pair_with_integral};
-use crate::design::codegen::rounded;
+use crate::design::along::{GainsAlong, gains_along};
+use crate::design::codegen::{rounded, rounded_along};
 use crate::design::discretise::{Held, zero_order_hold};
 use crate::design::integral::{integral_pair, sampled_integral_problem, sampled_lqi};
 use crate::design::sampled::{
@@ -22,9 +23,11 @@ use crate::design::synthesis::{
     EquilibriumDesign, EquilibriumWeights, FlatDesign, FlatWeights, dense_flat_chain, diagonal, lqr_equilibrium,
     lqr_flat, lyapunov_equilibrium, lyapunov_flat,
 };
+use crate::model::flat::reference_point;
+use crate::trajectory::Trajectory as _;
 use crate::vehicle::Vehicle;
 
-/// A gain with all that it came from.
+/// A gain with all that it came from; of gains over time model, P and poles are those of the hover at their end.
 #[derive(Debug, Clone)]
 pub struct Designed {
     /// The model that it was designed on.
@@ -100,6 +103,19 @@ pub enum Gains {
     Integral(Box<SMatrix<f64, 4, 12>>),
     /// 4 x 19, to the motors' forces.
     ActuatorAware(Box<SMatrix<f64, 4, 19>>),
+    /// 4 x 9 at each knot, on the grid of [`GainsAlong::on_grid`].
+    Along(Box<GainsAlong>),
+}
+
+/// The entries of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TableRows {
+    /// One gain.
+    Fixed(Box<Rows>),
+    /// One gain of motor forces.
+    Motors(Box<[[f32; 19]; 4]>),
+    /// A gain at each knot.
+    OverTime(Vec<[[f32; 9]; 4]>),
 }
 
 impl Gains {
@@ -110,32 +126,41 @@ impl Gains {
             Self::FlatOutput(_) => TableKind::FlatOutput,
             Self::Integral(_) => TableKind::Integral,
             Self::ActuatorAware(_) => TableKind::ActuatorAware,
+            Self::Along(_) => TableKind::AlongTrajectory,
         }
     }
 
-    /// As one matrix.
+    /// As one matrix; gains over time one below the other.
     pub fn dense(&self) -> DMatrix<f64> {
         match self {
             Self::Equilibrium(gain) => DMatrix::from_column_slice(4, 9, gain.as_slice()),
             Self::FlatOutput(gain) => DMatrix::from_column_slice(7, 10, gain.as_slice()),
             Self::Integral(gain) => DMatrix::from_column_slice(4, 12, gain.as_slice()),
             Self::ActuatorAware(gain) => DMatrix::from_column_slice(4, 19, gain.as_slice()),
+            Self::Along(along) => DMatrix::from_fn(4 * along.gains.len(), 9, |i, j| along.gains[i / 4][(i % 4, j)]),
         }
     }
 
-    /// As the core flies it, every entry the nearest f32; nothing for motor forces, whose table is one of its own.
-    pub fn rows(&self) -> Option<Rows> {
-        match self {
-            Self::Equilibrium(gain) => Some(Rows::Equilibrium(rounded(gain))),
-            Self::FlatOutput(gain) => Some(Rows::FlatOutput(rounded(gain))),
-            Self::Integral(gain) => Some(Rows::Integral(rounded(gain))),
-            Self::ActuatorAware(_) => None,
-        }
+    /// As the core flies it, every entry the nearest f32.
+    pub fn rows(&self) -> TableRows {
+        TableRows::Fixed(Box::new(match self {
+            Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),
+            Self::FlatOutput(gain) => Rows::FlatOutput(rounded(gain)),
+            Self::Integral(gain) => Rows::Integral(rounded(gain)),
+            Self::ActuatorAware(gain) => return TableRows::Motors(Box::new(rounded(gain))),
+            Self::Along(along) => return TableRows::OverTime(rounded_along(along)),
+        }))
     }
 
-    /// Every entry the nearest f32, each row a list.
+    /// The same, each row a list; of gains over time the rows of one knot after those of the other.
     pub fn by_rows(&self) -> Vec<Vec<f32>> {
-        self.dense().row_iter().map(|row| row.iter().map(|entry| *entry as f32).collect()).collect()
+        let rows = self.rows();
+        let entries = match &rows {
+            TableRows::Fixed(rows) => rows.entries(),
+            TableRows::Motors(rows) => rows.as_flattened(),
+            TableRows::OverTime(knots) => knots.as_flattened().as_flattened(),
+        };
+        entries.chunks(usize::from(self.kind().dimensions().1)).map(<[f32]>::to_vec).collect()
     }
 }
 
@@ -189,6 +214,18 @@ impl Designed {
                     sampled: Some(SampledProblem { held: designed.held, cost }),
                 })
             }
+            Problem::Along { weights, trajectory, steps_per_knot } => {
+                let sampling = sampling(rate_hz, 0);
+                let flown = trajectory.trajectory();
+                let reference = |time_s: f64| reference_point(&flown.at(time_s));
+                let steps_per_knot = usize::from(*steps_per_knot);
+                let along = gains_along(reference, flown.duration_s(), weights, &sampling, steps_per_knot)?.on_grid();
+                // Model, P and poles are those of the hover behind the last knot.
+                let hover = sampled_equilibrium(weights, &sampling)?;
+                let (model, weights) = (LinearModel::equilibrium(), of_equilibrium(weights));
+                let problem = SampledProblem::new(&model, &weights, sampling.period_s)?;
+                Ok(Self::sampled(hover, model, Gains::Along(Box::new(along)), weights, problem))
+            }
             Problem::FlatOutput(Method::Lyapunov { mu_1_s }) => Ok(Self::flat(lyapunov_flat(*mu_1_s)?, None)),
             Problem::FlatOutput(Method::Lqr { weights }) => Ok(Self::flat(lqr_flat(weights)?, Some(of_flat(weights)))),
             Problem::FlatOutput(Method::SampledLqr { weights, delay_samples }) => {
@@ -202,21 +239,30 @@ impl Designed {
         }
     }
 
-    /// What is certified: the plant, the controller before it is rounded, and when it runs.
-    pub fn closed_loop(&self, rate_hz: u32) -> (Plant, Controller, Timing) {
+    /// Certifies the gains as rounded to f32, on the model that the design was made for.
+    ///
+    /// # Errors
+    /// As [`certify`] and [`certify_along`].
+    pub fn certify(&self, design: &Design) -> Result<Certificate, CertifyError> {
         if let (Some(gain), Some((vehicle, lag_s))) = (&self.gain_in_parts, &self.motors) {
-            let timing = Timing::at_rate(rate_hz);
+            let timing = Timing::at_rate(design.rate.hz());
             let plant = Plant::hover_with_motors(vehicle, *lag_s, 1.0, 1.0);
-            return (plant, Controller::actuator_aware(gain, *lag_s, timing.period_s), timing);
+            let controller = Controller::actuator_aware(gain, *lag_s, timing.period_s);
+            return certify(&plant, &controller, &timing, design.rate_loop_gain_1_s);
         }
-        let plant = match &self.gains {
-            Gains::Equilibrium(_) | Gains::ActuatorAware(_) => Plant::equilibrium(),
-            Gains::FlatOutput(_) => Plant::flat_chain(),
-            Gains::Integral(_) => Plant::equilibrium_with_integral(),
+        let plant = match (&self.gains, &design.problem) {
+            (Gains::Along(along), Problem::Along { trajectory, .. }) => {
+                let reference = |time_s: f64| reference_point(&trajectory.trajectory().at(time_s));
+                return certify_along(reference, along, design.rate_loop_gain_1_s);
+            }
+            (Gains::FlatOutput(_), _) => Plant::flat_chain(),
+            (Gains::Integral(_), _) => Plant::equilibrium_with_integral(),
+            (Gains::Equilibrium(_) | Gains::ActuatorAware(_) | Gains::Along(_), _) => Plant::equilibrium(),
         };
         let past_command_gains = self.past_command_gains.clone();
-        let timing = Timing { delay_samples: past_command_gains.len(), ..Timing::at_rate(rate_hz) };
-        (plant, Controller { gain: self.gains.dense(), past_command_gains, predictor: None }, timing)
+        let timing = Timing { delay_samples: past_command_gains.len(), ..Timing::at_rate(design.rate.hz()) };
+        let controller = Controller { gain: self.gains.dense(), past_command_gains, predictor: None };
+        certify(&plant, &controller, &timing, design.rate_loop_gain_1_s)
     }
 
     fn equilibrium(design: EquilibriumDesign, weights: Option<Weights>) -> Self {

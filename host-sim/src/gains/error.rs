@@ -96,7 +96,10 @@ impl GainsError {
     pub fn is_verdict(&self) -> bool {
         matches!(
             self,
-            Self::Certify(CertifyError::Unstable { .. }) | Self::Minimum(_) | Self::Region { .. } | Self::Table(_)
+            Self::Certify(CertifyError::Unstable { .. } | CertifyError::UnstableAtKnot { .. })
+                | Self::Minimum(_)
+                | Self::Region { .. }
+                | Self::Table(_)
         )
     }
 }

@@ -10,7 +10,7 @@ use serde_json::{Map, Value, json};
 
 use super::GainsError;
 use super::artifacts::by_rows;
-use super::design::Design;
+use super::design::{Design, Problem};
 use super::designed::{Designed, Gains, Poles, SampledProblem};
 use super::names::{MODEL_STATES, Signal};
 use crate::analysis::staircase;
@@ -51,8 +51,15 @@ impl Export {
     /// Computes a design and collects its matrices.
     ///
     /// # Errors
-    /// [`GainsError::Design`] where the equations have no solution.
+    /// [`GainsError::Design`] where the equations have no solution; [`GainsError::Value`] for gains over time.
     pub fn of(design: &Design) -> Result<Self, GainsError> {
+        if let Problem::Along { .. } = design.problem {
+            return Err(GainsError::Value {
+                key: "method".into(),
+                value: "\"along\"".into(),
+                must: "one with one gain to be exported; the gains over time stand in the design's JSON".into(),
+            });
+        }
         let designed = Designed::of(design)?;
         let (states, inputs) = (designed.model.states, designed.model.inputs);
         let matrix = |name: &str, rows: &[Signal], columns: &[Signal], entries: DMatrix<f64>| Matrix {

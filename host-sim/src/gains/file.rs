@@ -17,6 +17,7 @@ pub(super) struct DesignFile {
     pub(super) control_rate_hz: u32,
     pub(super) mu_1_s: Option<f64>,
     pub(super) delay_samples: Option<u32>,
+    pub(super) trajectory: Option<String>,
     pub(super) rate_loop_gain_1_s: Option<f64>,
     pub(super) motor_lag_ms: Option<f64>,
     pub(super) region: Option<RegionEntry>,

@@ -9,6 +9,7 @@
 //!       designed   model and gain, in f64
 //!         design   what belongs together and is in range
 //!           file   TOML
+//!           course the trajectory of gains over time, as the board stores it
 //! export         A, B, Q, R, K, P, poles, T_e for other tools
 //! ```
 //!
@@ -17,6 +18,7 @@
 mod artifacts;
 mod certified;
 mod check;
+mod course;
 mod design;
 mod designed;
 mod error;
@@ -30,8 +32,9 @@ mod table;
 pub use artifacts::{Artifact, artifacts, default_folder, json_document, rust_source};
 pub use certified::Certified;
 pub use check::{Checked, Failed, check_design, check_folder, designs};
+pub use course::Course;
 pub use design::{Design, Method, Problem};
-pub use designed::{Designed, Gains, LinearModel, Poles, SampledProblem, Weights};
+pub use designed::{Designed, Gains, LinearModel, Poles, SampledProblem, TableRows, Weights};
 pub use error::GainsError;
 pub use export::{Export, Matrix};
 pub use names::{Signal, signals};

@@ -6,7 +6,7 @@ use quatrack::gains::table::{AcceptError, GainTable, ScheduleTable, TableHead, T
 use quatrack::{FlightLaw, Rate, Trajectory};
 use quatrack_sim::flight::core_loop;
 use quatrack_sim::flight::reference::{Exact, Reference};
-use quatrack_sim::gains::Design;
+use quatrack_sim::gains::{Course, Design};
 use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
 
 use super::{Args, Flown, Precision, fly_law, load};
@@ -26,6 +26,7 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Flown,
         let head = *table.head();
         let rate = rate.unwrap_or(head.rate);
         let accepted = table.accept_for(&head.vehicle, rate).map_err(|error| not_accepted(path, &error))?;
+        let trajectory = stored(&args.trajectory).unwrap_or(trajectory);
         let pieces = core_loop::pieces(&trajectory);
         if !Trajectory::new(&pieces).is_ok_and(|flown| accepted.is_for(&flown)) {
             let reason = format!("its gains are for another trajectory than --trajectory {}", args.trajectory);
@@ -38,6 +39,15 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Flown,
     let rate = rate.unwrap_or(head.rate);
     let accepted = table.accept_for(&head.vehicle, rate).map_err(|error| not_accepted(path, &error))?;
     flown(args, &head, kind, &trajectory, accepted.law(args.feed_forward(), args.error_form()))
+}
+
+/// The paper's trajectories as they stand on board: gains over time belong to their bits, and those of one that is planned
+/// anew depend on the processor.
+fn stored(name: &str) -> Option<PiecewisePolynomial> {
+    matches!(name, "mild" | "aggressive")
+        .then(|| Course::named(name, Path::new("")).ok())
+        .flatten()
+        .map(|course| course.trajectory().clone())
 }
 
 fn flown(
