@@ -249,6 +249,22 @@ fn the_committed_gains_along_the_w_are_shown_listed_and_flown() {
 }
 
 #[test]
+fn a_table_for_motor_forces_flies_on_a_craft_whose_motors_lag() {
+    let dir = folder("motors");
+    let table = format!("{GAINS}/generated/actuator-aware.bin");
+    let json = dir.join("flown.json");
+    let fly = |more: &[&str]| quatrack(&[&["fly", "--gains", &table, "--trajectory", "aggressive"], more].concat());
+    let output = fly(&["--json", json.to_str().unwrap()]);
+    assert_done(&output);
+    assert!(stdout(&output).contains("126.0 ms of motor lag"), "{}", stdout(&output));
+    let flown: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
+    // The paper's best on this course, without any lag, is 0.11; the rest is the hold's and f32's.
+    assert!(flown["iae_m_s"].as_f64().unwrap() < 1e-3 && flown["saturated_steps"] == 0, "{flown}");
+    assert_refused(&fly(&["--rate-hz", "100"]), 2, &["actuator-aware.bin", "500 Hz", "--rate-hz 100"]);
+    assert_refused(&fly(&["--limits", "crazyflie-2.1"]), 2, &["actuator-aware.bin", "leave --limits out"]);
+}
+
+#[test]
 fn exports_name_every_row_and_column() {
     let csv = stdout(&quatrack(&["export", "--format", "csv", "--design", "LQR-E"]));
     assert_eq!(csv.lines().next(), Some("matrix,row,column,value,row_name,row_unit,column_name,column_unit"));

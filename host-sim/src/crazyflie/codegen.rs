@@ -23,7 +23,7 @@ const VEHICLES: [(&str, &str); 3] = [
     ("crazyflie-2.1-brushless", "CRAZYFLIE_2_1_BRUSHLESS"),
 ];
 
-/// The largest of [`FACTORS`] by which thrust, roll and pitch together, and yaw, may each be strengthened or weakened
+/// The largest of `FACTORS` by which thrust, roll and pitch together, and yaw, may each be strengthened or weakened
 /// with the whole region still stable; 1 where there is none.
 ///
 /// # Errors

@@ -4,6 +4,7 @@
 use nalgebra::{DMatrix, SMatrix, Vector4};
 use quatrack::airframe::AirframeError;
 use quatrack::gain::GainError;
+use quatrack::gains::table::AcceptedActuatorTable;
 use quatrack::law::ActuatorAwareGain;
 use quatrack::motor_lag::MotorLagError;
 use quatrack::motor_tracker::ByBodyRates;
@@ -113,6 +114,17 @@ pub struct CraftLaw<'a> {
 }
 
 impl<'a> CraftLaw<'a> {
+    /// A table that was read, on the vehicle that it was accepted for.
+    ///
+    /// # Errors
+    /// [`FlightError::Airframe`] where the core refuses the vehicle.
+    pub fn of_table(vehicle: &Vehicle, table: &'a AcceptedActuatorTable) -> Result<Self, FlightError> {
+        let lag_s = f64::from(table.table().lag().lag_s());
+        let airframe = table.airframe(&motor_loop::airframe(vehicle, lag_s)?);
+        let tracker = MotorTracker::new(MotorLaw::ActuatorAware(table.law(&airframe)), &airframe);
+        Ok(Self { tracker, airframe })
+    }
+
     /// A law of the paper on a vehicle's motors, through the core's body-rate loop and mixer.
     ///
     /// # Errors

@@ -3,8 +3,10 @@
 
 use nalgebra::{Vector3, Vector4};
 
-use super::closed_loop::{Lost, SAMPLE_PERIOD_S};
+use super::closed_loop::{Flight, Lost, SAMPLE_PERIOD_S, Sample};
 use super::noise::{Noise, Source};
+use super::reference::Reference;
+use crate::model::{InputVector, StateVector};
 use crate::plant::{Craft, RigidState};
 
 /// A position error beyond which a flight is lost, m: several times the size of any manoeuvre flown here.
@@ -68,6 +70,27 @@ impl RigidFlight {
     pub fn iae_m_s(&self) -> Option<f64> {
         let sum: f64 = self.samples.iter().map(|sample| sample.position_error_m().norm()).sum();
         self.lost.is_none().then_some(sum * SAMPLE_PERIOD_S)
+    }
+
+    /// The same flight as the model (1) has it: of a craft of `mass_kg`, its thrust and body rates for the input, along
+    /// `reference`.
+    pub fn in_the_model(&self, mass_kg: f64, reference: &dyn Reference) -> Flight {
+        let sample = |sample: &RigidSample| {
+            let RigidState { position_m: r, velocity_m_s: v, attitude, body_rates_rad_s: rates, thrusts_n } =
+                sample.state;
+            let q = attitude.quaternion();
+            Sample {
+                time_s: sample.time_s,
+                state: StateVector::from([r.x, r.y, r.z, q.w, q.i, q.j, q.k, v.x, v.y, v.z]),
+                input: InputVector::new(thrusts_n.sum() / mass_kg, rates.x, rates.y, rates.z),
+                target: reference.at(sample.time_s),
+            }
+        };
+        Flight {
+            samples: self.samples.iter().map(sample).collect(),
+            saturated_steps: self.saturated_steps,
+            lost: self.lost.clone(),
+        }
     }
 
     /// Largest position error, m.

@@ -1,5 +1,7 @@
 //! The flight of a gain table: its file in; the core flies it as a board does that has loaded it.
 
+mod motors;
+
 use std::path::Path;
 
 use quatrack::gains::table::{AcceptError, GainTable, ScheduleTable, TableHead, TableKind};
@@ -33,6 +35,9 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Flown,
             return Err(refused(path, &reason));
         }
         return flown(args, &head, kind, &trajectory, accepted.law(rate, args.feed_forward()).into());
+    }
+    if kind == TableKind::ActuatorAware {
+        return motors::fly(args, path, &bytes, rate, &trajectory);
     }
     let table = GainTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
     let head = *table.head();
