@@ -1,6 +1,6 @@
 //! What the firmware's parameters and logs look at: one C struct of atomics, which every task may read and write.
 //!
-//! `quatrack.h` has the same struct in C; [`LAYOUT`] is what both agree on.
+//! `quatrack.h` has the same struct in C, field by field.
 
 use core::sync::atomic::{AtomicI16, AtomicU8, AtomicU16, AtomicU32, Ordering::Relaxed};
 
