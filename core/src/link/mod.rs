@@ -74,6 +74,7 @@ pub trait Message: serde::Serialize + serde::de::DeserializeOwned + private::Sea
 }
 
 mod private {
+    /// Keeps messages of other schemas out.
     pub trait Sealed {}
     impl Sealed for super::ToBoard {}
     impl Sealed for super::FromBoard {}
