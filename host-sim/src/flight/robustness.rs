@@ -162,7 +162,11 @@ pub fn report(vehicle: &Vehicle) -> Result<Report, FlightError> {
                     report.rows.push(row(vehicle, law, &craft_law, lag_s, case)?);
                 }
             } else {
-                let reason = format!("behind a rate loop it stands {:.1} ms of motor lag", 1e3 * limit_s);
+                let reason = format!(
+                    "behind the rate loop for such motors, {:.1} 1/s, it is stable up to {:.1} ms of motor lag",
+                    0.5 / lag_s,
+                    1e3 * limit_s
+                );
                 report.not_certified.push(Grounded { law, lag_ms: 1e3 * lag_s, reason });
             }
         }
