@@ -8,7 +8,7 @@ use core::ops::{Mul, Neg};
 
 use nalgebra::Vector3;
 
-use crate::math::sin_cos;
+use crate::math::{sin_cos, sqrt};
 
 /// A quaternion, scalar part first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +120,30 @@ impl Heading {
     #[inline(always)]
     pub(crate) fn from_angle_inlined(psi_rad: f32) -> Self {
         let (s, c) = sin_cos(0.5 * psi_rad);
+        Self::of_half(c, s)
+    }
+
+    /// From cosine and sine of half the angle in any common scale: the scalar and the third component of an attitude
+    /// `q_tilt q_z(psi)`. Not finite where both are zero.
+    #[inline]
+    pub fn from_half(cos_half: f32, sin_half: f32) -> Self {
+        let scale = 1.0 / sqrt(cos_half * cos_half + sin_half * sin_half);
+        Self::of_half(cos_half * scale, sin_half * scale)
+    }
+
+    #[inline(always)]
+    fn of_half(c: f32, s: f32) -> Self {
         Self { cos_half: c, sin_half: s, cos: c * c - s * s, sin: 2.0 * c * s }
+    }
+
+    /// Turned on by a small angle, rad: up to 0.5 its sine and cosine are as good as [`Self::from_angle`]'s.
+    #[inline]
+    pub fn turned_slightly(self, angle_rad: f32) -> Self {
+        let half = 0.5 * angle_rad;
+        let h2 = half * half;
+        let s = half * (1.0 - h2 * (1.0 / 6.0 - h2 * (1.0 / 120.0)));
+        let c = 1.0 - h2 * (0.5 - h2 * (1.0 / 24.0 - h2 * (1.0 / 720.0)));
+        Self::of_half(c * self.cos_half - s * self.sin_half, s * self.cos_half + c * self.sin_half)
     }
 
     /// Cosine of half the angle.

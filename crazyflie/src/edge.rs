@@ -6,7 +6,7 @@
 
 use quatrack::math::sin_cos;
 use quatrack::nalgebra::Vector3;
-use quatrack::{Quaternion, State};
+use quatrack::{Heading, Quaternion, State};
 
 use crate::abi::{self, Mode};
 use crate::control::Output;
@@ -62,19 +62,14 @@ pub fn demand(setpoint: &abi::Setpoint, thrust_max_n: f32) -> Option<Demand> {
         Mode::VELOCITY => Vertical::Velocity,
         _ => return None,
     };
-    let (turn, heading_sum) = turn(setpoint)?;
+    let (turn, turn_sum) = turn(setpoint)?;
     let horizontal = horizontal(setpoint)?;
-    // A sum is finite only if all of its terms are.
     let counting = match (&horizontal, vertical) {
         (Horizontal::Tilt(axis), _) => axis.x + axis.y,
         (Horizontal::Rates([p, q]), _) => p + q,
         _ => 0.0,
-    } + setpoint.thrust
-        + heading_sum
-        + sum(&setpoint.position)
-        + sum(&setpoint.velocity)
-        + sum(&setpoint.acceleration)
-        + sum(&setpoint.jerk);
+    } + motion_sum(setpoint)
+        + turn_sum;
     if !counting.is_finite() {
         return None;
     }
@@ -116,25 +111,77 @@ fn horizontal(setpoint: &abi::Setpoint) -> Option<Horizontal> {
     }
 }
 
-/// And the sum of the figures that it is made of.
-fn turn(setpoint: &abi::Setpoint) -> Option<(Turn, f32)> {
-    let mode = &setpoint.mode;
-    let rate = setpoint.attitude_rate.yaw * RAD_PER_DEG;
-    let heading_rad = match (mode.quat, mode.yaw) {
-        (Mode::ABSOLUTE, Mode::DISABLED) => heading_rad(&quaternion(&setpoint.attitude_quaternion)),
-        (Mode::DISABLED, Mode::ABSOLUTE) => setpoint.attitude.yaw * RAD_PER_DEG,
-        (Mode::DISABLED, Mode::VELOCITY) => return Some((Turn::Rate(rate), rate)),
-        (Mode::DISABLED, Mode::DISABLED) => return Some((Turn::Rate(0.0), 0.0)),
-        _ => return None,
+/// Moves on the heading of a flight along a trajectory, as one more setpoint of it asks after one that was kept; gives the
+/// body rate that goes with it, rad/s. Nothing where the setpoint is of another kind, or a number that counts is not
+/// finite.
+#[inline(always)]
+pub fn turn_on(heading: &mut Heading, kept: &abi::Setpoint, setpoint: &abi::Setpoint) -> Option<f32> {
+    let rate = body_rate_rad_s(setpoint);
+    let is_same_yaw = setpoint.mode.yaw == Mode::ABSOLUTE
+        && kept.attitude.yaw.to_bits() == setpoint.attitude.yaw.to_bits()
+        && !is_urgent(kept, setpoint);
+    // Most flights do not turn.
+    let heading_sum = if is_same_yaw {
+        0.0
+    } else if is_urgent(kept, setpoint) {
+        return None;
+    } else {
+        *heading = self::heading(setpoint)?;
+        let (cos, sin) = heading.cos_sin();
+        cos + sin
     };
-    let turn = Turn::Heading { heading_rad, body_rate_rad_s: rate };
-    (heading_rad.abs() <= HEADING_MAX_RAD).then_some((turn, rate))
+    (motion_sum(setpoint) + rate + heading_sum).is_finite().then_some(rate)
 }
 
-/// The heading of an attitude `q_tilt q_z(psi)`, within a turn.
+/// And the sum of the figures that it is made of, finite only if all of them are.
+#[inline]
+fn turn(setpoint: &abi::Setpoint) -> Option<(Turn, f32)> {
+    let rate = body_rate_rad_s(setpoint);
+    match (setpoint.mode.quat, setpoint.mode.yaw) {
+        (Mode::DISABLED, Mode::VELOCITY) => Some((Turn::Rate(rate), rate)),
+        (Mode::DISABLED, Mode::DISABLED) => Some((Turn::Rate(0.0), 0.0)),
+        _ => {
+            let heading = heading(setpoint)?;
+            let (cos, sin) = heading.cos_sin();
+            Some((Turn::Heading { heading, body_rate_rad_s: rate }, cos + sin + rate))
+        }
+    }
+}
+
+/// The heading that a setpoint asks for by its attitude or its angle of yaw.
+#[inline(always)]
+fn heading(setpoint: &abi::Setpoint) -> Option<Heading> {
+    match (setpoint.mode.quat, setpoint.mode.yaw) {
+        (Mode::ABSOLUTE, Mode::DISABLED) => {
+            let q = &setpoint.attitude_quaternion;
+            Some(Heading::from_half(q.w, q.z))
+        }
+        (Mode::DISABLED, Mode::ABSOLUTE) => {
+            let heading_rad = setpoint.attitude.yaw * RAD_PER_DEG;
+            (heading_rad.abs() <= HEADING_MAX_RAD).then(|| Heading::from_angle(heading_rad))
+        }
+        _ => None,
+    }
+}
+
+#[inline(always)]
+fn body_rate_rad_s(setpoint: &abi::Setpoint) -> f32 {
+    setpoint.attitude_rate.yaw * RAD_PER_DEG
+}
+
+/// Sum of the figures of a motion and of the thrust: finite only if all of them are.
+#[inline]
+fn motion_sum(setpoint: &abi::Setpoint) -> f32 {
+    setpoint.thrust
+        + sum(&setpoint.position)
+        + sum(&setpoint.velocity)
+        + sum(&setpoint.acceleration)
+        + sum(&setpoint.jerk)
+}
+
+/// The heading of an attitude `q_tilt q_z(psi)`, rad, within a turn.
 pub fn heading_rad(q: &Quaternion) -> f32 {
-    // Most flights do not turn.
-    if q.z == 0.0 { 0.0 } else { 2.0 * libm::atan2f(q.z, q.w) }
+    2.0 * libm::atan2f(q.z, q.w)
 }
 
 fn vector(v: &abi::Vector) -> Vector3<f32> {
@@ -155,19 +202,35 @@ pub fn is_urgent(before: &abi::Setpoint, setpoint: &abi::Setpoint) -> bool {
     words(before) != words(setpoint)
 }
 
-/// Whether two setpoints ask for the same.
+/// Whether two setpoints ask for the same, the first as [`keep`] has kept it.
 ///
 /// The commander stamps every setpoint that it takes: one with the same stamp can differ only in what supervisor and
 /// collision avoidance change, modes, position and velocity. Without a stamp all of it is looked at.
 #[inline]
 pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
-    let vectors = |a: &abi::Vector, b: &abi::Vector| {
-        a.x.to_bits() == b.x.to_bits() && a.y.to_bits() == b.y.to_bits() && a.z.to_bits() == b.z.to_bits()
-    };
-    if a.timestamp == b.timestamp && a.timestamp != 0 {
-        return words(a) == words(b) && vectors(&a.position, &b.position) && vectors(&a.velocity, &b.velocity);
+    if a.timestamp != b.timestamp {
+        return false;
     }
-    is_all_the_same(a, b)
+    if b.timestamp == 0 {
+        return is_all_the_same(a, b);
+    }
+    let vectors = |a: &abi::Vector, b: &abi::Vector| {
+        ((a.x.to_bits() ^ b.x.to_bits()) | (a.y.to_bits() ^ b.y.to_bits()) | (a.z.to_bits() ^ b.z.to_bits())) == 0
+    };
+    words(a) == words(b) && vectors(&a.position, &b.position) && vectors(&a.velocity, &b.velocity)
+}
+
+/// Keeps of a setpoint what [`is_same`] and [`is_urgent`] look at.
+#[inline]
+pub fn keep(kept: &mut abi::Setpoint, setpoint: &abi::Setpoint) {
+    if setpoint.timestamp == 0 {
+        *kept = *setpoint;
+        return;
+    }
+    let abi::Setpoint { timestamp, position, velocity, velocity_body, mode, .. } = *setpoint;
+    (kept.timestamp, kept.position, kept.velocity) = (timestamp, position, velocity);
+    kept.attitude.yaw = setpoint.attitude.yaw;
+    (kept.velocity_body, kept.mode) = (velocity_body, mode);
 }
 
 #[inline(never)]

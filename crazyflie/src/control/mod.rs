@@ -4,19 +4,21 @@
 //! A change of the table is faded over [`FADE_STEPS`] control steps, both laws stepping side by side. The stabilizer's
 //! stack is small: what is large lies here and is written in place.
 
-use quatrack::law::ActuatorMemory;
-use quatrack::mixer::{MotorLimited, Wrench};
-use quatrack::nalgebra::Vector3;
-use quatrack::{
-    Airframe, Command, Equilibrium, FeedForward, FifthOrderSample, FlatOutput, Limits, MotorForces, MotorLaw,
-    MotorReference, MotorTracker, Quaternion, Reference, RigidState, State, StepError, Tracker,
-};
+mod law_step;
+mod outcome;
 
+use quatrack::law::ActuatorMemory;
+use quatrack::mixer::MotorLimited;
+use quatrack::nalgebra::Vector3;
+use quatrack::{Command, FifthOrderSample, Heading, MotorForces, Quaternion, Reference, RigidState, State, StepError};
+
+use self::law_step::{LawStep, is_finite};
+pub use self::outcome::{Counters, Mode, Outcome, Output, Settings};
 use crate::abi;
 use crate::craft::{Craft, DECIMATION, PERIOD_S};
 use crate::demand::{Demand, Flight, Horizontal, Motion, Turn, Vertical};
 use crate::edge;
-use crate::guide::{Along, Bounds, Guide};
+use crate::guide::{Along, Guide};
 use crate::stream::{Arrival, GAP_MAX_MS, Stream};
 use crate::tables::{Gains, Table};
 
@@ -29,100 +31,40 @@ const BAD_STATES_MAX: u16 = 25;
 /// How fast a craft goes down whose setpoint makes no sense, m/s.
 const DESCENT_M_S: f32 = 0.3;
 
-/// What a step puts out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Output {
-    /// For the firmware's mixer.
-    Wrench(Wrench),
-    /// Straight to the motors, N.
-    Forces(MotorForces),
-}
-
-impl Output {
-    /// Motors off.
-    pub const OFF: Self = Self::Forces([0.0; 4]);
-}
-
-/// How the last setpoint is flown, for the log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Mode {
-    /// Motors off, as asked.
-    Off = 0,
-    /// As asked.
-    Flying = 1,
-    /// Level and slowly down: the setpoint makes no sense.
-    Descending = 2,
-    /// Motors off: the estimate or the gyroscope is not to be flown on.
-    Blind = 3,
-    /// Motors off: the app has not said which craft this is, or there is no table for it.
-    NoCraft = 4,
-}
-
-/// What the owner may change, as the steps take it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Of setpoints.
-    pub bounds: Bounds,
-    /// What the paper's laws may command.
-    pub limits: Limits,
-    /// Of the paper's laws.
-    pub feed_forward: FeedForward,
-}
-
-/// What the steps have seen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counters {
-    /// Steps on an estimate or gyroscope that is not to be flown on.
-    pub bad_states: u16,
-    /// Setpoints that make no sense.
-    pub bad_setpoints: u16,
-    /// Steps that gave something up.
-    pub limited_steps: u16,
-    /// Setpoints that were not where the ones before led.
-    pub jumps: u16,
-}
-
-/// What one step gives.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
-    /// What is put out.
-    pub output: Output,
-    /// What it gave up.
-    pub limited: MotorLimited,
-    /// The attitude that the reference has.
-    pub target: Quaternion,
-    /// Measured position less asked, world frame, m.
-    pub error_m: Vector3<f32>,
-}
-
 /// The controller of a craft.
+///
+/// In this order: a load of a float reaches a kilobyte from where the controller lies, and what every step looks at is to be
+/// within.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub struct Controller {
-    craft: Craft,
-    settings: Settings,
-    table: Table,
-    memory: ActuatorMemory,
-    /// The table on its way out, its memory, and how many steps the way still takes.
-    before: Table,
-    memory_before: ActuatorMemory,
-    fade_left: u16,
+    /// The newest one taken, as far as [`edge::keep`] keeps it.
     setpoint: abi::Setpoint,
-    flight: Option<Flight>,
-    motion: Motion,
     stream: Stream,
-    guide: Guide,
     sample: FifthOrderSample,
-    /// What the sample asks of the paper's laws at a step that is still to come.
+    heading: Heading,
+    /// What the sample asks of the paper's laws, and at which step that is still to come.
     prepared: Option<Reference>,
-    prepared_for: u32,
+    prepared_for: Option<u32>,
+    flight: Option<Flight>,
+    guide: Guide,
+    settings: Settings,
+    outcome: Outcome,
     last_step: u32,
+    fade_left: u16,
+    bad_states_in_a_row: u16,
+    counters: Counters,
+    mode: Mode,
+    /// The flight goes along the stream.
+    is_along: bool,
     /// The controller has just been selected.
     is_selected: bool,
-    bad_states_in_a_row: u16,
-    mode: Mode,
-    outcome: Outcome,
-    counters: Counters,
+    craft: Craft,
+    memory: ActuatorMemory,
+    table: Table,
+    /// The table on its way out and its memory, for as many steps as the fade still takes.
+    before: Table,
+    memory_before: ActuatorMemory,
 }
 
 impl Controller {
@@ -131,27 +73,28 @@ impl Controller {
         const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
         let (output, limited) = (Output::OFF, MotorLimited::NOTHING);
         Self {
-            craft,
+            setpoint: abi::Setpoint::OFF,
+            stream: Stream::new(),
+            sample: FifthOrderSample::at_rest(ZERO, 0.0),
+            heading: Heading::ZERO,
+            prepared: None,
+            prepared_for: None,
+            flight: None,
+            guide: Guide::new(PERIOD_S),
             settings,
-            table,
+            outcome: Outcome { output, limited, target: Quaternion::IDENTITY, error_m: ZERO },
+            last_step: 0,
+            fade_left: 0,
+            bad_states_in_a_row: 0,
+            counters: Counters { bad_states: 0, bad_setpoints: 0, limited_steps: 0, jumps: 0 },
+            mode: Mode::NoCraft,
+            is_along: false,
+            is_selected: true,
+            craft,
             memory: ActuatorMemory::at_rest(),
+            table,
             before: table,
             memory_before: ActuatorMemory::at_rest(),
-            fade_left: 0,
-            setpoint: abi::Setpoint::OFF,
-            flight: None,
-            motion: Motion::ZERO,
-            stream: Stream::new(),
-            guide: Guide::new(PERIOD_S),
-            sample: FifthOrderSample::at_rest(ZERO, 0.0),
-            prepared: None,
-            prepared_for: 0,
-            last_step: 0,
-            is_selected: true,
-            bad_states_in_a_row: 0,
-            mode: Mode::NoCraft,
-            outcome: Outcome { output, limited, target: Quaternion::IDENTITY, error_m: ZERO },
-            counters: Counters { bad_states: 0, bad_setpoints: 0, limited_steps: 0, jumps: 0 },
         }
     }
 
@@ -195,27 +138,71 @@ impl Controller {
         let is_new = self.flight.is_some() && !edge::is_same(&self.setpoint, setpoint);
         if is_new {
             // It has come with the control step before.
-            self.take(setpoint, &edge::state(state), step.wrapping_sub(1));
+            let since_ms = step.wrapping_sub(1);
+            if !(self.is_along && self.go_on(setpoint, since_ms)) {
+                self.take(setpoint, &edge::state(state), since_ms);
+            }
         }
         is_new
+    }
+
+    /// Takes one more setpoint of a flight along a trajectory, of which only figures are new; whether it is one.
+    #[inline(always)]
+    fn go_on(&mut self, setpoint: &abi::Setpoint, since_ms: u32) -> bool {
+        let turn = self.flight.as_mut().map(|flight| &mut flight.turn);
+        let Some(Turn::Heading { heading, body_rate_rad_s }) = turn else { return false };
+        let Some(rate) = edge::turn_on(heading, &self.setpoint, setpoint) else { return false };
+        *body_rate_rad_s = rate;
+        edge::keep(&mut self.setpoint, setpoint);
+        if self.looks_beyond_jerk() {
+            self.accept(&edge::motion(setpoint), since_ms);
+        } else {
+            let arrival = self.stream.accept_to_jerk(&edge::motion(setpoint), since_ms);
+            self.count(arrival);
+        }
+        true
+    }
+
+    #[inline(never)]
+    fn accept(&mut self, motion: &Motion, since_ms: u32) {
+        let arrival = if self.looks_beyond_jerk() {
+            self.stream.accept(motion, since_ms)
+        } else {
+            self.stream.accept_to_jerk(motion, since_ms)
+        };
+        self.count(arrival);
+    }
+
+    #[inline(always)]
+    fn count(&mut self, arrival: Arrival) {
+        if arrival == Arrival::Jumped {
+            self.counters.jumps = self.counters.jumps.wrapping_add(1);
+        }
+    }
+
+    /// Whether a law that is flown takes snap and crackle.
+    #[inline(always)]
+    fn looks_beyond_jerk(&self) -> bool {
+        matches!(self.table.gains, Gains::ActuatorAware(_)) || self.fade_left > 0
     }
 
     /// Between control steps: makes the reference of the next one for the paper's laws along a trajectory. It takes nothing
     /// from the estimate but where the leash ends.
     #[inline]
     pub fn prepare(&mut self, state: &abi::State, next_step: u32) {
-        let is_along = |flight: &Flight| {
-            matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position))
-                && matches!(flight.turn, Turn::Heading { .. })
+        let Some(flight) = self.flight.as_ref().filter(|_| self.is_along && !self.looks_beyond_jerk()) else { return };
+        let mass_kg = self.craft.airframe.figures().mass_kg;
+        let along = Along { flight, stream: &self.stream, now_ms: next_step, to_fifth: false, mass_kg };
+        self.heading = along.put(&edge::state(state), &self.settings.bounds, &mut self.sample);
+        let flat = &self.sample.flat;
+        let is_there = match &mut self.prepared {
+            Some(reference) => reference.move_to_flat(flat, self.heading).is_ok(),
+            None => {
+                self.prepared = Reference::from_flat_at(flat, self.heading).ok();
+                self.prepared.is_some()
+            }
         };
-        let is_aware = matches!(self.table.gains, Gains::ActuatorAware(_));
-        if let Some(flight) = self.flight.as_ref().filter(|flight| !is_aware && is_along(flight)) {
-            let mass_kg = self.craft.airframe.figures().mass_kg;
-            let along = Along { flight, stream: &self.stream, now_ms: next_step, to_fifth: false, mass_kg };
-            self.guide.put(&along, &edge::state(state), &self.settings.bounds, &mut self.sample);
-            self.prepared = Reference::from_flat(&self.sample.flat).ok();
-            self.prepared_for = next_step;
-        }
+        self.prepared_for = is_there.then_some(next_step);
     }
 
     /// Another controller has flown in the meantime, or nobody: nothing that was remembered holds. The motors are
@@ -225,7 +212,7 @@ impl Controller {
     fn restart(&mut self) {
         self.memory = ActuatorMemory::hovering(&self.craft.airframe);
         (self.flight, self.fade_left, self.bad_states_in_a_row, self.is_selected) = (None, 0, 0, false);
-        self.prepared = None;
+        self.prepared_for = None;
     }
 
     /// Forgets what it remembers, at the next control step.
@@ -236,8 +223,8 @@ impl Controller {
     /// Takes a setpoint whose contents have changed.
     #[inline(never)]
     fn take(&mut self, setpoint: &abi::Setpoint, state: &State, now_ms: u32) {
-        self.setpoint = *setpoint;
-        self.prepared = None;
+        edge::keep(&mut self.setpoint, setpoint);
+        self.prepared_for = None;
         let thrust_max_n = 4.0 * self.craft.airframe.figures().force_max_n;
         let flight = match edge::demand(setpoint, thrust_max_n) {
             Some(Demand::Off) => {
@@ -263,10 +250,8 @@ impl Controller {
             Mode::Descending => Motion { velocity_m_s: Vector3::new(0.0, 0.0, -DESCENT_M_S), ..Motion::ZERO },
             _ => edge::motion(setpoint),
         };
-        if (is_another || motion != self.motion) && self.stream.accept(&motion, now_ms) == Arrival::Jumped {
-            self.counters.jumps = self.counters.jumps.wrapping_add(1);
-        }
-        (self.flight, self.motion) = (Some(flight), motion);
+        self.accept(&motion, now_ms);
+        (self.is_along, self.flight) = (flight.is_along(), Some(flight));
     }
 
     /// Starts a flight of another kind.
@@ -285,20 +270,21 @@ impl Controller {
         if let Horizontal::Rates([p, q]) = flight.horizontal {
             return self.turn([p, q], state);
         }
-        let is_prepared = self.prepared.is_some() && self.prepared_for == now_ms && self.fade_left == 0;
-        if !is_prepared {
-            let to_fifth = matches!(self.table.gains, Gains::ActuatorAware(_)) || self.fade_left > 0;
+        let reference = self.prepared.as_ref().filter(|_| self.prepared_for == Some(now_ms));
+        if reference.is_none() {
+            let to_fifth = self.looks_beyond_jerk();
             let mass_kg = self.craft.airframe.figures().mass_kg;
             let along = Along { flight, stream: &self.stream, now_ms, to_fifth, mass_kg };
-            self.guide.put(&along, &state.state, &self.settings.bounds, &mut self.sample);
+            self.heading = self.guide.put(&along, &state.state, &self.settings.bounds, &mut self.sample);
         }
         let (r, p) = (&state.state.position_m, &self.sample.flat.position_m);
         self.outcome.error_m = Vector3::new(r.x - p.x, r.y - p.y, r.z - p.z);
-        let run = Run { craft: &self.craft, settings: &self.settings, sample: &self.sample, state };
-        if let Some(reference) = self.prepared.as_ref().filter(|_| is_prepared) {
-            return run.follow(&self.table, reference, &mut self.outcome);
+        let (craft, settings, sample, heading) = (&self.craft, &self.settings, &self.sample, self.heading);
+        let law_step = LawStep { craft, settings, sample, heading, state };
+        if let Some(reference) = reference {
+            return law_step.follow(&self.table, reference, &mut self.outcome);
         }
-        run.step(&self.table, &mut self.memory, &mut self.outcome)?;
+        law_step.step(&self.table, &mut self.memory, &mut self.outcome)?;
         if self.fade_left > 0 { self.mix_in_the_one_before(state) } else { Ok(()) }
     }
 
@@ -307,15 +293,16 @@ impl Controller {
     #[inline(never)]
     fn mix_in_the_one_before(&mut self, state: &RigidState) -> Result<(), StepError> {
         self.fade_left -= 1;
-        let run = Run { craft: &self.craft, settings: &self.settings, sample: &self.sample, state };
+        let (craft, settings, sample, heading) = (&self.craft, &self.settings, &self.sample, self.heading);
+        let law_step = LawStep { craft, settings, sample, heading, state };
         let mut before = self.outcome;
         // Where only the old law has no answer, the new one's counts at once.
-        if run.step(&self.before, &mut self.memory_before, &mut before).is_err() {
+        if law_step.step(&self.before, &mut self.memory_before, &mut before).is_err() {
             self.fade_left = 0;
         }
         if self.fade_left > 0 {
             let share = f32::from(self.fade_left) / f32::from(FADE_STEPS);
-            let (from, to) = (forces(&self.craft, &before.output), forces(&self.craft, &self.outcome.output));
+            let (from, to) = (before.output.forces_n(&self.craft), self.outcome.output.forces_n(&self.craft));
             self.outcome.output = Output::Forces(between(to, from, share));
         }
         Ok(())
@@ -372,7 +359,7 @@ impl Controller {
             (self.memory_before, self.fade_left) = (self.memory, FADE_STEPS);
         }
         self.table = *table;
-        self.prepared = None;
+        self.prepared_for = None;
     }
 
     /// Starts for a craft: motors off until a setpoint comes.
@@ -414,136 +401,6 @@ impl Controller {
     pub fn rotation_error_rad(&self, attitude: Quaternion) -> Vector3<f32> {
         let q = self.outcome.target.conjugate() * attitude;
         q.vector() * if q.w < 0.0 { -2.0 } else { 2.0 }
-    }
-}
-
-/// One law's step.
-struct Run<'a> {
-    craft: &'a Craft,
-    settings: &'a Settings,
-    sample: &'a FifthOrderSample,
-    state: &'a RigidState,
-}
-
-impl Run<'_> {
-    #[inline(always)]
-    fn step(&self, table: &Table, memory: &mut ActuatorMemory, outcome: &mut Outcome) -> Result<(), StepError> {
-        let feed_forward = self.settings.feed_forward;
-        match &table.gains {
-            // References are looked at where they lie: to move one out costs as much as the product with a gain.
-            Gains::ActuatorAware(motors) => {
-                let airframe = &motors.airframe;
-                let tracker = MotorTracker::new(MotorLaw::ActuatorAware(motors.law()), airframe);
-                match &MotorReference::from_flat(self.sample, airframe) {
-                    Ok(reference) => self.straight(&tracker, reference, memory, outcome),
-                    Err(_) => self.straight_up(&tracker, airframe, memory, outcome),
-                }
-            }
-            Gains::Equilibrium(gain) => {
-                let law = Equilibrium { feed_forward, ..Equilibrium::new(gain) };
-                self.through_rates(&Tracker::new(law, self.settings.limits), outcome)
-            }
-            Gains::FlatOutput(gain) => {
-                let law = FlatOutput { gain, feed_forward };
-                self.through_rates(&Tracker::new(law, self.settings.limits), outcome)
-            }
-        }
-    }
-
-    /// A law of the paper on a reference that is there.
-    #[inline(always)]
-    fn follow(&self, table: &Table, reference: &Reference, outcome: &mut Outcome) -> Result<(), StepError> {
-        let feed_forward = self.settings.feed_forward;
-        let tracker = match &table.gains {
-            Gains::Equilibrium(gain) => {
-                Tracker::new(Equilibrium { feed_forward, ..Equilibrium::new(gain) }, self.settings.limits)
-            }
-            Gains::FlatOutput(gain) => Tracker::new(FlatOutput { gain, feed_forward }, self.settings.limits),
-            Gains::ActuatorAware(_) => return Err(StepError::Singular),
-        };
-        self.wrench(&tracker, reference, outcome)
-    }
-
-    #[inline(always)]
-    fn straight(
-        &self,
-        tracker: &MotorTracker<'_>,
-        reference: &MotorReference,
-        memory: &mut ActuatorMemory,
-        outcome: &mut Outcome,
-    ) -> Result<(), StepError> {
-        let step = tracker.step(memory, self.state, reference)?;
-        outcome.output = Output::Forces(step.forces_n);
-        (outcome.limited, outcome.target) = (step.limited, reference.state().attitude);
-        Ok(())
-    }
-
-    #[inline(always)]
-    fn through_rates(&self, tracker: &Tracker<'_>, outcome: &mut Outcome) -> Result<(), StepError> {
-        match &Reference::from_flat(&self.sample.flat) {
-            Ok(reference) => self.wrench(tracker, reference, outcome),
-            Err(_) => self.up_through_rates(tracker, outcome),
-        }
-    }
-
-    #[inline(always)]
-    fn wrench(&self, tracker: &Tracker<'_>, reference: &Reference, outcome: &mut Outcome) -> Result<(), StepError> {
-        let step = tracker.step(&self.state.state, reference)?;
-        let wrench = self.craft.body_rates.wrench(&step.command, &self.state.body_rates_rad_s);
-        if !is_finite(&wrench) {
-            return Err(StepError::Singular);
-        }
-        outcome.output = Output::Wrench(wrench);
-        outcome.limited = MotorLimited::from_bits(u16::from(step.limited.bits()) << 8);
-        outcome.target = reference.state().attitude;
-        Ok(())
-    }
-
-    // Apart, so that no step pays for their stack.
-
-    #[cold]
-    #[inline(never)]
-    fn straight_up(
-        &self,
-        tracker: &MotorTracker<'_>,
-        airframe: &Airframe,
-        memory: &mut ActuatorMemory,
-        outcome: &mut Outcome,
-    ) -> Result<(), StepError> {
-        let upright = MotorReference::from_flat(&self.upright(), airframe).map_err(|_| StepError::Singular)?;
-        self.straight(tracker, &upright, memory, outcome)
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn up_through_rates(&self, tracker: &Tracker<'_>, outcome: &mut Outcome) -> Result<(), StepError> {
-        let upright = Reference::from_flat(&self.upright().flat).map_err(|_| StepError::Singular)?;
-        self.wrench(tracker, &upright, outcome)
-    }
-
-    /// Where the motion asks for what no thrust does (free fall, upside down): its position and velocity alone.
-    #[cold]
-    #[inline(never)]
-    fn upright(&self) -> FifthOrderSample {
-        let flat = &self.sample.flat;
-        let mut sample = FifthOrderSample::at_rest(flat.position_m, flat.heading_rad);
-        sample.flat.velocity_m_s = flat.velocity_m_s;
-        sample
-    }
-}
-
-/// The gyroscope's readings come in here; the thrust has been looked at.
-#[inline]
-fn is_finite(wrench: &Wrench) -> bool {
-    let torque = &wrench.torque_n_m;
-    (torque.x + torque.y + torque.z).abs() <= f32::MAX
-}
-
-/// An output as forces.
-fn forces(craft: &Craft, output: &Output) -> MotorForces {
-    match output {
-        Output::Forces(forces) => *forces,
-        Output::Wrench(wrench) => craft.airframe.mix(wrench).map_or([0.0; 4], |(forces, _)| forces),
     }
 }
 
