@@ -131,11 +131,13 @@ impl Reference {
             return Err(tilt.fault());
         }
         // Most flights do not turn: heading 0 needs no sine and no products with it.
-        if sample.heading_rad == 0.0 {
-            return Ok(Self::of_map(sample, Heading::ZERO, &tilt.straight(sample.heading_rate_rad_s)));
-        }
-        let heading = Heading::from_angle(sample.heading_rad);
-        Ok(Self::of_map(sample, heading, &tilt.with_heading(heading, sample.heading_rate_rad_s)))
+        let (heading, mapped) = if sample.heading_rad == 0.0 {
+            (Heading::ZERO, tilt.straight(sample.heading_rate_rad_s))
+        } else {
+            let heading = Heading::from_angle(sample.heading_rad);
+            (heading, tilt.with_heading(heading, sample.heading_rate_rad_s))
+        };
+        Ok(Self::of_map(sample, heading, &mapped))
     }
 
     #[inline(always)]
