@@ -207,6 +207,39 @@ mod tests {
         assert!(((-Q).thrust_axis() - Q.thrust_axis()).norm() == 0.0);
     }
 
+    /// Largest difference of cosines and sines.
+    fn distance(a: Heading, b: Heading) -> f32 {
+        [a.cos_half - b.cos_half, a.sin_half - b.sin_half, a.cos - b.cos, a.sin - b.sin]
+            .into_iter()
+            .fold(0.0, |most, difference| most.max(difference.abs()))
+    }
+
+    #[test]
+    fn a_heading_is_what_the_tilt_leaves_of_an_attitude() {
+        for k in -30_i8..=30 {
+            let psi = 0.2 * f32::from(k);
+            let heading = Heading::from_angle(psi);
+            // The smallest rotation to a tilt has no third component.
+            let tilt = Quaternion::new(0.8, 0.36, -0.48, 0.0);
+            let q = tilt * heading.quaternion();
+            // Roundings of a product, a norm and a division.
+            assert!(distance(Heading::from_half(q.w, q.z), heading) < 5e-7, "{psi}");
+        }
+        assert!(!Heading::from_half(0.0, 0.0).cos.is_finite());
+    }
+
+    #[test]
+    fn a_small_turn_is_as_good_as_the_sine() {
+        for k in -50_i8..=50 {
+            let turn = 0.01 * f32::from(k);
+            for psi in [-3.0_f32, 0.0, 0.7] {
+                let (found, wanted) = (Heading::from_angle(psi).turned_slightly(turn), Heading::from_angle(psi + turn));
+                // The sum of the angles is rounded, and so are four products.
+                assert!(distance(found, wanted) < 5e-7, "{psi} + {turn}");
+            }
+        }
+    }
+
     #[test]
     fn hemisphere_is_that_of_the_other() {
         assert_eq!((-Q).in_hemisphere_of(Q), Q);

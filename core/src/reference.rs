@@ -102,21 +102,22 @@ impl Reference {
     pub fn from_flat_at(sample: &FlatSample, heading: Heading) -> Result<Self, ReferenceError> {
         let tilt = Tilt::new(sample.acceleration_m_s2, sample.jerk_m_s3);
         if !(sample.is_finite() && tilt.is_regular()) {
-            return Err(fault(sample, &tilt));
+            return Err(fault(sample));
         }
         Ok(Self::of_map(sample, heading, &tilt.with_heading(heading, sample.heading_rate_rad_s)))
     }
 
-    /// Moves a reference that is kept to what [`Self::from_flat_at`] gives, where it lies; where there is nothing to be
-    /// given it stays as it was.
+    /// Moves a reference that is kept to what [`Self::from_flat_at`] gives, where it lies, for a sample whose numbers were
+    /// looked at where they came from; where there is nothing to be given it stays as it was. A position or velocity that
+    /// is not finite all the same shows as an error of the step that follows it.
     ///
     /// # Errors
-    /// Those of [`Self::from_flat`].
+    /// [`ReferenceError`] at the singularities of the flat map.
     #[inline(always)]
-    pub fn move_to_flat(&mut self, sample: &FlatSample, heading: Heading) -> Result<(), ReferenceError> {
+    pub fn move_to_finite_flat(&mut self, sample: &FlatSample, heading: Heading) -> Result<(), ReferenceError> {
         let tilt = Tilt::new(sample.acceleration_m_s2, sample.jerk_m_s3);
-        if !(sample.is_finite() && tilt.is_regular()) {
-            return Err(fault(sample, &tilt));
+        if !tilt.is_regular() {
+            return Err(fault(sample));
         }
         *self = Self::of_map(sample, heading, &tilt.with_heading(heading, sample.heading_rate_rad_s));
         Ok(())
@@ -130,11 +131,13 @@ impl Reference {
             return Err(tilt.fault());
         }
         // Most flights do not turn: heading 0 needs no sine and no products with it.
-        if sample.heading_rad == 0.0 {
-            return Ok(Self::of_map(sample, Heading::ZERO, &tilt.straight(sample.heading_rate_rad_s)));
-        }
-        let heading = Heading::from_angle(sample.heading_rad);
-        Ok(Self::of_map(sample, heading, &tilt.with_heading(heading, sample.heading_rate_rad_s)))
+        let (heading, mapped) = if sample.heading_rad == 0.0 {
+            (Heading::ZERO, tilt.straight(sample.heading_rate_rad_s))
+        } else {
+            let heading = Heading::from_angle(sample.heading_rad);
+            (heading, tilt.with_heading(heading, sample.heading_rate_rad_s))
+        };
+        Ok(Self::of_map(sample, heading, &mapped))
     }
 
     #[inline(always)]
@@ -188,11 +191,12 @@ impl Reference {
 
 /// Why a sample has no reference, or none that can be told from one that is not finite.
 #[cold]
-fn fault(sample: &FlatSample, tilt: &Tilt) -> ReferenceError {
-    let value = sample.position_m.x;
+#[inline(never)]
+fn fault(sample: &FlatSample) -> ReferenceError {
+    let tilt = Tilt::new(sample.acceleration_m_s2, sample.jerk_m_s3);
     match sample.fault() {
         Some(fault) => fault,
-        None if tilt.is_regular() => ReferenceError::NonFinite { field: Field::Position, value },
+        None if tilt.is_regular() => ReferenceError::NonFinite { field: Field::Position, value: sample.position_m.x },
         None => tilt.fault(),
     }
 }

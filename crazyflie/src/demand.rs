@@ -58,8 +58,8 @@ pub enum Turn {
     Heading {
         /// Which.
         heading: Heading,
-        /// Body rate about z that goes with it, rad/s.
-        body_rate_rad_s: f32,
+        /// Its rate, rad/s.
+        rate_rad_s: f32,
     },
     /// At a rate of the heading, from wherever it is; rad/s.
     Rate(f32),

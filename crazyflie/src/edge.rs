@@ -4,7 +4,8 @@
 //! thrust of 65535 becomes what four motors can do. A yaw angle becomes a heading: the same at hover; the firmware's own
 //! trajectories bend away from it as they tilt, Z-X-Y, by less than a degree below 15 degrees.
 
-use quatrack::math::sin_cos;
+use quatrack::flatness::GRAVITY_M_S2;
+use quatrack::math::{sin_cos, sqrt};
 use quatrack::nalgebra::Vector3;
 use quatrack::{Heading, Quaternion, State};
 
@@ -20,6 +21,13 @@ const THRUST_MAX: f32 = 65_535.0;
 
 /// Thrust below which a manual setpoint means motors off, as with the firmware's own controllers.
 const THRUST_OFF: f32 = 1_000.0;
+
+/// Largest rate of a heading that is followed, rad/s: as fast as a Crazyflie turns.
+const HEADING_RATE_MAX_RAD_S: f32 = 5.0;
+
+/// Largest size of what the figures of a setpoint add up to: a kilometre and more, with room to carry it on by its
+/// derivatives for a while.
+const SUM_MAX: f32 = 1e6;
 
 /// Largest heading, rad: beyond it the sine loses digits.
 const HEADING_MAX_RAD: f32 = 2_000.0;
@@ -70,7 +78,7 @@ pub fn demand(setpoint: &abi::Setpoint, thrust_max_n: f32) -> Option<Demand> {
         _ => 0.0,
     } + motion_sum(setpoint)
         + turn_sum;
-    if !counting.is_finite() {
+    if !is_sound(counting) {
         return None;
     }
     if matches!(vertical, Vertical::Thrust(_)) && setpoint.thrust < THRUST_OFF {
@@ -112,38 +120,39 @@ fn horizontal(setpoint: &abi::Setpoint) -> Option<Horizontal> {
 }
 
 /// Moves on the heading of a flight along a trajectory, as one more setpoint of it asks after one that was kept; gives the
-/// body rate that goes with it, rad/s. Nothing where the setpoint is of another kind, or a number that counts is not
-/// finite.
+/// rate that goes with it, rad/s. Nothing where the setpoint is of another kind, or a number that counts makes no sense.
 #[inline(always)]
 pub fn turn_on(heading: &mut Heading, kept: &abi::Setpoint, setpoint: &abi::Setpoint) -> Option<f32> {
-    let rate = body_rate_rad_s(setpoint);
-    let is_same_yaw = setpoint.mode.yaw == Mode::ABSOLUTE
-        && kept.attitude.yaw.to_bits() == setpoint.attitude.yaw.to_bits()
-        && !is_urgent(kept, setpoint);
-    // Most flights do not turn.
-    let heading_sum = if is_same_yaw {
-        0.0
-    } else if is_urgent(kept, setpoint) {
+    if setpoint.timestamp == 0 || is_urgent(kept, setpoint) {
         return None;
+    }
+    let rate = heading_rate_rad_s(setpoint);
+    let is_by_yaw = kept.mode.yaw == Mode::ABSOLUTE;
+    let heading_sum = if is_by_yaw && kept.attitude.yaw.to_bits() == setpoint.attitude.yaw.to_bits() {
+        // Most flights do not turn.
+        0.0
     } else {
         *heading = self::heading(setpoint)?;
         let (cos, sin) = heading.cos_sin();
         cos + sin
     };
-    (motion_sum(setpoint) + rate + heading_sum).is_finite().then_some(rate)
+    is_sound(motion_sum(setpoint) + rate + heading_sum).then_some(rate)
 }
 
 /// And the sum of the figures that it is made of, finite only if all of them are.
 #[inline]
 fn turn(setpoint: &abi::Setpoint) -> Option<(Turn, f32)> {
-    let rate = body_rate_rad_s(setpoint);
     match (setpoint.mode.quat, setpoint.mode.yaw) {
-        (Mode::DISABLED, Mode::VELOCITY) => Some((Turn::Rate(rate), rate)),
+        (Mode::DISABLED, Mode::VELOCITY) => {
+            let rate = setpoint.attitude_rate.yaw * RAD_PER_DEG;
+            Some((Turn::Rate(rate), rate))
+        }
         (Mode::DISABLED, Mode::DISABLED) => Some((Turn::Rate(0.0), 0.0)),
         _ => {
             let heading = heading(setpoint)?;
             let (cos, sin) = heading.cos_sin();
-            Some((Turn::Heading { heading, body_rate_rad_s: rate }, cos + sin + rate))
+            let rate_rad_s = heading_rate_rad_s(setpoint);
+            Some((Turn::Heading { heading, rate_rad_s }, cos + sin + rate_rad_s))
         }
     }
 }
@@ -164,9 +173,26 @@ fn heading(setpoint: &abi::Setpoint) -> Option<Heading> {
     }
 }
 
+/// Rate of the heading that goes with an angle, rad/s. Setpoints have the body rate, the heading's rate times the vertical
+/// part of the thrust's direction.
 #[inline(always)]
-fn body_rate_rad_s(setpoint: &abi::Setpoint) -> f32 {
-    setpoint.attitude_rate.yaw * RAD_PER_DEG
+fn heading_rate_rad_s(setpoint: &abi::Setpoint) -> f32 {
+    let body_rate = setpoint.attitude_rate.yaw * RAD_PER_DEG;
+    if body_rate == 0.0 {
+        return 0.0;
+    }
+    let a = &setpoint.acceleration;
+    let h = a.z + GRAVITY_M_S2;
+    let axis_z = h / sqrt(a.x * a.x + a.y * a.y + h * h);
+    // Beyond 60 degrees of tilt the two have little to do with each other.
+    let rate = if axis_z > 0.5 { body_rate / axis_z } else { body_rate };
+    if rate.abs() <= HEADING_RATE_MAX_RAD_S { rate } else { HEADING_RATE_MAX_RAD_S.copysign(rate) }
+}
+
+/// Whether figures that add up to this are finite.
+#[inline(always)]
+fn is_sound(sum: f32) -> bool {
+    sum.abs() <= SUM_MAX
 }
 
 /// Sum of the figures of a motion and of the thrust: finite only if all of them are.
@@ -220,17 +246,32 @@ pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
     words(a) == words(b) && vectors(&a.position, &b.position) && vectors(&a.velocity, &b.velocity)
 }
 
+/// The same while a trajectory is flown, whose last setpoint was kept by [`keep_on`] and had this motion.
+#[inline(always)]
+pub fn is_same_along(a: &abi::Setpoint, motion: &Motion, b: &abi::Setpoint) -> bool {
+    if b.timestamp == 0 {
+        return is_same(a, b);
+    }
+    let vectors = |a: &Vector3<f32>, b: &abi::Vector| {
+        ((a.x.to_bits() ^ b.x.to_bits()) | (a.y.to_bits() ^ b.y.to_bits()) | (a.z.to_bits() ^ b.z.to_bits())) == 0
+    };
+    a.timestamp == b.timestamp
+        && words(a) == words(b)
+        && vectors(&motion.position_m, &b.position)
+        && vectors(&motion.velocity_m_s, &b.velocity)
+}
+
 /// Keeps of a setpoint what [`is_same`] and [`is_urgent`] look at.
 #[inline]
 pub fn keep(kept: &mut abi::Setpoint, setpoint: &abi::Setpoint) {
-    if setpoint.timestamp == 0 {
-        *kept = *setpoint;
-        return;
-    }
-    let abi::Setpoint { timestamp, position, velocity, velocity_body, mode, .. } = *setpoint;
-    (kept.timestamp, kept.position, kept.velocity) = (timestamp, position, velocity);
+    *kept = *setpoint;
+}
+
+/// Keeps of one more setpoint along a trajectory what is not in its motion.
+#[inline(always)]
+pub fn keep_on(kept: &mut abi::Setpoint, setpoint: &abi::Setpoint) {
+    kept.timestamp = setpoint.timestamp;
     kept.attitude.yaw = setpoint.attitude.yaw;
-    (kept.velocity_body, kept.mode) = (velocity_body, mode);
 }
 
 #[inline(never)]

@@ -30,9 +30,6 @@ const VELOCITY_BANDWIDTH_1_S: f32 = 6.0;
 /// How far the position of a velocity demand may run ahead of the craft along each axis, m.
 const LEAD_MAX_M: f32 = 0.25;
 
-/// Farthest that a heading turns between two setpoints, rad.
-const TURN_MAX_RAD: f32 = 0.5;
-
 /// What is integrated over time: the point that a velocity demand moves, the heading that a turn rate moves.
 #[derive(Clone, Copy, Debug)]
 pub struct Guide {
@@ -62,30 +59,13 @@ impl Along<'_> {
     /// heading is not used, and the heading.
     #[inline(always)]
     pub fn put(&self, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) -> Heading {
-        self.stream.at(self.now_ms, self.to_fifth, sample);
+        let age_s = self.stream.at(self.now_ms, self.to_fifth, sample);
         let heading = match &self.flight.turn {
-            Turn::Heading { heading, body_rate_rad_s } => self.turned(heading, *body_rate_rad_s, sample),
+            Turn::Heading { heading, rate_rad_s } => turned(heading, *rate_rad_s, age_s, sample),
             Turn::Rate(_) => Heading::ZERO,
         };
         leash(sample, state, bounds.leash_m);
         heading
-    }
-
-    /// A heading between two setpoints, its rate into `sample`.
-    #[inline(always)]
-    fn turned(&self, heading: &Heading, body_rate_rad_s: f32, sample: &mut FifthOrderSample) -> Heading {
-        if body_rate_rad_s == 0.0 {
-            sample.flat.heading_rate_rad_s = 0.0;
-            return *heading;
-        }
-        // The firmware's trajectories send the body rate, the heading's rate times the vertical part of the thrust's direction.
-        let a = &sample.flat.acceleration_m_s2;
-        let h = a.z + GRAVITY_M_S2;
-        let axis_z = h / sqrt(a.x * a.x + a.y * a.y + h * h);
-        // Beyond 60 degrees of tilt the two have little to do with each other.
-        let rate = if axis_z > 0.5 { body_rate_rad_s / axis_z } else { body_rate_rad_s };
-        sample.flat.heading_rate_rad_s = rate;
-        heading.turned_slightly(within(rate * self.stream.age_s(self.now_ms), -TURN_MAX_RAD, TURN_MAX_RAD))
     }
 }
 
@@ -108,9 +88,9 @@ impl Guide {
     #[inline]
     pub fn put(&mut self, along: &Along<'_>, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) -> Heading {
         let Along { flight, stream, now_ms, to_fifth, .. } = along;
-        stream.at(*now_ms, *to_fifth, sample);
+        let age_s = stream.at(*now_ms, *to_fifth, sample);
         let heading = match &flight.turn {
-            Turn::Heading { heading, body_rate_rad_s } => along.turned(heading, *body_rate_rad_s, sample),
+            Turn::Heading { heading, rate_rad_s } => turned(heading, *rate_rad_s, age_s, sample),
             Turn::Rate(rate_rad_s) => self.turn(sample, *rate_rad_s),
         };
         if !matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position)) {
@@ -219,6 +199,13 @@ impl Guide {
         self.velocity_m_s.y += ay * self.period_s;
         (ax, ay)
     }
+}
+
+/// A heading some time after it was asked for, its rate into `sample`.
+#[inline(always)]
+fn turned(heading: &Heading, rate_rad_s: f32, age_s: f32, sample: &mut FifthOrderSample) -> Heading {
+    sample.flat.heading_rate_rad_s = rate_rad_s;
+    if rate_rad_s == 0.0 { *heading } else { heading.turned_slightly(rate_rad_s * age_s) }
 }
 
 /// Draws a position that is too far away towards the craft: the laws are linear, and would turn it over for a goal

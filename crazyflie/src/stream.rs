@@ -53,7 +53,8 @@ pub enum Arrival {
 
 impl Stream {
     /// Nothing yet.
-    pub(crate) const fn new() -> Self {
+    #[allow(clippy::new_without_default, reason = "a default is not const")]
+    pub const fn new() -> Self {
         Self {
             newest: Motion::ZERO,
             snap_m_s4: Vector3::new(0.0, 0.0, 0.0),
@@ -88,7 +89,7 @@ impl Stream {
             return Arrival::Continued;
         }
         let arrival = match self.gap_ms(now_ms) {
-            Some(gap_ms) if continues(motion, &self.extrapolated(gap_ms as f32 * 1e-3)) => Arrival::Continued,
+            Some(gap_ms) if self.leads_to(motion, gap_ms as f32 * 1e-3) => Arrival::Continued,
             Some(_) => Arrival::Jumped,
             None => Arrival::Begun,
         };
@@ -97,6 +98,15 @@ impl Stream {
         }
         (self.newest, self.since_ms) = (*motion, Some(now_ms));
         arrival
+    }
+
+    /// Whether the newest setpoint leads to a motion so many seconds later, in position and velocity. Within the gap that
+    /// setpoints may leave, what is left out here is far below the bounds.
+    #[inline(always)]
+    fn leads_to(&self, motion: &Motion, t: f32) -> bool {
+        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, .. } = &self.newest;
+        let ahead = |a: &Vector3<f32>, b: &Vector3<f32>| Vector3::new(a.x + t * b.x, a.y + t * b.y, a.z + t * b.z);
+        distance(&motion.position_m, &ahead(p, v)) <= JUMP[0] && distance(&motion.velocity_m_s, &ahead(v, a)) <= JUMP[1]
     }
 
     #[inline(always)]
@@ -123,15 +133,10 @@ impl Stream {
         &self.newest
     }
 
-    /// Time since the newest setpoint, as far as it is extrapolated; s.
-    pub fn age_s(&self, now_ms: u32) -> f32 {
-        let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
-        age_ms.min(EXTRAPOLATION_MAX_MS) as f32 * 1e-3
-    }
-
-    /// The motion at a time, heading aside, into `sample`; with snap and crackle only where they are asked for.
+    /// The motion at a time, heading aside, into `sample`; with snap and crackle only where they are asked for. Gives the
+    /// time since the newest setpoint, as far as it is extrapolated, s.
     #[inline(always)]
-    pub fn at(&self, now_ms: u32, to_fifth: bool, sample: &mut FifthOrderSample) {
+    pub fn at(&self, now_ms: u32, to_fifth: bool, sample: &mut FifthOrderSample) -> f32 {
         let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
         if age_ms > EXTRAPOLATION_MAX_MS {
             return self.end(sample);
@@ -139,11 +144,12 @@ impl Stream {
         let t = age_ms as f32 * 1e-3;
         if to_fifth {
             self.put_to_fifth(t, sample);
-            return;
+            return t;
         }
         let flat = &mut sample.flat;
         [flat.position_m, flat.velocity_m_s, flat.acceleration_m_s2] = self.extrapolated(t);
         flat.jerk_m_s3 = self.newest.jerk_m_s3;
+        t
     }
 
     /// Position, velocity and acceleration so many seconds after the newest setpoint, by its own derivatives.
@@ -185,9 +191,11 @@ impl Stream {
     /// Where a motion without successors has come to.
     #[cold]
     #[inline(never)]
-    fn end(&self, sample: &mut FifthOrderSample) {
-        self.put_to_fifth(EXTRAPOLATION_MAX_MS as f32 * 1e-3, sample);
+    fn end(&self, sample: &mut FifthOrderSample) -> f32 {
+        let t = EXTRAPOLATION_MAX_MS as f32 * 1e-3;
+        self.put_to_fifth(t, sample);
         *sample = FifthOrderSample::at_rest(sample.flat.position_m, 0.0);
+        t
     }
 
     /// Snap and crackle at a setpoint that continues the ones before, so many milliseconds after the last of them.
@@ -196,7 +204,10 @@ impl Stream {
         let mut expected = FifthOrderSample::at_rest(motion.position_m, 0.0);
         self.put_to_fifth(gap_s, &mut expected);
         let expected = &expected.flat;
-        if !continues(motion, &[expected.position_m, expected.velocity_m_s, expected.acceleration_m_s2]) {
+        let continues = distance(&motion.position_m, &expected.position_m) <= JUMP[0]
+            && distance(&motion.velocity_m_s, &expected.velocity_m_s) <= JUMP[1]
+            && distance(&motion.acceleration_m_s2, &expected.acceleration_m_s2) <= JUMP[2];
+        if !continues {
             return Arrival::Jumped;
         }
         let (new, old) = (&motion.jerk_m_s3, &self.newest.jerk_m_s3);
@@ -231,13 +242,8 @@ impl Stream {
     }
 }
 
-/// Whether a motion is where it was expected, in position, velocity and acceleration.
+/// Summed over the axes.
 #[inline(always)]
-fn continues(motion: &Motion, [position, velocity, acceleration]: &[Vector3<f32>; 3]) -> bool {
-    let is_near = |a: &Vector3<f32>, b: &Vector3<f32>, bound: f32| {
-        (a.x - b.x).abs() + (a.y - b.y).abs() + (a.z - b.z).abs() <= bound
-    };
-    is_near(&motion.position_m, position, JUMP[0])
-        && is_near(&motion.velocity_m_s, velocity, JUMP[1])
-        && is_near(&motion.acceleration_m_s2, acceleration, JUMP[2])
+fn distance(a: &Vector3<f32>, b: &Vector3<f32>) -> f32 {
+    (a.x - b.x).abs() + (a.y - b.y).abs() + (a.z - b.z).abs()
 }

@@ -135,7 +135,11 @@ impl Controller {
     /// one. Until then the one before is carried on, which leads to the same place unless it jumps.
     #[inline]
     pub fn between(&mut self, setpoint: &abi::Setpoint, state: &abi::State, step: u32) -> bool {
-        let is_new = self.flight.is_some() && !edge::is_same(&self.setpoint, setpoint);
+        let is_new = if self.is_along {
+            !edge::is_same_along(&self.setpoint, self.stream.newest(), setpoint)
+        } else {
+            self.flight.is_some() && !edge::is_same(&self.setpoint, setpoint)
+        };
         if is_new {
             // It has come with the control step before.
             let since_ms = step.wrapping_sub(1);
@@ -150,12 +154,12 @@ impl Controller {
     #[inline(always)]
     fn go_on(&mut self, setpoint: &abi::Setpoint, since_ms: u32) -> bool {
         let turn = self.flight.as_mut().map(|flight| &mut flight.turn);
-        let Some(Turn::Heading { heading, body_rate_rad_s }) = turn else { return false };
+        let Some(Turn::Heading { heading, rate_rad_s }) = turn else { return false };
         let Some(rate) = edge::turn_on(heading, &self.setpoint, setpoint) else { return false };
-        *body_rate_rad_s = rate;
-        edge::keep(&mut self.setpoint, setpoint);
+        *rate_rad_s = rate;
+        edge::keep_on(&mut self.setpoint, setpoint);
         if self.looks_beyond_jerk() {
-            self.accept(&edge::motion(setpoint), since_ms);
+            self.accept(setpoint, since_ms);
         } else {
             let arrival = self.stream.accept_to_jerk(&edge::motion(setpoint), since_ms);
             self.count(arrival);
@@ -163,12 +167,17 @@ impl Controller {
         true
     }
 
+    /// Takes the motion of a setpoint, or the one that is flown instead.
     #[inline(never)]
-    fn accept(&mut self, motion: &Motion, since_ms: u32) {
+    fn accept(&mut self, setpoint: &abi::Setpoint, since_ms: u32) {
+        let motion = match self.mode {
+            Mode::Descending => Motion { velocity_m_s: Vector3::new(0.0, 0.0, -DESCENT_M_S), ..Motion::ZERO },
+            _ => edge::motion(setpoint),
+        };
         let arrival = if self.looks_beyond_jerk() {
-            self.stream.accept(motion, since_ms)
+            self.stream.accept(&motion, since_ms)
         } else {
-            self.stream.accept_to_jerk(motion, since_ms)
+            self.stream.accept_to_jerk(&motion, since_ms)
         };
         self.count(arrival);
     }
@@ -196,7 +205,7 @@ impl Controller {
         self.heading = along.put(&edge::state(state), &self.settings.bounds, &mut self.sample);
         let flat = &self.sample.flat;
         let is_there = match &mut self.prepared {
-            Some(reference) => reference.move_to_flat(flat, self.heading).is_ok(),
+            Some(reference) => reference.move_to_finite_flat(flat, self.heading).is_ok(),
             None => {
                 self.prepared = Reference::from_flat_at(flat, self.heading).ok();
                 self.prepared.is_some()
@@ -211,7 +220,8 @@ impl Controller {
     #[inline(never)]
     fn restart(&mut self) {
         self.memory = ActuatorMemory::hovering(&self.craft.airframe);
-        (self.flight, self.fade_left, self.bad_states_in_a_row, self.is_selected) = (None, 0, 0, false);
+        (self.flight, self.is_along, self.fade_left) = (None, false, 0);
+        (self.bad_states_in_a_row, self.is_selected) = (0, false);
         self.prepared_for = None;
     }
 
@@ -228,7 +238,7 @@ impl Controller {
         let thrust_max_n = 4.0 * self.craft.airframe.figures().force_max_n;
         let flight = match edge::demand(setpoint, thrust_max_n) {
             Some(Demand::Off) => {
-                (self.flight, self.fade_left, self.mode) = (None, 0, Mode::Off);
+                (self.flight, self.is_along, self.fade_left, self.mode) = (None, false, 0, Mode::Off);
                 self.memory = ActuatorMemory::at_rest();
                 return;
             }
@@ -246,11 +256,7 @@ impl Controller {
         if is_another {
             self.begin(&flight, state);
         }
-        let motion = match self.mode {
-            Mode::Descending => Motion { velocity_m_s: Vector3::new(0.0, 0.0, -DESCENT_M_S), ..Motion::ZERO },
-            _ => edge::motion(setpoint),
-        };
-        self.accept(&motion, now_ms);
+        self.accept(setpoint, now_ms);
         (self.is_along, self.flight) = (flight.is_along(), Some(flight));
     }
 
@@ -366,7 +372,8 @@ impl Controller {
     #[inline(never)]
     pub fn change_craft(&mut self, craft: &Craft) {
         self.craft = *craft;
-        (self.mode, self.flight, self.fade_left, self.is_selected) = (Mode::Off, None, 0, true);
+        (self.flight, self.is_along, self.fade_left) = (None, false, 0);
+        (self.mode, self.is_selected) = (Mode::Off, true);
         self.counters = Counters::default();
     }
 
