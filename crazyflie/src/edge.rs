@@ -1,7 +1,7 @@
 //! The edge: the firmware's units, signs and orders in, SI out. Nothing else converts.
 //!
-//! Degrees become radians, the scalar of a quaternion comes first, the angle of pitch changes its sign (rates do not), a
-//! thrust of 65535 becomes what four motors can do. A yaw angle becomes a heading: the same at hover; the firmware's own
+//! Degrees become radians, the scalar of a quaternion comes first, pitch changes its sign, the angle and in manual flight
+//! the rate (the gyroscope's does not), a thrust of 65535 becomes what four motors can do. A yaw angle becomes a heading: the same at hover; the firmware's own
 //! trajectories bend away from it as they tilt, Z-X-Y, by less than a degree below 15 degrees.
 
 use quatrack::flatness::GRAVITY_M_S2;
@@ -95,14 +95,15 @@ fn horizontal(setpoint: &abi::Setpoint) -> Option<Horizontal> {
             Some(Horizontal::Velocity { in_heading_frame: setpoint.velocity_body != 0 })
         }
         (Mode::DISABLED, Mode::DISABLED) => match (mode.roll, mode.pitch, mode.quat) {
-            (Mode::ABSOLUTE, Mode::ABSOLUTE, Mode::DISABLED) => {
+            // A quaternion may be left over from an earlier setpoint: the firmware, too, looks at angles and rates first.
+            (Mode::ABSOLUTE, Mode::ABSOLUTE, Mode::DISABLED | Mode::ABSOLUTE) => {
                 let (sin_roll, cos_roll) = sin_cos(setpoint.attitude.roll * RAD_PER_DEG);
                 let (sin_pitch, cos_pitch) = sin_cos(-setpoint.attitude.pitch * RAD_PER_DEG);
                 Some(Horizontal::Tilt(Vector3::new(sin_pitch * cos_roll, -sin_roll, cos_pitch * cos_roll)))
             }
-            (Mode::VELOCITY, Mode::VELOCITY, Mode::DISABLED) => {
+            (Mode::VELOCITY, Mode::VELOCITY, Mode::DISABLED | Mode::ABSOLUTE) => {
                 let rate = &setpoint.attitude_rate;
-                Some(Horizontal::Rates([rate.roll * RAD_PER_DEG, rate.pitch * RAD_PER_DEG]))
+                Some(Horizontal::Rates([rate.roll * RAD_PER_DEG, -rate.pitch * RAD_PER_DEG]))
             }
             (Mode::DISABLED, Mode::DISABLED, Mode::ABSOLUTE) => {
                 let q = quaternion(&setpoint.attitude_quaternion);
@@ -119,31 +120,33 @@ fn horizontal(setpoint: &abi::Setpoint) -> Option<Horizontal> {
     }
 }
 
-/// Moves on the heading of a flight along a trajectory, as one more setpoint of it asks after one that was kept; gives the
-/// rate that goes with it, rad/s. Nothing where the setpoint is of another kind, or a number that counts makes no sense.
+/// Whether a setpoint continues a flight along a trajectory whose last one was kept: of the same kind, with a motion that
+/// makes sense.
+#[inline(always)]
+pub fn goes_on(kept: &abi::Setpoint, setpoint: &abi::Setpoint) -> bool {
+    setpoint.timestamp != 0 && !is_urgent(kept, setpoint) && is_sound(motion_sum(setpoint))
+}
+
+/// Moves on the heading of a flight along a trajectory, as a setpoint that continues it asks; gives the rate that goes with
+/// it, rad/s. Nothing where it makes no sense.
 #[inline(always)]
 pub fn turn_on(heading: &mut Heading, kept: &abi::Setpoint, setpoint: &abi::Setpoint) -> Option<f32> {
-    if setpoint.timestamp == 0 || is_urgent(kept, setpoint) {
-        return None;
-    }
     let rate = heading_rate_rad_s(setpoint);
     let is_by_yaw = kept.mode.yaw == Mode::ABSOLUTE;
-    let heading_sum = if is_by_yaw && kept.attitude.yaw.to_bits() == setpoint.attitude.yaw.to_bits() {
+    if is_by_yaw && kept.attitude.yaw.to_bits() == setpoint.attitude.yaw.to_bits() {
         // Most flights do not turn.
-        0.0
-    } else {
-        *heading = self::heading(setpoint)?;
-        let (cos, sin) = heading.cos_sin();
-        cos + sin
-    };
-    is_sound(motion_sum(setpoint) + rate + heading_sum).then_some(rate)
+        return is_sound(rate).then_some(rate);
+    }
+    *heading = self::heading(setpoint)?;
+    let (cos, sin) = heading.cos_sin();
+    is_sound(cos + sin + rate).then_some(rate)
 }
 
 /// And the sum of the figures that it is made of, finite only if all of them are.
 #[inline]
 fn turn(setpoint: &abi::Setpoint) -> Option<(Turn, f32)> {
-    match (setpoint.mode.quat, setpoint.mode.yaw) {
-        (Mode::DISABLED, Mode::VELOCITY) => {
+    match (setpoint.mode.yaw, setpoint.mode.quat) {
+        (Mode::VELOCITY, Mode::DISABLED | Mode::ABSOLUTE) => {
             let rate = setpoint.attitude_rate.yaw * RAD_PER_DEG;
             Some((Turn::Rate(rate), rate))
         }
@@ -157,17 +160,17 @@ fn turn(setpoint: &abi::Setpoint) -> Option<(Turn, f32)> {
     }
 }
 
-/// The heading that a setpoint asks for by its attitude or its angle of yaw.
+/// The heading that a setpoint asks for by its angle of yaw, else by its attitude.
 #[inline(always)]
 fn heading(setpoint: &abi::Setpoint) -> Option<Heading> {
-    match (setpoint.mode.quat, setpoint.mode.yaw) {
-        (Mode::ABSOLUTE, Mode::DISABLED) => {
-            let q = &setpoint.attitude_quaternion;
-            Some(Heading::from_half(q.w, q.z))
-        }
-        (Mode::DISABLED, Mode::ABSOLUTE) => {
+    match (setpoint.mode.yaw, setpoint.mode.quat) {
+        (Mode::ABSOLUTE, Mode::DISABLED | Mode::ABSOLUTE) => {
             let heading_rad = setpoint.attitude.yaw * RAD_PER_DEG;
             (heading_rad.abs() <= HEADING_MAX_RAD).then(|| Heading::from_angle(heading_rad))
+        }
+        (Mode::DISABLED, Mode::ABSOLUTE) => {
+            let q = &setpoint.attitude_quaternion;
+            Some(Heading::from_half(q.w, q.z))
         }
         _ => None,
     }
@@ -228,10 +231,11 @@ pub fn is_urgent(before: &abi::Setpoint, setpoint: &abi::Setpoint) -> bool {
     words(before) != words(setpoint)
 }
 
-/// Whether two setpoints ask for the same, the first as [`keep`] has kept it.
+/// Whether two setpoints ask for the same.
 ///
-/// The commander stamps every setpoint that it takes: one with the same stamp can differ only in what supervisor and
-/// collision avoidance change, modes, position and velocity. Without a stamp all of it is looked at.
+/// The commander stamps every setpoint that it takes: one with the same stamp can differ only in what the supervisor, when
+/// it levels the craft, and collision avoidance change, and in the thrust, of which two may come within a millisecond.
+/// Without a stamp all of it is looked at.
 #[inline]
 pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
     if a.timestamp != b.timestamp {
@@ -243,10 +247,16 @@ pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
     let vectors = |a: &abi::Vector, b: &abi::Vector| {
         ((a.x.to_bits() ^ b.x.to_bits()) | (a.y.to_bits() ^ b.y.to_bits()) | (a.z.to_bits() ^ b.z.to_bits())) == 0
     };
-    words(a) == words(b) && vectors(&a.position, &b.position) && vectors(&a.velocity, &b.velocity)
+    words(a) == words(b)
+        && vectors(&a.position, &b.position)
+        && vectors(&a.velocity, &b.velocity)
+        && a.attitude.roll.to_bits() == b.attitude.roll.to_bits()
+        && a.attitude.pitch.to_bits() == b.attitude.pitch.to_bits()
+        && a.attitude_rate.yaw.to_bits() == b.attitude_rate.yaw.to_bits()
+        && a.thrust.to_bits() == b.thrust.to_bits()
 }
 
-/// The same while a trajectory is flown, whose last setpoint was kept by [`keep_on`] and had this motion.
+/// The same while a trajectory is flown, whose last setpoint had this motion: levelling has other modes.
 #[inline(always)]
 pub fn is_same_along(a: &abi::Setpoint, motion: &Motion, b: &abi::Setpoint) -> bool {
     if b.timestamp == 0 {
@@ -259,19 +269,6 @@ pub fn is_same_along(a: &abi::Setpoint, motion: &Motion, b: &abi::Setpoint) -> b
         && words(a) == words(b)
         && vectors(&motion.position_m, &b.position)
         && vectors(&motion.velocity_m_s, &b.velocity)
-}
-
-/// Keeps of a setpoint what [`is_same`] and [`is_urgent`] look at.
-#[inline]
-pub fn keep(kept: &mut abi::Setpoint, setpoint: &abi::Setpoint) {
-    *kept = *setpoint;
-}
-
-/// Keeps of one more setpoint along a trajectory what is not in its motion.
-#[inline(always)]
-pub fn keep_on(kept: &mut abi::Setpoint, setpoint: &abi::Setpoint) {
-    kept.timestamp = setpoint.timestamp;
-    kept.attitude.yaw = setpoint.attitude.yaw;
 }
 
 #[inline(never)]

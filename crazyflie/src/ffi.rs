@@ -9,7 +9,7 @@ use core::sync::atomic::Ordering::Relaxed;
 
 use crate::abi::{Control, SensorData, Setpoint, State};
 use crate::builtin;
-use crate::control::Controller;
+use crate::control::{Chore, Controller};
 use crate::craft::Platform;
 use crate::cycles;
 use crate::edge;
@@ -28,11 +28,6 @@ static CONTROLLER: TryCell<Controller> = TryCell::new(builtin::CONTROLLER);
 static SERVICE: TryCell<Service> = TryCell::new(Service::new());
 /// From the one to the other.
 static HANDOVER: TryCell<Handover> = TryCell::new(Handover::new());
-
-/// The log is written a hundred times a second, in two calls when no setpoint of the high-level commander is due.
-const LOG_STEPS: u32 = 10;
-const LOG_ERRORS_AT: u32 = 3;
-const LOG_COUNTERS_AT: u32 = 7;
 
 /// The firmware selects this controller: what it remembers of an earlier flight no longer holds.
 #[unsafe(no_mangle)]
@@ -62,13 +57,13 @@ pub extern "C" fn controllerOutOfTree(
             quatrack.log.cycles.store(cycles::since(begun), Relaxed);
             return;
         }
-        if !controller.between(setpoint, state, step) {
-            match step % LOG_STEPS {
-                LOG_ERRORS_AT => service::log_errors(&quatrack, controller, state),
-                LOG_COUNTERS_AT => service::log_counters(&quatrack, controller),
-                _ => {}
+        match controller.between(setpoint, state, step) {
+            None => {}
+            Some(Chore::LogErrors) => service::log_errors(&quatrack, controller, state),
+            Some(Chore::LogCounters) => service::log_counters(&quatrack, controller),
+            Some(Chore::TakeOver) => {
+                HANDOVER.with(|handover| handover.take_over(controller));
             }
-            HANDOVER.with(|handover| handover.take_over(controller));
         }
         controller.prepare(state, step.wrapping_add(1));
     });

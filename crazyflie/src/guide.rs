@@ -11,7 +11,7 @@ use quatrack::nalgebra::Vector3;
 use quatrack::{FifthOrderSample, Heading, State};
 
 use crate::demand::{Flight, Horizontal, Turn, Vertical};
-use crate::stream::Stream;
+use crate::stream::{EXTRAPOLATION_MAX_MS, Stream};
 
 /// How fast and how far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Bounds {
     pub speed_m_s: f32,
     /// Largest acceleration of a velocity demand, m/s^2.
     pub acceleration_m_s2: f32,
-    /// Farthest that a position is asked for from the measured one, m.
+    /// Farthest that a position is asked for from the measured one, m, and a velocity, m/s.
     pub leash_m: f32,
 }
 
@@ -46,6 +46,8 @@ pub struct Along<'a> {
     pub flight: &'a Flight,
     /// Along what.
     pub stream: &'a Stream,
+    /// When its heading was asked for.
+    pub turned_ms: u32,
     /// When.
     pub now_ms: u32,
     /// Whether the law looks beyond the jerk.
@@ -59,13 +61,28 @@ impl Along<'_> {
     /// heading is not used, and the heading.
     #[inline(always)]
     pub fn put(&self, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) -> Heading {
-        let age_s = self.stream.at(self.now_ms, self.to_fifth, sample);
+        self.stream.at(self.now_ms, self.to_fifth, sample);
         let heading = match &self.flight.turn {
-            Turn::Heading { heading, rate_rad_s } => turned(heading, *rate_rad_s, age_s, sample),
+            Turn::Heading { heading, rate_rad_s } => self.turned(heading, *rate_rad_s, sample),
             Turn::Rate(_) => Heading::ZERO,
         };
         leash(sample, state, bounds.leash_m);
         heading
+    }
+
+    /// A heading some time after it was asked for, its rate into `sample`; it stands where it has come to when it has no
+    /// successor.
+    #[inline(always)]
+    fn turned(&self, heading: &Heading, rate_rad_s: f32, sample: &mut FifthOrderSample) -> Heading {
+        sample.flat.heading_rate_rad_s = rate_rad_s;
+        if rate_rad_s == 0.0 {
+            return *heading;
+        }
+        let mut age_ms = self.now_ms.wrapping_sub(self.turned_ms);
+        if age_ms > EXTRAPOLATION_MAX_MS {
+            (age_ms, sample.flat.heading_rate_rad_s) = (EXTRAPOLATION_MAX_MS, 0.0);
+        }
+        heading.turned_slightly(rate_rad_s * (age_ms as f32 * 1e-3))
     }
 }
 
@@ -87,10 +104,10 @@ impl Guide {
     /// is not used, and the heading. Not for a horizontal that asks for body rates, which no flat sample has.
     #[inline]
     pub fn put(&mut self, along: &Along<'_>, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) -> Heading {
-        let Along { flight, stream, now_ms, to_fifth, .. } = along;
-        let age_s = stream.at(*now_ms, *to_fifth, sample);
+        let flight = along.flight;
+        along.stream.at(along.now_ms, along.to_fifth, sample);
         let heading = match &flight.turn {
-            Turn::Heading { heading, rate_rad_s } => turned(heading, *rate_rad_s, age_s, sample),
+            Turn::Heading { heading, rate_rad_s } => along.turned(heading, *rate_rad_s, sample),
             Turn::Rate(rate_rad_s) => self.turn(sample, *rate_rad_s),
         };
         if !matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position)) {
@@ -201,23 +218,19 @@ impl Guide {
     }
 }
 
-/// A heading some time after it was asked for, its rate into `sample`.
-#[inline(always)]
-fn turned(heading: &Heading, rate_rad_s: f32, age_s: f32, sample: &mut FifthOrderSample) -> Heading {
-    sample.flat.heading_rate_rad_s = rate_rad_s;
-    if rate_rad_s == 0.0 { *heading } else { heading.turned_slightly(rate_rad_s * age_s) }
-}
-
-/// Draws a position that is too far away towards the craft: the laws are linear, and would turn it over for a goal
-/// metres away.
+/// Draws position and velocity that are too far away towards the craft, a metre a second counting like a metre: the laws
+/// are linear, and would turn it over for a goal metres away, or for a stop in full flight.
 #[inline]
 fn leash(sample: &mut FifthOrderSample, state: &State, leash_m: f32) {
-    let (p, r) = (&mut sample.flat.position_m, &state.position_m);
+    let (p, r) = (&sample.flat.position_m, &state.position_m);
+    let (v, w) = (&sample.flat.velocity_m_s, &state.velocity_m_s);
     let (dx, dy, dz) = (p.x - r.x, p.y - r.y, p.z - r.z);
-    let squared = dx * dx + dy * dy + dz * dz;
+    let (ex, ey, ez) = (v.x - w.x, v.y - w.y, v.z - w.z);
+    let squared = (dx * dx + dy * dy + dz * dz) + (ex * ex + ey * ey + ez * ez);
     if squared > leash_m * leash_m {
         let share = leash_m / sqrt(squared);
-        *p = Vector3::new(r.x + dx * share, r.y + dy * share, r.z + dz * share);
+        sample.flat.position_m = Vector3::new(r.x + dx * share, r.y + dy * share, r.z + dz * share);
+        sample.flat.velocity_m_s = Vector3::new(w.x + ex * share, w.y + ey * share, w.z + ez * share);
     }
 }
 

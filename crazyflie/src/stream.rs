@@ -26,6 +26,13 @@ const JUMP: [f32; 3] = [0.02, 0.2, 2.0];
 const SNAP_MAX_M_S4: f32 = 1_000.0;
 const CRACKLE_MAX_M_S5: f32 = 25_000.0;
 
+/// Largest difference of a sound jerk, in the mean of two setpoints, from the slope of their accelerations, m/s^3, summed over the
+/// axes: four times that of the fastest flights.
+const JERK_OFF_MAX_M_S3: f32 = 0.5;
+
+/// Sound jerks in a row after which they are taken again: a quarter of a second.
+const SOUND_JERKS: u8 = 25;
+
 /// The newest setpoint's motion, and what the ones before tell about it.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
@@ -38,6 +45,19 @@ pub struct Stream {
     gap_s: f32,
     /// When the newest came, ms; nothing before the first.
     since_ms: Option<u32>,
+    /// While the jerks that are sent are not the slope of the accelerations.
+    mended: Option<Mended>,
+}
+
+/// Jerks that are not taken as they are sent.
+#[derive(Clone, Copy, Debug)]
+struct Mended {
+    /// The newest one as it was sent, m/s^3.
+    sent: Vector3<f32>,
+    /// Slope of the accelerations over the last gap, m/s^3.
+    slope: Vector3<f32>,
+    /// How many of those that were sent last were sound.
+    sound: u8,
 }
 
 /// What a setpoint was to the ones before it.
@@ -62,6 +82,7 @@ impl Stream {
             differences: [None; 2],
             gap_s: 0.0,
             since_ms: None,
+            mended: None,
         }
     }
 
@@ -71,14 +92,18 @@ impl Stream {
         if self.is_newest(motion) {
             return Arrival::Continued;
         }
-        let arrival = match self.gap_ms(now_ms) {
-            Some(gap_ms) => self.difference(motion, gap_ms),
+        let mut motion = *motion;
+        let arrival = match self.gap_s(now_ms) {
+            Some(gap_s) => {
+                motion.jerk_m_s3 = self.jerk_m_s3(&motion, gap_s);
+                self.difference(&motion, gap_s)
+            }
             None => Arrival::Begun,
         };
         if arrival != Arrival::Continued {
             self.forget();
         }
-        (self.newest, self.since_ms) = (*motion, Some(now_ms));
+        (self.newest, self.since_ms) = (motion, Some(now_ms));
         arrival
     }
 
@@ -88,25 +113,76 @@ impl Stream {
         if self.is_newest(motion) {
             return Arrival::Continued;
         }
-        let arrival = match self.gap_ms(now_ms) {
-            Some(gap_ms) if self.leads_to(motion, gap_ms as f32 * 1e-3) => Arrival::Continued,
-            Some(_) => Arrival::Jumped,
-            None => Arrival::Begun,
-        };
+        let (mut arrival, mut jerk_m_s3) = (Arrival::Begun, motion.jerk_m_s3);
+        if let Some(gap_s) = self.gap_s(now_ms) {
+            arrival = if self.leads_to(motion, gap_s) { Arrival::Continued } else { Arrival::Jumped };
+            jerk_m_s3 = self.jerk_m_s3(motion, gap_s);
+        }
         if self.differences[0].is_some() {
             self.forget();
         }
-        (self.newest, self.since_ms) = (*motion, Some(now_ms));
+        (self.newest, self.since_ms) = (Motion { jerk_m_s3, ..*motion }, Some(now_ms));
         arrival
     }
 
-    /// Whether the newest setpoint leads to a motion so many seconds later, in position and velocity. Within the gap that
-    /// setpoints may leave, what is left out here is far below the bounds.
+    /// Time since the newest setpoint, if it is not too long ago for another one to continue it, s.
+    #[inline(always)]
+    fn gap_s(&self, now_ms: u32) -> Option<f32> {
+        let gap_ms = now_ms.wrapping_sub(self.since_ms?);
+        (1..=GAP_MAX_MS).contains(&gap_ms).then_some(gap_ms as f32 * 1e-3)
+    }
+
+    /// Whether the newest setpoint leads to the place of a motion so many seconds later. Within the gap that setpoints may
+    /// leave, what the acceleration adds is below the bound.
     #[inline(always)]
     fn leads_to(&self, motion: &Motion, t: f32) -> bool {
-        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, .. } = &self.newest;
-        let ahead = |a: &Vector3<f32>, b: &Vector3<f32>| Vector3::new(a.x + t * b.x, a.y + t * b.y, a.z + t * b.z);
-        distance(&motion.position_m, &ahead(p, v)) <= JUMP[0] && distance(&motion.velocity_m_s, &ahead(v, a)) <= JUMP[1]
+        let Motion { position_m: p, velocity_m_s: v, .. } = &self.newest;
+        let ahead = Vector3::new(p.x + t * v.x, p.y + t * v.y, p.z + t * v.z);
+        distance(&motion.position_m, &ahead) <= JUMP[0]
+    }
+
+    /// The jerk of a motion so many seconds after the newest setpoint.
+    ///
+    /// The firmware turns a trajectory that is started with a relative yaw, but for its jerk (`traj_eval_transform`). A jerk
+    /// that is not the slope of the accelerations gives way to that slope.
+    #[inline(always)]
+    fn jerk_m_s3(&mut self, motion: &Motion, gap_s: f32) -> Vector3<f32> {
+        let (new, j) = (&motion.acceleration_m_s2, &motion.jerk_m_s3);
+        let (old, k) = (&self.newest.acceleration_m_s2, &self.newest.jerk_m_s3);
+        let twice = 2.0 / gap_s;
+        let off = (twice * (new.x - old.x) - (j.x + k.x)).abs()
+            + (twice * (new.y - old.y) - (j.y + k.y)).abs()
+            + (twice * (new.z - old.z) - (j.z + k.z)).abs();
+        let is_sound = off <= 2.0 * JERK_OFF_MAX_M_S3 && self.mended.is_none();
+        // Packets without a jerk have none to be mended.
+        if is_sound || (j.x == 0.0 && j.y == 0.0 && j.z == 0.0) {
+            return *j;
+        }
+        self.mend(&Motion { ..*motion }, gap_s)
+    }
+
+    /// The slope of the accelerations over the gap, carried on by half of it.
+    #[cold]
+    #[inline(never)]
+    fn mend(&mut self, motion: &Motion, gap_s: f32) -> Vector3<f32> {
+        let per_gap = 1.0 / gap_s;
+        let slope = over(&motion.acceleration_m_s2, &self.newest.acceleration_m_s2, per_gap);
+        let Some(Mended { sent, slope: before, sound }) = self.mended else {
+            self.mended = Some(Mended { sent: motion.jerk_m_s3, slope, sound: 0 });
+            self.newest.jerk_m_s3 = slope;
+            self.forget();
+            return slope;
+        };
+        let is_sound = distance(&slope, &middle(&sent, &motion.jerk_m_s3)) <= JERK_OFF_MAX_M_S3;
+        if is_sound && sound >= SOUND_JERKS {
+            (self.mended, self.newest.jerk_m_s3) = (None, sent);
+            self.forget();
+            return motion.jerk_m_s3;
+        }
+        let sound = if is_sound { sound + 1 } else { 0 };
+        self.mended = Some(Mended { sent: motion.jerk_m_s3, slope, sound });
+        let on = |slope: f32, before: f32| slope + 0.5 * (slope - before);
+        Vector3::new(on(slope.x, before.x), on(slope.y, before.y), on(slope.z, before.z))
     }
 
     #[inline(always)]
@@ -114,18 +190,11 @@ impl Stream {
         *motion == self.newest && self.since_ms.is_some()
     }
 
-    /// Time since the newest setpoint, if it is not too long ago for another one to continue it, ms.
-    #[inline(always)]
-    fn gap_ms(&self, now_ms: u32) -> Option<u32> {
-        let gap_ms = now_ms.wrapping_sub(self.since_ms?);
-        (1..=GAP_MAX_MS).contains(&gap_ms).then_some(gap_ms)
-    }
-
     /// Forgets snap and crackle.
     #[cold]
     #[inline(never)]
     fn forget(&mut self) {
-        *self = Self { newest: self.newest, since_ms: self.since_ms, ..Self::new() };
+        *self = Self { newest: self.newest, since_ms: self.since_ms, mended: self.mended, ..Self::new() };
     }
 
     /// The newest setpoint's motion as it was sent.
@@ -133,10 +202,9 @@ impl Stream {
         &self.newest
     }
 
-    /// The motion at a time, heading aside, into `sample`; with snap and crackle only where they are asked for. Gives the
-    /// time since the newest setpoint, as far as it is extrapolated, s.
+    /// The motion at a time, heading aside, into `sample`; with snap and crackle only where they are asked for.
     #[inline(always)]
-    pub fn at(&self, now_ms: u32, to_fifth: bool, sample: &mut FifthOrderSample) -> f32 {
+    pub fn at(&self, now_ms: u32, to_fifth: bool, sample: &mut FifthOrderSample) {
         let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
         if age_ms > EXTRAPOLATION_MAX_MS {
             return self.end(sample);
@@ -144,12 +212,11 @@ impl Stream {
         let t = age_ms as f32 * 1e-3;
         if to_fifth {
             self.put_to_fifth(t, sample);
-            return t;
+            return;
         }
         let flat = &mut sample.flat;
         [flat.position_m, flat.velocity_m_s, flat.acceleration_m_s2] = self.extrapolated(t);
         flat.jerk_m_s3 = self.newest.jerk_m_s3;
-        t
     }
 
     /// Position, velocity and acceleration so many seconds after the newest setpoint, by its own derivatives.
@@ -191,16 +258,13 @@ impl Stream {
     /// Where a motion without successors has come to.
     #[cold]
     #[inline(never)]
-    fn end(&self, sample: &mut FifthOrderSample) -> f32 {
-        let t = EXTRAPOLATION_MAX_MS as f32 * 1e-3;
-        self.put_to_fifth(t, sample);
+    fn end(&self, sample: &mut FifthOrderSample) {
+        self.put_to_fifth(EXTRAPOLATION_MAX_MS as f32 * 1e-3, sample);
         *sample = FifthOrderSample::at_rest(sample.flat.position_m, 0.0);
-        t
     }
 
-    /// Snap and crackle at a setpoint that continues the ones before, so many milliseconds after the last of them.
-    fn difference(&mut self, motion: &Motion, gap_ms: u32) -> Arrival {
-        let gap_s = gap_ms as f32 * 1e-3;
+    /// Snap and crackle at a setpoint that continues the ones before, so many seconds after the last of them.
+    fn difference(&mut self, motion: &Motion, gap_s: f32) -> Arrival {
         let mut expected = FifthOrderSample::at_rest(motion.position_m, 0.0);
         self.put_to_fifth(gap_s, &mut expected);
         let expected = &expected.flat;
@@ -218,9 +282,6 @@ impl Stream {
         }
         // The snap halfway between two jerks, the crackle at the middle one of three; what follows them by half a gap and
         // by a whole one comes from the next difference.
-        let over = |a: &Vector3<f32>, b: &Vector3<f32>, rate: f32| {
-            Vector3::new((a.x - b.x) * rate, (a.y - b.y) * rate, (a.z - b.z) * rate)
-        };
         let (per_gap, [snap_before, crackle_before]) = (1.0 / gap_s, self.differences);
         let snap = over(new, old, per_gap);
         let crackle = snap_before.map(|before| over(&snap, &before, 2.0 / (gap_s + self.gap_s)));
@@ -240,6 +301,16 @@ impl Stream {
         (self.differences, self.gap_s) = ([Some(snap), crackle], gap_s);
         Arrival::Continued
     }
+}
+
+/// `(a - b) rate`.
+#[inline(always)]
+fn over(a: &Vector3<f32>, b: &Vector3<f32>, rate: f32) -> Vector3<f32> {
+    Vector3::new((a.x - b.x) * rate, (a.y - b.y) * rate, (a.z - b.z) * rate)
+}
+
+fn middle(a: &Vector3<f32>, b: &Vector3<f32>) -> Vector3<f32> {
+    Vector3::new(0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.z + b.z))
 }
 
 /// Summed over the axes.

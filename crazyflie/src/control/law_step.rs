@@ -3,13 +3,34 @@
 use quatrack::law::ActuatorMemory;
 use quatrack::mixer::{MotorLimited, Wrench};
 use quatrack::{
-    Airframe, Equilibrium, FifthOrderSample, FlatOutput, Heading, MotorLaw, MotorReference, MotorTracker, Reference,
-    RigidState, StepError, Tracker,
+    Equilibrium, FifthOrderSample, FlatOutput, Heading, MotorLaw, MotorReference, MotorTracker, Reference,
+    ReferenceError, RigidState, StepError, Tracker,
 };
 
 use super::outcome::{Outcome, Output, Settings};
 use crate::craft::Craft;
-use crate::tables::{Gains, Table};
+use crate::tables::{Gains, MotorGains, Table};
+
+/// Why a step gave nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Unflown {
+    /// The motion asks for what no thrust does: free fall, or upside down.
+    Motion,
+    /// The state, or the law at this state.
+    State,
+}
+
+impl From<ReferenceError> for Unflown {
+    fn from(_: ReferenceError) -> Self {
+        Self::Motion
+    }
+}
+
+impl From<StepError> for Unflown {
+    fn from(_: StepError) -> Self {
+        Self::State
+    }
+}
 
 /// What every law's step takes beside its table.
 pub(super) struct LawStep<'a> {
@@ -28,34 +49,66 @@ impl LawStep<'_> {
         table: &Table,
         memory: &mut ActuatorMemory,
         outcome: &mut Outcome,
-    ) -> Result<(), StepError> {
-        if let Gains::ActuatorAware(motors) = &table.gains {
-            let airframe = &motors.airframe;
-            let tracker = MotorTracker::new(MotorLaw::ActuatorAware(motors.law()), airframe);
-            // References are looked at where they lie: to move one out costs as much as the product with a gain.
-            return match &MotorReference::from_flat_at(self.sample, self.heading, airframe) {
-                Ok(reference) => self.straight(&tracker, reference, memory, outcome),
-                Err(_) => self.straight_up(&tracker, airframe, memory, outcome),
-            };
+    ) -> Result<(), Unflown> {
+        match &table.gains {
+            Gains::ActuatorAware(motors) => self.straight(motors, memory, outcome),
+            _ => self.through_rates(table, outcome),
         }
-        self.through_rates(table, outcome)
+    }
+
+    /// The same for a second law in one step, whose stack is only that of its own kind.
+    #[inline(always)]
+    pub(super) fn step_beside(
+        &self,
+        table: &Table,
+        memory: &mut ActuatorMemory,
+        outcome: &mut Outcome,
+    ) -> Result<(), Unflown> {
+        match &table.gains {
+            Gains::ActuatorAware(motors) => self.straight_beside(motors, memory, outcome),
+            _ => self.through_rates(table, outcome),
+        }
+    }
+
+    #[inline(never)]
+    fn straight_beside(
+        &self,
+        motors: &MotorGains,
+        memory: &mut ActuatorMemory,
+        outcome: &mut Outcome,
+    ) -> Result<(), Unflown> {
+        self.straight(motors, memory, outcome)
+    }
+
+    #[inline(always)]
+    fn straight(&self, motors: &MotorGains, memory: &mut ActuatorMemory, outcome: &mut Outcome) -> Result<(), Unflown> {
+        let airframe = &motors.airframe;
+        let tracker = MotorTracker::new(MotorLaw::ActuatorAware(motors.law()), airframe);
+        // References are looked at where they lie: to move one out costs as much as the product with a gain.
+        let Ok(reference) = &MotorReference::from_flat_at(self.sample, self.heading, airframe) else {
+            return Err(Unflown::Motion);
+        };
+        let step = tracker.step(memory, self.state, reference)?;
+        outcome.output = Output::Forces(step.forces_n);
+        (outcome.limited, outcome.target) = (step.limited, reference.state().attitude);
+        Ok(())
     }
 
     /// Steps a law of the paper on a reference that is there.
     #[inline(always)]
-    pub(super) fn follow(&self, table: &Table, reference: &Reference, outcome: &mut Outcome) -> Result<(), StepError> {
+    pub(super) fn follow(&self, table: &Table, reference: &Reference, outcome: &mut Outcome) -> Result<(), Unflown> {
         let feed_forward = self.settings.feed_forward;
         let tracker = match &table.gains {
             Gains::Equilibrium(gain) => {
                 Tracker::new(Equilibrium { feed_forward, ..Equilibrium::new(gain) }, self.settings.limits)
             }
             Gains::FlatOutput(gain) => Tracker::new(FlatOutput { gain, feed_forward }, self.settings.limits),
-            Gains::ActuatorAware(_) => return Err(StepError::Singular),
+            Gains::ActuatorAware(_) => return Err(Unflown::State),
         };
         let step = tracker.step(&self.state.state, reference)?;
         let wrench = self.craft.body_rates.wrench(&step.command, &self.state.body_rates_rad_s);
         if !is_finite(&wrench) {
-            return Err(StepError::Singular);
+            return Err(Unflown::State);
         }
         outcome.output = Output::Wrench(wrench);
         outcome.limited = MotorLimited::from_bits(u16::from(step.limited.bits()) << 8);
@@ -65,51 +118,8 @@ impl LawStep<'_> {
 
     /// Steps a law of the paper on a reference that has to be made.
     #[inline(never)]
-    fn through_rates(&self, table: &Table, outcome: &mut Outcome) -> Result<(), StepError> {
-        let reference = match Reference::from_flat_at(&self.sample.flat, self.heading) {
-            Ok(reference) => reference,
-            Err(_) => Reference::from_flat_at(&self.upright().flat, self.heading).map_err(|_| StepError::Singular)?,
-        };
-        self.follow(table, &reference, outcome)
-    }
-
-    #[inline(always)]
-    fn straight(
-        &self,
-        tracker: &MotorTracker<'_>,
-        reference: &MotorReference,
-        memory: &mut ActuatorMemory,
-        outcome: &mut Outcome,
-    ) -> Result<(), StepError> {
-        let step = tracker.step(memory, self.state, reference)?;
-        outcome.output = Output::Forces(step.forces_n);
-        (outcome.limited, outcome.target) = (step.limited, reference.state().attitude);
-        Ok(())
-    }
-
-    // Apart, so that no step pays for its stack.
-    #[cold]
-    #[inline(never)]
-    fn straight_up(
-        &self,
-        tracker: &MotorTracker<'_>,
-        airframe: &Airframe,
-        memory: &mut ActuatorMemory,
-        outcome: &mut Outcome,
-    ) -> Result<(), StepError> {
-        let upright =
-            MotorReference::from_flat_at(&self.upright(), self.heading, airframe).map_err(|_| StepError::Singular)?;
-        self.straight(tracker, &upright, memory, outcome)
-    }
-
-    /// Where the motion asks for what no thrust does (free fall, upside down): its position and velocity alone.
-    #[cold]
-    #[inline(never)]
-    fn upright(&self) -> FifthOrderSample {
-        let flat = &self.sample.flat;
-        let mut sample = FifthOrderSample::at_rest(flat.position_m, 0.0);
-        sample.flat.velocity_m_s = flat.velocity_m_s;
-        sample
+    fn through_rates(&self, table: &Table, outcome: &mut Outcome) -> Result<(), Unflown> {
+        self.follow(table, &Reference::from_flat_at(&self.sample.flat, self.heading)?, outcome)
     }
 }
 

@@ -4,15 +4,18 @@
 //! A change of the table is faded over [`FADE_STEPS`] control steps, both laws stepping side by side. The stabilizer's
 //! stack is small: what is large lies here and is written in place.
 
+mod chores;
 mod law_step;
 mod outcome;
 
 use quatrack::law::ActuatorMemory;
 use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
-use quatrack::{Command, FifthOrderSample, Heading, MotorForces, Quaternion, Reference, RigidState, State, StepError};
+use quatrack::{Command, FifthOrderSample, Heading, MotorForces, Quaternion, Reference, RigidState, State};
 
-use self::law_step::{LawStep, is_finite};
+pub use self::chores::Chore;
+use self::chores::Chores;
+use self::law_step::{LawStep, Unflown, is_finite};
 pub use self::outcome::{Counters, Mode, Outcome, Output, Settings};
 use crate::abi;
 use crate::craft::{Craft, DECIMATION, PERIOD_S};
@@ -38,7 +41,7 @@ const DESCENT_M_S: f32 = 0.3;
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Controller {
-    /// The newest one taken, as far as [`edge::keep`] keeps it.
+    /// The newest one taken, but for the motion of those that only went on.
     setpoint: abi::Setpoint,
     stream: Stream,
     sample: FifthOrderSample,
@@ -47,6 +50,9 @@ pub struct Controller {
     prepared: Option<Reference>,
     prepared_for: Option<u32>,
     flight: Option<Flight>,
+    /// When the newest setpoint came that continued it, and the one whose heading was taken last, ms.
+    came_ms: u32,
+    turned_ms: u32,
     guide: Guide,
     settings: Settings,
     outcome: Outcome,
@@ -57,8 +63,11 @@ pub struct Controller {
     mode: Mode,
     /// The flight goes along the stream.
     is_along: bool,
+    /// The heading of the newest setpoint is still to be taken.
+    is_turn_due: bool,
     /// The controller has just been selected.
     is_selected: bool,
+    chores: Chores,
     craft: Craft,
     memory: ActuatorMemory,
     table: Table,
@@ -80,6 +89,8 @@ impl Controller {
             prepared: None,
             prepared_for: None,
             flight: None,
+            came_ms: 0,
+            turned_ms: 0,
             guide: Guide::new(PERIOD_S),
             settings,
             outcome: Outcome { output, limited, target: Quaternion::IDENTITY, error_m: ZERO },
@@ -89,7 +100,9 @@ impl Controller {
             counters: Counters { bad_states: 0, bad_setpoints: 0, limited_steps: 0, jumps: 0 },
             mode: Mode::NoCraft,
             is_along: false,
+            is_turn_due: false,
             is_selected: true,
+            chores: Chores::new(),
             craft,
             memory: ActuatorMemory::at_rest(),
             table,
@@ -131,10 +144,11 @@ impl Controller {
         true
     }
 
-    /// Between control steps: takes a setpoint that continues a flight, so that no control step has to. Whether there was
-    /// one. Until then the one before is carried on, which leads to the same place unless it jumps.
+    /// Between control steps: takes a setpoint that continues a flight, so that no control step has to; until then the one
+    /// before is carried on, which leads to the same place unless it jumps. Where there is none, gives what there is time
+    /// for.
     #[inline]
-    pub fn between(&mut self, setpoint: &abi::Setpoint, state: &abi::State, step: u32) -> bool {
+    pub fn between(&mut self, setpoint: &abi::Setpoint, state: &abi::State, step: u32) -> Option<Chore> {
         let is_new = if self.is_along {
             !edge::is_same_along(&self.setpoint, self.stream.newest(), setpoint)
         } else {
@@ -146,24 +160,44 @@ impl Controller {
             if !(self.is_along && self.go_on(setpoint, since_ms)) {
                 self.take(setpoint, &edge::state(state), since_ms);
             }
+        } else if self.is_turn_due {
+            if !self.turn_on(setpoint) {
+                self.take(setpoint, &edge::state(state), step);
+            }
+        } else {
+            return Some(self.chores.next());
         }
-        is_new
+        self.chores.put_off()
     }
 
-    /// Takes one more setpoint of a flight along a trajectory, of which only figures are new; whether it is one.
+    /// Takes one more setpoint of a flight along a trajectory, of which only figures are new; whether it is one. Its heading is
+    /// left to the next call, so that no call has to do everything: till then the last one turns on.
     #[inline(always)]
     fn go_on(&mut self, setpoint: &abi::Setpoint, since_ms: u32) -> bool {
-        let turn = self.flight.as_mut().map(|flight| &mut flight.turn);
-        let Some(Turn::Heading { heading, rate_rad_s }) = turn else { return false };
-        let Some(rate) = edge::turn_on(heading, &self.setpoint, setpoint) else { return false };
-        *rate_rad_s = rate;
-        edge::keep_on(&mut self.setpoint, setpoint);
+        let is_turned = !self.is_turn_due || self.turn_on(setpoint);
+        if !(edge::goes_on(&self.setpoint, setpoint) && is_turned) {
+            return false;
+        }
+        (self.setpoint.timestamp, self.is_turn_due) = (setpoint.timestamp, true);
         if self.looks_beyond_jerk() {
             self.accept(setpoint, since_ms);
         } else {
             let arrival = self.stream.accept_to_jerk(&edge::motion(setpoint), since_ms);
             self.count(arrival);
         }
+        self.came_ms = since_ms;
+        true
+    }
+
+    /// Takes the heading of the setpoint whose motion was taken before; whether it has one.
+    #[inline(never)]
+    fn turn_on(&mut self, setpoint: &abi::Setpoint) -> bool {
+        self.is_turn_due = false;
+        let turn = self.flight.as_mut().map(|flight| &mut flight.turn);
+        let Some(Turn::Heading { heading, rate_rad_s }) = turn else { return false };
+        let Some(rate) = edge::turn_on(heading, &self.setpoint, setpoint) else { return false };
+        (*rate_rad_s, self.turned_ms) = (rate, self.came_ms);
+        self.setpoint.attitude.yaw = setpoint.attitude.yaw;
         true
     }
 
@@ -201,7 +235,8 @@ impl Controller {
     pub fn prepare(&mut self, state: &abi::State, next_step: u32) {
         let Some(flight) = self.flight.as_ref().filter(|_| self.is_along && !self.looks_beyond_jerk()) else { return };
         let mass_kg = self.craft.airframe.figures().mass_kg;
-        let along = Along { flight, stream: &self.stream, now_ms: next_step, to_fifth: false, mass_kg };
+        let (stream, turned_ms) = (&self.stream, self.turned_ms);
+        let along = Along { flight, stream, turned_ms, now_ms: next_step, to_fifth: false, mass_kg };
         self.heading = along.put(&edge::state(state), &self.settings.bounds, &mut self.sample);
         let flat = &self.sample.flat;
         let is_there = match &mut self.prepared {
@@ -233,8 +268,8 @@ impl Controller {
     /// Takes a setpoint whose contents have changed.
     #[inline(never)]
     fn take(&mut self, setpoint: &abi::Setpoint, state: &State, now_ms: u32) {
-        edge::keep(&mut self.setpoint, setpoint);
-        self.prepared_for = None;
+        self.setpoint = *setpoint;
+        (self.prepared_for, self.is_turn_due) = (None, false);
         let thrust_max_n = 4.0 * self.craft.airframe.figures().force_max_n;
         let flight = match edge::demand(setpoint, thrust_max_n) {
             Some(Demand::Off) => {
@@ -257,7 +292,7 @@ impl Controller {
             self.begin(&flight, state);
         }
         self.accept(setpoint, now_ms);
-        (self.is_along, self.flight) = (flight.is_along(), Some(flight));
+        (self.is_along, self.flight, self.turned_ms) = (flight.is_along(), Some(flight), now_ms);
     }
 
     /// Starts a flight of another kind.
@@ -271,7 +306,7 @@ impl Controller {
     }
 
     #[inline]
-    fn fly(&mut self, state: &RigidState, now_ms: u32) -> Result<(), StepError> {
+    fn fly(&mut self, state: &RigidState, now_ms: u32) -> Result<(), Unflown> {
         let Some(flight) = &self.flight else { return Ok(()) };
         if let Horizontal::Rates([p, q]) = flight.horizontal {
             return self.turn([p, q], state);
@@ -280,30 +315,39 @@ impl Controller {
         if reference.is_none() {
             let to_fifth = self.looks_beyond_jerk();
             let mass_kg = self.craft.airframe.figures().mass_kg;
-            let along = Along { flight, stream: &self.stream, now_ms, to_fifth, mass_kg };
+            let (stream, turned_ms) = (&self.stream, self.turned_ms);
+            let along = Along { flight, stream, turned_ms, now_ms, to_fifth, mass_kg };
             self.heading = self.guide.put(&along, &state.state, &self.settings.bounds, &mut self.sample);
         }
         let (r, p) = (&state.state.position_m, &self.sample.flat.position_m);
         self.outcome.error_m = Vector3::new(r.x - p.x, r.y - p.y, r.z - p.z);
-        let (craft, settings, sample, heading) = (&self.craft, &self.settings, &self.sample, self.heading);
-        let law_step = LawStep { craft, settings, sample, heading, state };
-        if let Some(reference) = reference {
-            return law_step.follow(&self.table, reference, &mut self.outcome);
+        let mut is_upright = false;
+        loop {
+            let (craft, settings, sample, heading) = (&self.craft, &self.settings, &self.sample, self.heading);
+            let law_step = LawStep { craft, settings, sample, heading, state };
+            if let Some(reference) = reference {
+                return law_step.follow(&self.table, reference, &mut self.outcome);
+            }
+            match law_step.step(&self.table, &mut self.memory, &mut self.outcome) {
+                Err(Unflown::Motion) if !is_upright => make_upright(&mut self.sample),
+                Err(unflown) => return Err(unflown),
+                Ok(()) => break,
+            }
+            is_upright = true;
         }
-        law_step.step(&self.table, &mut self.memory, &mut self.outcome)?;
         if self.fade_left > 0 { self.mix_in_the_one_before(state) } else { Ok(()) }
     }
 
     /// Both laws, their forces mixed in changing shares.
     #[cold]
     #[inline(never)]
-    fn mix_in_the_one_before(&mut self, state: &RigidState) -> Result<(), StepError> {
+    fn mix_in_the_one_before(&mut self, state: &RigidState) -> Result<(), Unflown> {
         self.fade_left -= 1;
         let (craft, settings, sample, heading) = (&self.craft, &self.settings, &self.sample, self.heading);
         let law_step = LawStep { craft, settings, sample, heading, state };
         let mut before = self.outcome;
         // Where only the old law has no answer, the new one's counts at once.
-        if law_step.step(&self.before, &mut self.memory_before, &mut before).is_err() {
+        if law_step.step_beside(&self.before, &mut self.memory_before, &mut before).is_err() {
             self.fade_left = 0;
         }
         if self.fade_left > 0 {
@@ -316,7 +360,7 @@ impl Controller {
 
     /// Manual flight by body rates: the same under every table.
     #[inline(never)]
-    fn turn(&mut self, [p, q]: [f32; 2], state: &RigidState) -> Result<(), StepError> {
+    fn turn(&mut self, [p, q]: [f32; 2], state: &RigidState) -> Result<(), Unflown> {
         let mass_kg = self.craft.airframe.figures().mass_kg;
         let (vertical, turn) = match &self.flight {
             Some(flight) => (flight.vertical, flight.turn),
@@ -341,7 +385,7 @@ impl Controller {
                 self.outcome.output = Output::Wrench(wrench);
                 Ok(())
             }
-            None => Err(StepError::Singular),
+            None => Err(Unflown::State),
         }
     }
 
@@ -409,6 +453,16 @@ impl Controller {
         let q = self.outcome.target.conjugate() * attitude;
         q.vector() * if q.w < 0.0 { -2.0 } else { 2.0 }
     }
+}
+
+/// Where the motion asks for what no thrust does, its position and velocity alone.
+#[cold]
+#[inline(never)]
+fn make_upright(sample: &mut FifthOrderSample) {
+    let flat = &sample.flat;
+    let mut upright = FifthOrderSample::at_rest(flat.position_m, 0.0);
+    upright.flat.velocity_m_s = flat.velocity_m_s;
+    *sample = upright;
 }
 
 /// `share` of the way from one to another.
