@@ -4,37 +4,37 @@ use std::f32::consts::{PI, TAU};
 
 use quatrack_crazyflie::abi::{Attitude, Mode, Modes, Setpoint};
 
-use super::{NOTHING, vector};
+use crate::sent::{NOTHING, vector};
 
 const GRAVITY_M_S2: f32 = 9.81;
 
 /// A polynomial of degree 7 for x, y, z and yaw (rad), and how long it lasts.
 #[derive(Clone, Debug)]
-pub struct Piece {
-    pub coefficients: [[f32; 8]; 4],
-    pub duration_s: f32,
+pub(crate) struct Piece {
+    pub(crate) coefficients: [[f32; 8]; 4],
+    pub(crate) duration_s: f32,
 }
 
 /// `traj_eval`.
 #[derive(Clone, Copy, Debug)]
-pub struct Planned {
-    pub position: [f32; 3],
-    pub velocity: [f32; 3],
-    pub acceleration: [f32; 3],
-    pub jerk: [f32; 3],
-    pub yaw: f32,
-    pub yaw_body_rate: f32,
+pub(crate) struct Planned {
+    pub(crate) position: [f32; 3],
+    pub(crate) velocity: [f32; 3],
+    pub(crate) acceleration: [f32; 3],
+    pub(crate) jerk: [f32; 3],
+    pub(crate) yaw: f32,
+    pub(crate) yaw_body_rate: f32,
 }
 
 impl Planned {
     /// At rest.
-    pub fn at(position: [f32; 3], yaw: f32) -> Self {
+    pub(crate) fn at(position: [f32; 3], yaw: f32) -> Self {
         let zero = [0.0; 3];
         Self { position, velocity: zero, acceleration: zero, jerk: zero, yaw, yaw_body_rate: 0.0 }
     }
 
     /// `piecewise_eval` with `traj_eval_transform`: all is turned but the jerk.
-    pub fn turned(&self, by: f32) -> Self {
+    pub(crate) fn turned(&self, by: f32) -> Self {
         let (sin, cos) = by.sin_cos();
         let turn = |[x, y, z]: [f32; 3]| [cos * x - sin * y, sin * x + cos * y, z];
         let (position, velocity, acceleration) = (turn(self.position), turn(self.velocity), turn(self.acceleration));
@@ -42,7 +42,7 @@ impl Planned {
     }
 
     /// `crtpCommanderHighLevelGetSetpoint`.
-    pub fn setpoint(&self) -> Setpoint {
+    pub(crate) fn setpoint(&self) -> Setpoint {
         let on = Mode::ABSOLUTE;
         Setpoint {
             position: vector(self.position),
@@ -88,7 +88,7 @@ fn septic([x0, d0, dd0]: [f32; 3], [xf, df, ddf]: [f32; 3], t: f32) -> [f32; 8] 
 
 impl Piece {
     /// `plan_go_to_from`, take-off and landing among it; a linear one keeps one velocity from end to end.
-    pub fn go_to(from: &Planned, to: [f32; 3], yaw: f32, duration_s: f32, is_linear: bool) -> Self {
+    pub(crate) fn go_to(from: &Planned, to: [f32; 3], yaw: f32, duration_s: f32, is_linear: bool) -> Self {
         let normal = |angle: f32| (angle + PI).rem_euclid(TAU) - PI;
         let yaw_from = normal(from.yaw);
         let turn = normal(yaw - yaw_from);
@@ -108,7 +108,7 @@ impl Piece {
     }
 
     /// `plan_spiral_from`, anticlockwise and looking ahead: from one radius to another over an angle, climbing.
-    pub fn spiral(from: &Planned, angle: f32, radii: [f32; 2], ascent: f32, duration_s: f32) -> Self {
+    pub(crate) fn spiral(from: &Planned, angle: f32, radii: [f32; 2], ascent: f32, duration_s: f32) -> Self {
         let (omega, [r0, rf]) = (angle / duration_s, radii);
         let (dr, phi0) = ((rf - r0) / duration_s, from.yaw);
         let end = |r: f32, phi: f32| {
@@ -131,7 +131,7 @@ impl Piece {
     }
 
     /// `poly4d_eval`; after its end `piecewise_eval` rests there.
-    pub fn eval(&self, t_s: f32) -> Planned {
+    pub(crate) fn eval(&self, t_s: f32) -> Planned {
         let [x, y, z, yaw] = [0, 1, 2, 3].map(|i| derivatives(&self.coefficients[i], t_s.min(self.duration_s)));
         let [position, velocity, acceleration, jerk] = [0, 1, 2, 3].map(|order| [x[order], y[order], z[order]]);
         if t_s > self.duration_s {

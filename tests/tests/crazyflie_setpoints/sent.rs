@@ -1,14 +1,10 @@
 //! The Crazyflie firmware's ways to a setpoint (crazyflie-firmware, 2026-08): arguments of a cflib call, or of an order to
 //! the high-level commander, in; the `setpoint_t` that reaches the controller out.
 
-mod planner;
-
-pub use planner::{Piece, Planned};
-
 use quatrack_crazyflie::abi::{Attitude, Mode, Modes, Quaternion, Setpoint, Vector};
 
 /// Nothing is asked of any axis.
-pub const NOTHING: Modes = Modes {
+pub(crate) const NOTHING: Modes = Modes {
     x: Mode::DISABLED,
     y: Mode::DISABLED,
     z: Mode::DISABLED,
@@ -21,24 +17,24 @@ pub const NOTHING: Modes = Modes {
 const ANGLES: Modes = Modes { roll: Mode::ABSOLUTE, pitch: Mode::ABSOLUTE, yaw: Mode::VELOCITY, ..NOTHING };
 const POSITION: Modes = Modes { x: Mode::ABSOLUTE, y: Mode::ABSOLUTE, z: Mode::ABSOLUTE, ..NOTHING };
 
-fn vector([x, y, z]: [f32; 3]) -> Vector {
+pub(crate) fn vector([x, y, z]: [f32; 3]) -> Vector {
     Vector { timestamp: 0, x, y, z }
 }
 
 /// Parameters of `flightmode`.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct FlightMode {
-    pub alt_hold: bool,
-    pub pos_hold: bool,
-    pub pos_set: bool,
-    pub roll_rate: bool,
-    pub pitch_rate: bool,
-    pub yaw_angle: bool,
+pub(crate) struct FlightMode {
+    pub(crate) alt_hold: bool,
+    pub(crate) pos_hold: bool,
+    pub(crate) pos_set: bool,
+    pub(crate) roll_rate: bool,
+    pub(crate) pitch_rate: bool,
+    pub(crate) yaw_angle: bool,
 }
 
 /// `Commander.send_setpoint` and `crtpCommanderRpytDecodeSetpoint`: cflib turns the sign of pitch, the firmware that of a
 /// yaw rate, and what the setpoint had before stays where nothing is written.
-pub fn rpyt(setpoint: &mut Setpoint, flight: FlightMode, [roll, pitch, yaw]: [f32; 3], thrust: u16) {
+pub(crate) fn rpyt(setpoint: &mut Setpoint, flight: FlightMode, [roll, pitch, yaw]: [f32; 3], thrust: u16) {
     let (pitch, mode) = (-pitch, &mut setpoint.mode);
     setpoint.thrust = if thrust < 1000 { 0.0 } else { f32::from(thrust).min(60_000.0) };
     mode.z = Mode::DISABLED;
@@ -73,7 +69,7 @@ pub fn rpyt(setpoint: &mut Setpoint, flight: FlightMode, [roll, pitch, yaw]: [f3
 }
 
 /// `Commander.send_setpoint_manual` and `manualDecoder`; thrust in 65535ths.
-pub fn manual([roll, pitch, yaw_rate]: [f32; 3], thrust: f32, is_rate: bool) -> Setpoint {
+pub(crate) fn manual([roll, pitch, yaw_rate]: [f32; 3], thrust: f32, is_rate: bool) -> Setpoint {
     let angles = Attitude { roll, pitch: -pitch, ..Attitude::default() };
     let turn = Attitude { yaw: yaw_rate, ..Attitude::default() };
     let mut setpoint = Setpoint { thrust, attitude: angles, attitude_rate: turn, mode: ANGLES, ..Setpoint::OFF };
@@ -86,42 +82,42 @@ pub fn manual([roll, pitch, yaw_rate]: [f32; 3], thrust: f32, is_rate: bool) -> 
 }
 
 /// `Commander.send_zdistance_setpoint` and `zDistanceDecoder`: the pitch as it is.
-pub fn z_distance([roll, pitch, yaw_rate]: [f32; 3], height: f32) -> Setpoint {
+pub(crate) fn z_distance([roll, pitch, yaw_rate]: [f32; 3], height: f32) -> Setpoint {
     let mut setpoint = manual([roll, -pitch, yaw_rate], 0.0, false);
     (setpoint.mode.z, setpoint.position.z) = (Mode::ABSOLUTE, height);
     setpoint
 }
 
 /// `altHoldDecoder`.
-pub fn alt_hold([roll, pitch, yaw_rate]: [f32; 3], climb: f32) -> Setpoint {
+pub(crate) fn alt_hold([roll, pitch, yaw_rate]: [f32; 3], climb: f32) -> Setpoint {
     let mut setpoint = manual([roll, -pitch, yaw_rate], 0.0, false);
     (setpoint.mode.z, setpoint.velocity.z) = (Mode::VELOCITY, climb);
     setpoint
 }
 
 /// `Commander.send_velocity_world_setpoint` and `velocityDecoder`.
-pub fn velocity_world(velocity: [f32; 3], yaw_rate: f32) -> Setpoint {
+pub(crate) fn velocity_world(velocity: [f32; 3], yaw_rate: f32) -> Setpoint {
     let (on, turn) = (Mode::VELOCITY, Attitude { yaw: yaw_rate, ..Attitude::default() });
     let mode = Modes { x: on, y: on, z: on, yaw: on, ..NOTHING };
     Setpoint { velocity: vector(velocity), attitude_rate: turn, mode, ..Setpoint::OFF }
 }
 
 /// `Commander.send_hover_setpoint` and `hoverDecoder`.
-pub fn hover([vx, vy]: [f32; 2], yaw_rate: f32, height: f32) -> Setpoint {
+pub(crate) fn hover([vx, vy]: [f32; 2], yaw_rate: f32, height: f32) -> Setpoint {
     let mut setpoint = velocity_world([vx, vy, 0.0], yaw_rate);
     (setpoint.mode.z, setpoint.position.z, setpoint.velocity_body) = (Mode::ABSOLUTE, height, 1);
     setpoint
 }
 
 /// `Commander.send_position_setpoint` and `positionDecoder`.
-pub fn position(at: [f32; 3], yaw: f32) -> Setpoint {
+pub(crate) fn position(at: [f32; 3], yaw: f32) -> Setpoint {
     let attitude = Attitude { yaw, ..Attitude::default() };
     Setpoint { position: vector(at), attitude, mode: Modes { yaw: Mode::ABSOLUTE, ..POSITION }, ..Setpoint::OFF }
 }
 
 /// `Commander.send_full_state_setpoint` and `fullStateDecoder`: whole millimetres, no jerk, an attitude of nine bits a
 /// component, and a yaw rate that cflib multiplies by 1000 and the firmware takes for milliradians: rad/s.
-pub fn full_state([p, v, a]: [[f32; 3]; 3], attitude: [f32; 4], yaw_rate_rad_s: f32) -> Setpoint {
+pub(crate) fn full_state([p, v, a]: [[f32; 3]; 3], attitude: [f32; 4], yaw_rate_rad_s: f32) -> Setpoint {
     let millimetres = |v: [f32; 3]| vector(v.map(|c| (c * 1000.0).trunc() / 1000.0));
     let [x, y, z, w] = compressed(attitude);
     let rate = (yaw_rate_rad_s * 1000.0).trunc() * 180.0 / (std::f32::consts::PI * 1000.0);
@@ -148,7 +144,7 @@ fn compressed(q: [f32; 4]) -> [f32; 4] {
 }
 
 /// `supervisorOverrideSetpoint` half a second after the last setpoint.
-pub fn level_out(setpoint: &Setpoint) -> Setpoint {
+pub(crate) fn level_out(setpoint: &Setpoint) -> Setpoint {
     let mut level = *setpoint;
     level.mode = Modes { z: setpoint.mode.z, quat: setpoint.mode.quat, ..ANGLES };
     (level.attitude.roll, level.attitude.pitch, level.attitude_rate.yaw) = (0.0, 0.0, 0.0);
