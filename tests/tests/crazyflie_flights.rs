@@ -40,9 +40,9 @@ fn so_fed_the_actuator_aware_table_tracks_as_if_it_knew_the_course() {
 fn a_stated_lag_is_flown_as_closely_on_every_craft() {
     for name in ["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"] {
         let craft = vehicle(name);
-        // What a one-page prototype of the law strays in these 12 s at 63.5 and 126 ms, everything known, wrong mass, lag (half
-        // as much again and half), late commands, more inertia, noise. The Brushless has twice the prototype's inertia,
-        // and pays for 30 % of it.
+        // What a prototype of the law in f64 strays in these 12 s on a Crazyflie 2.1 at 63.5 and 126 ms: everything known, wrong
+        // mass, wrong lag (half as much again, half), late commands, more inertia, noise. The Brushless has twice the
+        // inertia, its longest published lag is 66 ms and its table for 126 ms designed for 100: there it may stray more.
         let bars = [0.0007, 0.134, 0.136, 0.032, 0.026, 0.0047, 0.011, 0.035, 0.006];
         for (lag_s, bars) in
             [(0.020, bars), (0.0635, bars), (0.126, [0.0007, 0.167, 0.17, 0.052, 0.056, 0.0052, 0.0125, 0.055, 0.006])]
@@ -60,7 +60,8 @@ fn a_stated_lag_is_flown_as_closely_on_every_craft() {
                 Case { noise: Some(NOISE), ..right },
             ];
             for (index, (case, bar)) in wrong.iter().zip(bars).enumerate() {
-                let bar = if index == 7 && name == "crazyflie-2.1-brushless" { 1.25 * bar } else { bar };
+                let is_beyond = index == 7 && lag_s > 0.1 && name == "crazyflie-2.1-brushless";
+                let bar = if is_beyond { 1.1 * bar } else { bar };
                 let strayed = iae_m_s(&craft, 1.485, lag_s, case);
                 assert!(strayed <= bar, "{name} at {lag_s} s: {strayed} of {bar} in {case:?}");
             }
@@ -75,7 +76,7 @@ fn at_20_ms_nothing_of_bitcrazes_comes_close() {
         // With a noisy gyroscope; Bitcraze's controllers with an exact one: 0.85 m/s for 30 s Lee 0.018, Mellinger 0.143,
         // 2.1 m/s Lee 0.047, Mellinger 0.097, 3.1 m/s Mellinger 0.235, Lee 0.271.
         let noisy = Case { sensors: Sensors { gyro_noise_rad_s: 0.02, ..QUIET }, ..case(0.020) };
-        for (rate, bar) in [(0.601, 0.018 / 4.0), (1.485, 0.047 / 20.0), (2.19, 0.235 / 100.0)] {
+        for (rate, bar) in [(0.601, 0.018 / 5.0), (1.485, 0.047 / 20.0), (2.19, 0.235 / 100.0)] {
             let strayed = iae_m_s(&craft, rate, 0.020, &noisy);
             assert!(strayed <= bar, "{name}: {strayed} at {rate} rad/s");
         }

@@ -26,13 +26,6 @@ fn the_source_of_the_gains_is_what_the_designs_give() {
     assert_eq!(std::fs::read_to_string(path).unwrap(), motor_gains().unwrap());
 }
 
-/// The designs that the image's gains come from, for the shortest lags first.
-const DESIGNS: [(&str, [&str; 3]); 3] = [
-    ("crazyflie-2.1", ["actuator-aware-20ms", "actuator-aware-63ms", "actuator-aware"]),
-    ("crazyflie-2.1-upgrade-kit", ["actuator-aware-kit-20ms", "actuator-aware-kit-63ms", "actuator-aware-kit"]),
-    ("crazyflie-2.1-brushless", ["actuator-brushless-20ms", "actuator-brushless-63ms", "actuator-aware-brushless"]),
-];
-
 /// The lag that a table for motor forces reckons with, s, and its gain.
 fn flown(table: &Table) -> (f32, &quatrack::law::ActuatorAwareGain) {
     let Gains::ActuatorAware(motors) = &table.gains else { panic!("no table for motor forces") };
@@ -41,10 +34,10 @@ fn flown(table: &Table) -> (f32, &quatrack::law::ActuatorAwareGain) {
 
 #[test]
 fn a_stated_lag_is_flown_with_the_committed_design_that_is_certified_for_it() {
-    for (known, (name, files)) in KNOWN.iter().zip(DESIGNS) {
-        let craft = Flown::with(known.airframe, known.vehicle, DESIGNS.iter().position(|(n, _)| *n == name).unwrap());
-        let tables = files.map(|file| {
-            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../gains/generated/{file}.bin"));
+    for (index, (known, designs)) in KNOWN.iter().zip(Design::of_crafts().unwrap()).enumerate() {
+        let (name, craft) = (known.vehicle.name.as_str(), Flown::with(known.airframe, known.vehicle, index));
+        let tables = designs.map(|design| {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../gains/generated/{}.bin", design.name));
             ActuatorTable::from_bytes(&std::fs::read(path).unwrap()).unwrap()
         });
         let stated = |lag_s: f32| Table::choose(0, &craft.with_motor_lag(lag_s), None);
@@ -64,15 +57,12 @@ fn a_stated_lag_is_flown_with_the_committed_design_that_is_certified_for_it() {
 
 #[test]
 fn what_flies_with_a_stated_lag_is_stable_with_that_off_by_a_quarter_and_everything_else_off() {
-    for (name, _) in DESIGNS {
-        let vehicle = Vehicle::by_name(name).unwrap();
-        for design in Design::of(&vehicle).unwrap() {
-            let lag_s = design.stated.lag_s;
-            for stated in [Stated::all_at_once(lag_s), Stated::lag_alone(lag_s)] {
-                // The integral's pole is near 0.9979 all over; a chain that is about to swing shows above it.
-                let radius = stated.spectral_radius(&vehicle, &design.gain_in_parts).unwrap();
-                assert!(radius < 0.9991, "{name}, {stated:?}: {radius}");
-            }
+    for design in Design::of_crafts().unwrap().as_flattened() {
+        let lag_s = design.stated.lag_s;
+        for stated in [Stated::all_at_once(lag_s), Stated::lag_alone(lag_s)] {
+            // The integral's pole is near 0.9979 all over; a chain that is about to swing shows above it.
+            let radius = stated.spectral_radius(&design.vehicle, &design.gain_in_parts).unwrap();
+            assert!(radius < 0.9991, "{}, {stated:?}: {radius}", design.name);
         }
     }
 }

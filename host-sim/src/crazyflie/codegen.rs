@@ -1,17 +1,20 @@
-//! The source of the Crazyflie controller's own tables: vehicles in; gains for motor forces, with the lags that they may be
-//! told and the factor by which their feedback may be off, out.
+//! The source of the Crazyflie controller's own tables: the designs of its craft in; gains for motor forces, with the
+//! lags that they may be told and the factor by which their feedback may be off, out.
 //!
 //! Each craft has two designs for motors whose lag its owner states, and one for any lag that is published. A gain flies
 //! with the lag that is stated, in its prediction of the forces and in what it feeds forward: [`Stated`] is where that is
 //! certified. With none stated the last of them flies with the lag of its design over [`Region::of_any_crazyflie`].
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use nalgebra::DMatrix;
+use thiserror::Error;
 
 use crate::certify::{Region, RegionBounds, certify_region};
-use crate::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
-use crate::flight::motor_laws::{FlightError, default_lag_s};
+use crate::design::actuator_aware::actuator_aware;
+use crate::flight::motor_laws::FlightError;
+use crate::gains::{self, GainsError, Problem};
 use crate::vehicle::Vehicle;
 
 /// Control period, s.
@@ -20,12 +23,50 @@ const PERIOD_S: f64 = 0.002;
 /// Factors on the feedback that are tried, the largest first.
 const FACTORS: [f64; 5] = [2.0, 1.75, 1.5, 1.25, 1.1];
 
-/// Vehicles and what their gains are called in the source.
-const VEHICLES: [(&str, &str); 3] = [
-    ("crazyflie-2.1", "CRAZYFLIE_2_1"),
-    ("crazyflie-2.1-upgrade-kit", "CRAZYFLIE_2_1_UPGRADE_KIT"),
-    ("crazyflie-2.1-brushless", "CRAZYFLIE_2_1_BRUSHLESS"),
+/// Lags that may be stated, s, of each design.
+const STATED_S: [[f64; 2]; 3] = [[0.010, 0.040], [0.040, 0.080], [0.080, 0.126]];
+
+macro_rules! text {
+    ($name:literal) => {
+        ($name, include_str!(concat!("../../../gains/", $name, ".toml")))
+    };
+}
+
+/// What the gains of a craft are called in the source, and the designs that they come from, by name and text: for the
+/// shortest lags first, the last one for any published lag, too.
+const CRAFTS: [(&str, [(&str, &str); 3]); 3] = [
+    ("CRAZYFLIE_2_1", [text!("actuator-aware-20ms"), text!("actuator-aware-63ms"), text!("actuator-aware")]),
+    (
+        "CRAZYFLIE_2_1_UPGRADE_KIT",
+        [text!("actuator-aware-kit-20ms"), text!("actuator-aware-kit-63ms"), text!("actuator-aware-kit")],
+    ),
+    (
+        "CRAZYFLIE_2_1_BRUSHLESS",
+        [text!("actuator-brushless-20ms"), text!("actuator-brushless-63ms"), text!("actuator-aware-brushless")],
+    ),
 ];
+
+/// Why there is no source.
+#[derive(Debug, Error)]
+pub enum CodegenError {
+    /// A design is not what it has to be.
+    #[error("gains/{name}.toml: {error}")]
+    Design {
+        /// Its name.
+        name: &'static str,
+        /// What is wrong with it.
+        error: GainsError,
+    },
+    /// A design for another law.
+    #[error("gains/{name}.toml: method must be actuator-aware")]
+    Method {
+        /// Its name.
+        name: &'static str,
+    },
+    /// No gain or no certificate.
+    #[error(transparent)]
+    Flight(#[from] FlightError),
+}
 
 /// Where a gain is certified that flies with the lag that its owner states.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +128,10 @@ impl Stated {
 /// A gain of the image.
 #[derive(Clone, Debug)]
 pub struct Design {
+    /// Name of its design.
+    pub name: &'static str,
+    /// Whom it is for.
+    pub vehicle: Vehicle,
     /// The lag that it is designed for, s.
     pub lag_s: f64,
     /// Where it is certified.
@@ -98,40 +143,49 @@ pub struct Design {
 }
 
 impl Design {
-    /// The gains for a vehicle, for the shortest lags first.
+    /// The gains of each craft, for the shortest lags first.
     ///
     /// # Errors
-    /// [`FlightError::Design`].
-    pub fn of(vehicle: &Vehicle) -> Result<[Self; 3], FlightError> {
-        let design = |lag_s: f64, stated_s: [f64; 2]| {
-            let design = actuator_aware(vehicle, lag_s, &ActuatorAwareWeights::STANDARD, PERIOD_S)?;
-            let (gain_in_parts, gain) = (design.gain_in_parts, design.gain);
-            let stated = Stated::all_at_once(stated_s);
-            Ok::<_, FlightError>(Self { lag_s, stated, gain_in_parts, gain })
+    /// [`CodegenError`].
+    pub fn of_crafts() -> Result<[[Self; 3]; 3], CodegenError> {
+        let [plain, kit, brushless] = CRAFTS.map(|(_, [short, known, any])| {
+            let [in_short, in_known, in_any] = STATED_S;
+            Ok::<_, CodegenError>([
+                Self::read(short, in_short)?,
+                Self::read(known, in_known)?,
+                Self::read(any, in_any)?,
+            ])
+        });
+        Ok([plain?, kit?, brushless?])
+    }
+
+    fn read((name, text): (&'static str, &str), stated_s: [f64; 2]) -> Result<Self, CodegenError> {
+        let design = gains::Design::from_toml(name, text, Path::new(""))
+            .map_err(|error| CodegenError::Design { name, error })?;
+        let Problem::ActuatorAware { motor_lag_s: lag_s, weights, .. } = design.problem else {
+            return Err(CodegenError::Method { name });
         };
-        Ok([
-            design(0.020, [0.010, 0.040])?,
-            design(0.0635, [0.040, 0.080])?,
-            design(default_lag_s(vehicle), [0.080, 0.126])?,
-        ])
+        let found = actuator_aware(&design.vehicle, lag_s, &weights, PERIOD_S).map_err(FlightError::Design)?;
+        let (gain_in_parts, gain) = (found.gain_in_parts, found.gain);
+        Ok(Self { name, vehicle: design.vehicle, lag_s, stated: Stated::all_at_once(stated_s), gain_in_parts, gain })
     }
 
     /// The factor by which thrust, roll and pitch together, and yaw, may each be strengthened or weakened at a stated lag.
     ///
     /// # Errors
     /// [`FlightError::Certify`] where a certificate cannot be computed.
-    pub fn stated_margin(&self, vehicle: &Vehicle) -> Result<f64, FlightError> {
-        largest_factor(&self.gain_in_parts, |scaled| self.stated.over(vehicle, scaled, [3, 3]))
+    pub fn stated_margin(&self) -> Result<f64, FlightError> {
+        largest_factor(&self.gain_in_parts, |scaled| self.stated.over(&self.vehicle, scaled, [3, 3]))
     }
 
     /// The same over [`Region::of_any_crazyflie`], with the lag of the design.
     ///
     /// # Errors
     /// As [`Self::stated_margin`].
-    pub fn any_lag_margin(&self, vehicle: &Vehicle) -> Result<f64, FlightError> {
+    pub fn any_lag_margin(&self) -> Result<f64, FlightError> {
         let region = Region::of_any_crazyflie();
         largest_factor(&self.gain_in_parts, |scaled| {
-            Ok(certify_region(vehicle, scaled, self.lag_s, PERIOD_S, &region)?.spectral_radius)
+            Ok(certify_region(&self.vehicle, scaled, self.lag_s, PERIOD_S, &region)?.spectral_radius)
         })
     }
 }
@@ -153,8 +207,8 @@ fn largest_factor(
 /// The source of `crazyflie/src/builtin/motor_gains.rs`.
 ///
 /// # Errors
-/// [`FlightError`] where a vehicle has no design or no certificate.
-pub fn motor_gains() -> Result<String, FlightError> {
+/// [`CodegenError`] where a craft has no design or no certificate.
+pub fn motor_gains() -> Result<String, CodegenError> {
     let mut source = String::from(
         "//! Gains for motor forces of each craft: made by `cargo run --example crazyflie_tables` and not edited by hand.\n\
          //!\n\
@@ -164,21 +218,19 @@ pub fn motor_gains() -> Result<String, FlightError> {
          use quatrack::law::ActuatorAwareGain;\n\n\
          use super::Design;\n",
     );
-    for (name, constant) in VEHICLES {
-        let vehicle = Vehicle::by_name(name)?;
-        let id = vehicle.id();
+    for ((constant, _), designs) in CRAFTS.iter().zip(Design::of_crafts()?) {
+        let [.., last] = &designs;
+        let (name, id) = (last.vehicle.name(), last.vehicle.id());
         // Writing to a string does not fail.
         let _ = write!(source, "\n/// Vehicle id of {name}.\npub(super) const {constant}_ID: u32 = 0x{id:08x};\n");
-        let designs = Design::of(&vehicle)?;
-        let [.., last] = &designs;
-        let any = (last.lag_s, last.any_lag_margin(&vehicle)?);
+        let any = (last.lag_s, last.any_lag_margin()?);
         let _ = write!(
             source,
             "\n/// With none stated: the lag (s) and the factor of the last one.\npub(super) const {constant}_ANY: (f32, f32) = {any:?};\n"
         );
         let _ = write!(source, "\n/// Of {name}.\npub(super) const {constant}: [Design; 3] = [\n");
         for design in designs {
-            let (stated_s, margin) = (design.stated.lag_s, design.stated_margin(&vehicle)?);
+            let (stated_s, margin) = (design.stated.lag_s, design.stated_margin()?);
             let _ = writeln!(
                 source,
                 "    Design {{ stated_s: {stated_s:?}, margin: {margin:?}, gain: ActuatorAwareGain::table(["
