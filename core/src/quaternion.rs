@@ -8,7 +8,7 @@ use core::ops::{Mul, Neg};
 
 use nalgebra::Vector3;
 
-use crate::math::sin_cos;
+use crate::math::{sin_cos, sqrt};
 
 /// A quaternion, scalar part first.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -120,7 +120,30 @@ impl Heading {
     #[inline(always)]
     pub(crate) fn from_angle_inlined(psi_rad: f32) -> Self {
         let (s, c) = sin_cos(0.5 * psi_rad);
+        Self::of_half(c, s)
+    }
+
+    /// From cosine and sine of half the angle in any common scale: the scalar and the third component of an attitude
+    /// `q_tilt q_z(psi)`. Not finite where both are zero.
+    #[inline]
+    pub fn from_half(cos_half: f32, sin_half: f32) -> Self {
+        let scale = 1.0 / sqrt(cos_half * cos_half + sin_half * sin_half);
+        Self::of_half(cos_half * scale, sin_half * scale)
+    }
+
+    #[inline(always)]
+    fn of_half(c: f32, s: f32) -> Self {
         Self { cos_half: c, sin_half: s, cos: c * c - s * s, sin: 2.0 * c * s }
+    }
+
+    /// Turned on by a small angle, rad: up to 0.5 its sine and cosine are as good as [`Self::from_angle`]'s.
+    #[inline]
+    pub fn turned_slightly(self, angle_rad: f32) -> Self {
+        let half = 0.5 * angle_rad;
+        let h2 = half * half;
+        let s = half * (1.0 - h2 * (1.0 / 6.0 - h2 * (1.0 / 120.0)));
+        let c = 1.0 - h2 * (0.5 - h2 * (1.0 / 24.0 - h2 * (1.0 / 720.0)));
+        Self::of_half(c * self.cos_half - s * self.sin_half, s * self.cos_half + c * self.sin_half)
     }
 
     /// Cosine of half the angle.
@@ -182,6 +205,39 @@ mod tests {
         // A handful of roundings of numbers below 1.
         assert!((Q.thrust_axis() - sandwich.vector()).norm() < 1e-6);
         assert!(((-Q).thrust_axis() - Q.thrust_axis()).norm() == 0.0);
+    }
+
+    /// Largest difference of cosines and sines.
+    fn distance(a: Heading, b: Heading) -> f32 {
+        [a.cos_half - b.cos_half, a.sin_half - b.sin_half, a.cos - b.cos, a.sin - b.sin]
+            .into_iter()
+            .fold(0.0, |most, difference| most.max(difference.abs()))
+    }
+
+    #[test]
+    fn a_heading_is_what_the_tilt_leaves_of_an_attitude() {
+        for k in -30_i8..=30 {
+            let psi = 0.2 * f32::from(k);
+            let heading = Heading::from_angle(psi);
+            // The smallest rotation to a tilt has no third component.
+            let tilt = Quaternion::new(0.8, 0.36, -0.48, 0.0);
+            let q = tilt * heading.quaternion();
+            // Roundings of a product, a norm and a division.
+            assert!(distance(Heading::from_half(q.w, q.z), heading) < 5e-7, "{psi}");
+        }
+        assert!(!Heading::from_half(0.0, 0.0).cos.is_finite());
+    }
+
+    #[test]
+    fn a_small_turn_is_as_good_as_the_sine() {
+        for k in -50_i8..=50 {
+            let turn = 0.01 * f32::from(k);
+            for psi in [-3.0_f32, 0.0, 0.7] {
+                let (found, wanted) = (Heading::from_angle(psi).turned_slightly(turn), Heading::from_angle(psi + turn));
+                // The sum of the angles is rounded, and so are four products.
+                assert!(distance(found, wanted) < 5e-7, "{psi} + {turn}");
+            }
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::command::Command;
 use crate::error::{Field, ReferenceError, first_non_finite};
-use crate::flatness::Tilt;
+use crate::flatness::{AttitudeAndInput, Tilt};
 use crate::quaternion::Heading;
 use crate::state::State;
 
@@ -38,6 +38,15 @@ impl FlatSample {
             heading_rad,
             heading_rate_rad_s: 0.0,
         }
+    }
+
+    /// Whether every number is finite; false, too, for some near the end of f32.
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        let Self { position_m: r, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j, .. } = self;
+        // A sum is finite only if all of its terms are; the converse fails only for numbers near the end of f32.
+        let sum = (r.x + r.y + r.z) + (v.x + v.y + v.z) + (a.x + a.y + a.z) + (j.x + j.y + j.z);
+        (sum + self.heading_rad + self.heading_rate_rad_s).is_finite()
     }
 
     /// The first number that is not finite.
@@ -77,15 +86,41 @@ impl Reference {
     /// # Errors
     /// [`ReferenceError`] where a number is not finite and at the map's singularities.
     pub fn from_flat(sample: &FlatSample) -> Result<Self, ReferenceError> {
-        let (r, v, a, j) = (&sample.position_m, &sample.velocity_m_s, &sample.acceleration_m_s2, &sample.jerk_m_s3);
-        let sum = (r.x + r.y + r.z) + (v.x + v.y + v.z) + (a.x + a.y + a.z) + (j.x + j.y + j.z);
-        // A sum is finite only if all of its terms are; the converse fails only for numbers near the end of f32.
-        if !(sum + sample.heading_rad + sample.heading_rate_rad_s).is_finite()
+        if !sample.is_finite()
             && let Some(fault) = sample.fault()
         {
             return Err(fault);
         }
         Self::of_finite(sample)
+    }
+
+    /// The same for a caller that knows sine and cosine of the heading; the sample's own angle is not looked at.
+    ///
+    /// # Errors
+    /// Those of [`Self::from_flat`].
+    #[inline]
+    pub fn from_flat_at(sample: &FlatSample, heading: Heading) -> Result<Self, ReferenceError> {
+        let tilt = Tilt::new(sample.acceleration_m_s2, sample.jerk_m_s3);
+        if !(sample.is_finite() && tilt.is_regular()) {
+            return Err(fault(sample));
+        }
+        Ok(Self::of_map(sample, heading, &tilt.with_heading(heading, sample.heading_rate_rad_s)))
+    }
+
+    /// Moves a reference that is kept to what [`Self::from_flat_at`] gives, where it lies, for a sample whose numbers were
+    /// looked at where they came from; where there is nothing to be given it stays as it was. A position or velocity that
+    /// is not finite all the same shows as an error of the step that follows it.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] at the singularities of the flat map.
+    #[inline(always)]
+    pub fn move_to_finite_flat(&mut self, sample: &FlatSample, heading: Heading) -> Result<(), ReferenceError> {
+        let tilt = Tilt::new(sample.acceleration_m_s2, sample.jerk_m_s3);
+        if !tilt.is_regular() {
+            return Err(fault(sample));
+        }
+        *self = Self::of_map(sample, heading, &tilt.with_heading(heading, sample.heading_rate_rad_s));
+        Ok(())
     }
 
     /// The same for a sample that is known to be finite.
@@ -102,7 +137,12 @@ impl Reference {
             let heading = Heading::from_angle(sample.heading_rad);
             (heading, tilt.with_heading(heading, sample.heading_rate_rad_s))
         };
-        Ok(Self {
+        Ok(Self::of_map(sample, heading, &mapped))
+    }
+
+    #[inline(always)]
+    fn of_map(sample: &FlatSample, heading: Heading, mapped: &AttitudeAndInput) -> Self {
+        Self {
             state: State {
                 position_m: sample.position_m,
                 attitude: mapped.attitude,
@@ -113,7 +153,7 @@ impl Reference {
             jerk_m_s3: sample.jerk_m_s3,
             heading,
             heading_rate_rad_s: sample.heading_rate_rad_s,
-        })
+        }
     }
 
     /// Position, attitude and velocity to be at.
@@ -146,5 +186,17 @@ impl Reference {
     /// Heading of the attitude.
     pub fn heading(&self) -> Heading {
         self.heading
+    }
+}
+
+/// Why a sample has no reference, or none that can be told from one that is not finite.
+#[cold]
+#[inline(never)]
+fn fault(sample: &FlatSample) -> ReferenceError {
+    let tilt = Tilt::new(sample.acceleration_m_s2, sample.jerk_m_s3);
+    match sample.fault() {
+        Some(fault) => fault,
+        None if tilt.is_regular() => ReferenceError::NonFinite { field: Field::Position, value: sample.position_m.x },
+        None => tilt.fault(),
     }
 }

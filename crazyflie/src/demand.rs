@@ -1,6 +1,7 @@
 //! What a setpoint asks for, in SI units: of the horizontal, the vertical and the heading, each in one of the ways that
 //! the firmware's commanders know.
 
+use quatrack::Heading;
 use quatrack::nalgebra::Vector3;
 
 /// A setpoint taken apart.
@@ -55,10 +56,10 @@ pub enum Vertical {
 pub enum Turn {
     /// At a heading.
     Heading {
-        /// rad.
-        heading_rad: f32,
-        /// Body rate about z that goes with it, rad/s.
-        body_rate_rad_s: f32,
+        /// Which.
+        heading: Heading,
+        /// Its rate, rad/s.
+        rate_rad_s: f32,
     },
     /// At a rate of the heading, from wherever it is; rad/s.
     Rate(f32),
@@ -72,6 +73,14 @@ impl Flight {
         turn: Turn::Rate(0.0),
     };
 
+    /// Whether it goes along the motion in all directions, at a heading: what a trajectory asks for.
+    pub fn is_along(&self) -> bool {
+        matches!(
+            self,
+            Self { horizontal: Horizontal::Position, vertical: Vertical::Position, turn: Turn::Heading { .. } }
+        )
+    }
+
     /// Whether both are the same but for their figures.
     pub fn is_like(&self, other: &Self) -> bool {
         use core::mem::discriminant;
@@ -82,7 +91,7 @@ impl Flight {
 }
 
 /// Position and its derivatives at one time, world frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Motion {
     /// m.
     pub position_m: Vector3<f32>,
@@ -102,4 +111,16 @@ impl Motion {
         acceleration_m_s2: Vector3::new(0.0, 0.0, 0.0),
         jerk_m_s3: Vector3::new(0.0, 0.0, 0.0),
     };
+}
+
+impl PartialEq for Motion {
+    // Derived, it would be a call.
+    #[inline(always)]
+    fn eq(&self, other: &Self) -> bool {
+        let same = |a: &Vector3<f32>, b: &Vector3<f32>| a.x == b.x && a.y == b.y && a.z == b.z;
+        same(&self.position_m, &other.position_m)
+            && same(&self.velocity_m_s, &other.velocity_m_s)
+            && same(&self.acceleration_m_s2, &other.acceleration_m_s2)
+            && same(&self.jerk_m_s3, &other.jerk_m_s3)
+    }
 }

@@ -4,9 +4,10 @@
 //! thrust of 65535 becomes what four motors can do. A yaw angle becomes a heading: the same at hover; the firmware's own
 //! trajectories bend away from it as they tilt, Z-X-Y, by less than a degree below 15 degrees.
 
-use quatrack::math::sin_cos;
+use quatrack::flatness::GRAVITY_M_S2;
+use quatrack::math::{sin_cos, sqrt};
 use quatrack::nalgebra::Vector3;
-use quatrack::{Quaternion, State};
+use quatrack::{Heading, Quaternion, State};
 
 use crate::abi::{self, Mode};
 use crate::control::Output;
@@ -20,6 +21,13 @@ const THRUST_MAX: f32 = 65_535.0;
 
 /// Thrust below which a manual setpoint means motors off, as with the firmware's own controllers.
 const THRUST_OFF: f32 = 1_000.0;
+
+/// Largest rate of a heading that is followed, rad/s: as fast as a Crazyflie turns.
+const HEADING_RATE_MAX_RAD_S: f32 = 5.0;
+
+/// Largest size of what the figures of a setpoint add up to: a kilometre and more, with room to carry it on by its
+/// derivatives for a while.
+const SUM_MAX: f32 = 1e6;
 
 /// Largest heading, rad: beyond it the sine loses digits.
 const HEADING_MAX_RAD: f32 = 2_000.0;
@@ -62,20 +70,15 @@ pub fn demand(setpoint: &abi::Setpoint, thrust_max_n: f32) -> Option<Demand> {
         Mode::VELOCITY => Vertical::Velocity,
         _ => return None,
     };
-    let (turn, heading_sum) = turn(setpoint)?;
+    let (turn, turn_sum) = turn(setpoint)?;
     let horizontal = horizontal(setpoint)?;
-    // A sum is finite only if all of its terms are.
     let counting = match (&horizontal, vertical) {
         (Horizontal::Tilt(axis), _) => axis.x + axis.y,
         (Horizontal::Rates([p, q]), _) => p + q,
         _ => 0.0,
-    } + setpoint.thrust
-        + heading_sum
-        + sum(&setpoint.position)
-        + sum(&setpoint.velocity)
-        + sum(&setpoint.acceleration)
-        + sum(&setpoint.jerk);
-    if !counting.is_finite() {
+    } + motion_sum(setpoint)
+        + turn_sum;
+    if !is_sound(counting) {
         return None;
     }
     if matches!(vertical, Vertical::Thrust(_)) && setpoint.thrust < THRUST_OFF {
@@ -116,25 +119,95 @@ fn horizontal(setpoint: &abi::Setpoint) -> Option<Horizontal> {
     }
 }
 
-/// And the sum of the figures that it is made of.
-fn turn(setpoint: &abi::Setpoint) -> Option<(Turn, f32)> {
-    let mode = &setpoint.mode;
-    let rate = setpoint.attitude_rate.yaw * RAD_PER_DEG;
-    let heading_rad = match (mode.quat, mode.yaw) {
-        (Mode::ABSOLUTE, Mode::DISABLED) => heading_rad(&quaternion(&setpoint.attitude_quaternion)),
-        (Mode::DISABLED, Mode::ABSOLUTE) => setpoint.attitude.yaw * RAD_PER_DEG,
-        (Mode::DISABLED, Mode::VELOCITY) => return Some((Turn::Rate(rate), rate)),
-        (Mode::DISABLED, Mode::DISABLED) => return Some((Turn::Rate(0.0), 0.0)),
-        _ => return None,
+/// Moves on the heading of a flight along a trajectory, as one more setpoint of it asks after one that was kept; gives the
+/// rate that goes with it, rad/s. Nothing where the setpoint is of another kind, or a number that counts makes no sense.
+#[inline(always)]
+pub fn turn_on(heading: &mut Heading, kept: &abi::Setpoint, setpoint: &abi::Setpoint) -> Option<f32> {
+    if setpoint.timestamp == 0 || is_urgent(kept, setpoint) {
+        return None;
+    }
+    let rate = heading_rate_rad_s(setpoint);
+    let is_by_yaw = kept.mode.yaw == Mode::ABSOLUTE;
+    let heading_sum = if is_by_yaw && kept.attitude.yaw.to_bits() == setpoint.attitude.yaw.to_bits() {
+        // Most flights do not turn.
+        0.0
+    } else {
+        *heading = self::heading(setpoint)?;
+        let (cos, sin) = heading.cos_sin();
+        cos + sin
     };
-    let turn = Turn::Heading { heading_rad, body_rate_rad_s: rate };
-    (heading_rad.abs() <= HEADING_MAX_RAD).then_some((turn, rate))
+    is_sound(motion_sum(setpoint) + rate + heading_sum).then_some(rate)
 }
 
-/// The heading of an attitude `q_tilt q_z(psi)`, within a turn.
+/// And the sum of the figures that it is made of, finite only if all of them are.
+#[inline]
+fn turn(setpoint: &abi::Setpoint) -> Option<(Turn, f32)> {
+    match (setpoint.mode.quat, setpoint.mode.yaw) {
+        (Mode::DISABLED, Mode::VELOCITY) => {
+            let rate = setpoint.attitude_rate.yaw * RAD_PER_DEG;
+            Some((Turn::Rate(rate), rate))
+        }
+        (Mode::DISABLED, Mode::DISABLED) => Some((Turn::Rate(0.0), 0.0)),
+        _ => {
+            let heading = heading(setpoint)?;
+            let (cos, sin) = heading.cos_sin();
+            let rate_rad_s = heading_rate_rad_s(setpoint);
+            Some((Turn::Heading { heading, rate_rad_s }, cos + sin + rate_rad_s))
+        }
+    }
+}
+
+/// The heading that a setpoint asks for by its attitude or its angle of yaw.
+#[inline(always)]
+fn heading(setpoint: &abi::Setpoint) -> Option<Heading> {
+    match (setpoint.mode.quat, setpoint.mode.yaw) {
+        (Mode::ABSOLUTE, Mode::DISABLED) => {
+            let q = &setpoint.attitude_quaternion;
+            Some(Heading::from_half(q.w, q.z))
+        }
+        (Mode::DISABLED, Mode::ABSOLUTE) => {
+            let heading_rad = setpoint.attitude.yaw * RAD_PER_DEG;
+            (heading_rad.abs() <= HEADING_MAX_RAD).then(|| Heading::from_angle(heading_rad))
+        }
+        _ => None,
+    }
+}
+
+/// Rate of the heading that goes with an angle, rad/s. Setpoints have the body rate, the heading's rate times the vertical
+/// part of the thrust's direction.
+#[inline(always)]
+fn heading_rate_rad_s(setpoint: &abi::Setpoint) -> f32 {
+    let body_rate = setpoint.attitude_rate.yaw * RAD_PER_DEG;
+    if body_rate == 0.0 {
+        return 0.0;
+    }
+    let a = &setpoint.acceleration;
+    let h = a.z + GRAVITY_M_S2;
+    let axis_z = h / sqrt(a.x * a.x + a.y * a.y + h * h);
+    // Beyond 60 degrees of tilt the two have little to do with each other.
+    let rate = if axis_z > 0.5 { body_rate / axis_z } else { body_rate };
+    if rate.abs() <= HEADING_RATE_MAX_RAD_S { rate } else { HEADING_RATE_MAX_RAD_S.copysign(rate) }
+}
+
+/// Whether figures that add up to this are finite.
+#[inline(always)]
+fn is_sound(sum: f32) -> bool {
+    sum.abs() <= SUM_MAX
+}
+
+/// Sum of the figures of a motion and of the thrust: finite only if all of them are.
+#[inline]
+fn motion_sum(setpoint: &abi::Setpoint) -> f32 {
+    setpoint.thrust
+        + sum(&setpoint.position)
+        + sum(&setpoint.velocity)
+        + sum(&setpoint.acceleration)
+        + sum(&setpoint.jerk)
+}
+
+/// The heading of an attitude `q_tilt q_z(psi)`, rad, within a turn.
 pub fn heading_rad(q: &Quaternion) -> f32 {
-    // Most flights do not turn.
-    if q.z == 0.0 { 0.0 } else { 2.0 * libm::atan2f(q.z, q.w) }
+    2.0 * libm::atan2f(q.z, q.w)
 }
 
 fn vector(v: &abi::Vector) -> Vector3<f32> {
@@ -155,19 +228,50 @@ pub fn is_urgent(before: &abi::Setpoint, setpoint: &abi::Setpoint) -> bool {
     words(before) != words(setpoint)
 }
 
-/// Whether two setpoints ask for the same.
+/// Whether two setpoints ask for the same, the first as [`keep`] has kept it.
 ///
 /// The commander stamps every setpoint that it takes: one with the same stamp can differ only in what supervisor and
 /// collision avoidance change, modes, position and velocity. Without a stamp all of it is looked at.
 #[inline]
 pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
-    let vectors = |a: &abi::Vector, b: &abi::Vector| {
-        a.x.to_bits() == b.x.to_bits() && a.y.to_bits() == b.y.to_bits() && a.z.to_bits() == b.z.to_bits()
-    };
-    if a.timestamp == b.timestamp && a.timestamp != 0 {
-        return words(a) == words(b) && vectors(&a.position, &b.position) && vectors(&a.velocity, &b.velocity);
+    if a.timestamp != b.timestamp {
+        return false;
     }
-    is_all_the_same(a, b)
+    if b.timestamp == 0 {
+        return is_all_the_same(a, b);
+    }
+    let vectors = |a: &abi::Vector, b: &abi::Vector| {
+        ((a.x.to_bits() ^ b.x.to_bits()) | (a.y.to_bits() ^ b.y.to_bits()) | (a.z.to_bits() ^ b.z.to_bits())) == 0
+    };
+    words(a) == words(b) && vectors(&a.position, &b.position) && vectors(&a.velocity, &b.velocity)
+}
+
+/// The same while a trajectory is flown, whose last setpoint was kept by [`keep_on`] and had this motion.
+#[inline(always)]
+pub fn is_same_along(a: &abi::Setpoint, motion: &Motion, b: &abi::Setpoint) -> bool {
+    if b.timestamp == 0 {
+        return is_same(a, b);
+    }
+    let vectors = |a: &Vector3<f32>, b: &abi::Vector| {
+        ((a.x.to_bits() ^ b.x.to_bits()) | (a.y.to_bits() ^ b.y.to_bits()) | (a.z.to_bits() ^ b.z.to_bits())) == 0
+    };
+    a.timestamp == b.timestamp
+        && words(a) == words(b)
+        && vectors(&motion.position_m, &b.position)
+        && vectors(&motion.velocity_m_s, &b.velocity)
+}
+
+/// Keeps of a setpoint what [`is_same`] and [`is_urgent`] look at.
+#[inline]
+pub fn keep(kept: &mut abi::Setpoint, setpoint: &abi::Setpoint) {
+    *kept = *setpoint;
+}
+
+/// Keeps of one more setpoint along a trajectory what is not in its motion.
+#[inline(always)]
+pub fn keep_on(kept: &mut abi::Setpoint, setpoint: &abi::Setpoint) {
+    kept.timestamp = setpoint.timestamp;
+    kept.attitude.yaw = setpoint.attitude.yaw;
 }
 
 #[inline(never)]

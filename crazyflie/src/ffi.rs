@@ -29,9 +29,10 @@ static SERVICE: TryCell<Service> = TryCell::new(Service::new());
 /// From the one to the other.
 static HANDOVER: TryCell<Handover> = TryCell::new(Handover::new());
 
-/// The log is written a hundred times a second, when no setpoint of the high-level commander is due.
-const SHOW_STEPS: u32 = 10;
-const SHOW_AT: u32 = 5;
+/// The log is written a hundred times a second, in two calls when no setpoint of the high-level commander is due.
+const LOG_STEPS: u32 = 10;
+const LOG_ERRORS_AT: u32 = 3;
+const LOG_COUNTERS_AT: u32 = 7;
 
 /// The firmware selects this controller: what it remembers of an earlier flight no longer holds.
 #[unsafe(no_mangle)]
@@ -61,10 +62,14 @@ pub extern "C" fn controllerOutOfTree(
             quatrack.log.cycles.store(cycles::since(begun), Relaxed);
             return;
         }
-        if !controller.between(setpoint, state, step) && step % SHOW_STEPS == SHOW_AT {
-            service::show(&quatrack, controller, state);
+        if !controller.between(setpoint, state, step) {
+            match step % LOG_STEPS {
+                LOG_ERRORS_AT => service::log_errors(&quatrack, controller, state),
+                LOG_COUNTERS_AT => service::log_counters(&quatrack, controller),
+                _ => {}
+            }
+            HANDOVER.with(|handover| handover.take_over(controller));
         }
-        HANDOVER.with(|handover| handover.take_over(controller));
         controller.prepare(state, step.wrapping_add(1));
     });
 }

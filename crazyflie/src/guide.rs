@@ -54,6 +54,21 @@ pub struct Along<'a> {
     pub mass_kg: f32,
 }
 
+impl Along<'_> {
+    /// What to follow at this step of a flight for which [`Flight::is_along`]: the motion into `sample`, whose angle of
+    /// heading is not used, and the heading.
+    #[inline(always)]
+    pub fn put(&self, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) -> Heading {
+        let age_s = self.stream.at(self.now_ms, self.to_fifth, sample);
+        let heading = match &self.flight.turn {
+            Turn::Heading { heading, rate_rad_s } => turned(heading, *rate_rad_s, age_s, sample),
+            Turn::Rate(_) => Heading::ZERO,
+        };
+        leash(sample, state, bounds.leash_m);
+        heading
+    }
+}
+
 impl Guide {
     /// At the origin; to be put somewhere by [`Self::begin`].
     pub const fn new(period_s: f32) -> Self {
@@ -68,64 +83,52 @@ impl Guide {
         self.heading_rad = heading_rad;
     }
 
-    /// What to follow at this step of a flight that goes along a stream, into `sample`; not for a horizontal that asks for
-    /// body rates, which no flat sample has.
+    /// What to follow at this step of a flight that goes along a stream: the motion into `sample`, whose angle of heading
+    /// is not used, and the heading. Not for a horizontal that asks for body rates, which no flat sample has.
     #[inline]
-    pub fn put(&mut self, along: &Along<'_>, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) {
+    pub fn put(&mut self, along: &Along<'_>, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) -> Heading {
         let Along { flight, stream, now_ms, to_fifth, .. } = along;
-        stream.at(*now_ms, *to_fifth, sample);
-        match flight.turn {
-            Turn::Heading { heading_rad, body_rate_rad_s } => {
-                (sample.flat.heading_rad, sample.flat.heading_rate_rad_s) = (heading_rad, 0.0);
-                if body_rate_rad_s != 0.0 {
-                    self.turn_along(sample, body_rate_rad_s, stream.age_s(*now_ms));
-                }
-            }
-            Turn::Rate(rate_rad_s) => self.turn(sample, rate_rad_s),
-        }
+        let age_s = stream.at(*now_ms, *to_fifth, sample);
+        let heading = match &flight.turn {
+            Turn::Heading { heading, rate_rad_s } => turned(heading, *rate_rad_s, age_s, sample),
+            Turn::Rate(rate_rad_s) => self.turn(sample, *rate_rad_s),
+        };
         if !matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position)) {
-            self.fill(sample, along, state, bounds);
+            self.fill(sample, &heading, along, state, bounds);
         }
         leash(sample, state, bounds.leash_m);
-    }
-
-    /// A heading that moves on between setpoints. The firmware's trajectories send the body rate, the heading's rate times
-    /// the vertical part of the thrust's direction.
-    #[inline(never)]
-    fn turn_along(&mut self, sample: &mut FifthOrderSample, body_rate_rad_s: f32, age_s: f32) {
-        let a = &sample.flat.acceleration_m_s2;
-        let h = a.z + GRAVITY_M_S2;
-        let axis_z = h / sqrt(a.x * a.x + a.y * a.y + h * h);
-        // Beyond 60 degrees of tilt the two have little to do with each other.
-        let rate = if axis_z > 0.5 { body_rate_rad_s / axis_z } else { body_rate_rad_s };
-        sample.flat.heading_rad += rate * age_s;
-        sample.flat.heading_rate_rad_s = rate;
-        self.heading_rad = sample.flat.heading_rad;
+        heading
     }
 
     /// A heading that turns from where it is.
     #[inline(never)]
-    fn turn(&mut self, sample: &mut FifthOrderSample, rate_rad_s: f32) {
+    fn turn(&mut self, sample: &mut FifthOrderSample, rate_rad_s: f32) -> Heading {
         const TURN: f32 = core::f32::consts::TAU;
         self.heading_rad += rate_rad_s * self.period_s;
         // Two turns give the same quaternion, one its negative, which is the same attitude.
         if self.heading_rad.abs() > 2.0 * TURN {
             self.heading_rad -= if self.heading_rad > 0.0 { 2.0 * TURN } else { -2.0 * TURN };
         }
-        sample.flat.heading_rad = self.heading_rad;
         sample.flat.heading_rate_rad_s = rate_rad_s;
+        Heading::from_angle(self.heading_rad)
     }
 
     /// Everything but a position along all axes.
     #[inline(never)]
-    fn fill(&mut self, sample: &mut FifthOrderSample, along: &Along<'_>, state: &State, bounds: &Bounds) {
+    fn fill(
+        &mut self,
+        sample: &mut FifthOrderSample,
+        heading: &Heading,
+        along: &Along<'_>,
+        state: &State,
+        bounds: &Bounds,
+    ) {
         let (flight, mass_kg) = (along.flight, along.mass_kg);
         // As it was sent: a velocity holds until another one comes.
         let asked = along.stream.newest().velocity_m_s;
         let zero = Vector3::new(0.0, 0.0, 0.0);
         // Derivatives of a motion along some axes only, or of none.
         (sample.flat.jerk_m_s3, sample.snap_m_s4, sample.crackle_m_s5) = (zero, zero, zero);
-        let heading = Heading::from_angle(sample.flat.heading_rad);
         let a = &mut sample.flat.acceleration_m_s2;
         match flight.horizontal {
             Horizontal::Position => {}
@@ -196,6 +199,13 @@ impl Guide {
         self.velocity_m_s.y += ay * self.period_s;
         (ax, ay)
     }
+}
+
+/// A heading some time after it was asked for, its rate into `sample`.
+#[inline(always)]
+fn turned(heading: &Heading, rate_rad_s: f32, age_s: f32, sample: &mut FifthOrderSample) -> Heading {
+    sample.flat.heading_rate_rad_s = rate_rad_s;
+    if rate_rad_s == 0.0 { *heading } else { heading.turned_slightly(rate_rad_s * age_s) }
 }
 
 /// Draws a position that is too far away towards the craft: the laws are linear, and would turn it over for a goal

@@ -197,9 +197,9 @@ fn settings(shared: &Shared, craft: &Craft, table: &Limits) -> Settings {
     }
 }
 
-/// What the last control step did, into the log; in the stabilizer's task, between control steps.
+/// How far the last control step was off, into the log; in the stabilizer's task, between control steps.
 #[inline(never)]
-pub fn show(shared: &Shared, controller: &Controller, state: &abi::State) {
+pub fn log_errors(shared: &Shared, controller: &Controller, state: &abi::State) {
     let log = &shared.log;
     // A conversion from a float cuts to the range, and takes NaN for 0.
     let thousandths = |v: &Vector3<f32>| [(v.x * 1e3) as i16, (v.y * 1e3) as i16, (v.z * 1e3) as i16];
@@ -207,6 +207,12 @@ pub fn show(shared: &Shared, controller: &Controller, state: &abi::State) {
     log.error_mm.iter().zip(thousandths(&outcome.error_m)).for_each(|(to, value)| to.store(value, Relaxed));
     let rotation = thousandths(&controller.rotation_error_rad(edge::state(state).attitude));
     log.rotation_mrad.iter().zip(rotation).for_each(|(to, value)| to.store(value, Relaxed));
+}
+
+/// What it put out and gave up, and what has been counted, into the log; likewise.
+#[inline(never)]
+pub fn log_counters(shared: &Shared, controller: &Controller) {
+    let (log, outcome) = (&shared.log, controller.outcome());
     let scale = 1e3 / controller.craft().airframe.figures().force_max_n;
     let forces = match &outcome.output {
         Output::Forces(forces) => *forces,

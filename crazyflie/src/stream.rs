@@ -17,7 +17,8 @@ pub const GAP_MAX_MS: u32 = 25;
 /// Longest time that a setpoint is extrapolated, ms; then the motion stands still where it has come to.
 pub const EXTRAPOLATION_MAX_MS: u32 = 100;
 
-/// Differences from what the last setpoint led to expect, beyond which a setpoint is a jump: m, m/s, m/s^2.
+/// Differences from what the last setpoint led to expect, beyond which a setpoint is a jump: m, m/s, m/s^2, summed over
+/// the axes.
 const JUMP: [f32; 3] = [0.02, 0.2, 2.0];
 
 /// Largest snap (m/s^4) and crackle (m/s^5) that are taken for a motion, ten and fifty times those of the fastest flights;
@@ -52,7 +53,8 @@ pub enum Arrival {
 
 impl Stream {
     /// Nothing yet.
-    pub(crate) const fn new() -> Self {
+    #[allow(clippy::new_without_default, reason = "a default is not const")]
+    pub const fn new() -> Self {
         Self {
             newest: Motion::ZERO,
             snap_m_s4: Vector3::new(0.0, 0.0, 0.0),
@@ -63,19 +65,67 @@ impl Stream {
         }
     }
 
-    /// Takes a setpoint that has changed, at a time of a clock that may wrap.
+    /// Takes a setpoint's motion, at a time of a clock that may wrap, and differences jerks. The one that is flown already
+    /// changes nothing.
     pub fn accept(&mut self, motion: &Motion, now_ms: u32) -> Arrival {
-        let gap_ms = self.since_ms.map(|since_ms| now_ms.wrapping_sub(since_ms));
-        let arrival = match gap_ms {
-            Some(gap_ms) if (1..=GAP_MAX_MS).contains(&gap_ms) => self.difference(motion, gap_ms),
-            _ => Arrival::Begun,
+        if self.is_newest(motion) {
+            return Arrival::Continued;
+        }
+        let arrival = match self.gap_ms(now_ms) {
+            Some(gap_ms) => self.difference(motion, gap_ms),
+            None => Arrival::Begun,
         };
         if arrival != Arrival::Continued {
-            *self = Self::new();
+            self.forget();
         }
-        self.newest = *motion;
-        self.since_ms = Some(now_ms);
+        (self.newest, self.since_ms) = (*motion, Some(now_ms));
         arrival
+    }
+
+    /// The same for laws that do not look beyond the jerk.
+    #[inline(always)]
+    pub fn accept_to_jerk(&mut self, motion: &Motion, now_ms: u32) -> Arrival {
+        if self.is_newest(motion) {
+            return Arrival::Continued;
+        }
+        let arrival = match self.gap_ms(now_ms) {
+            Some(gap_ms) if self.leads_to(motion, gap_ms as f32 * 1e-3) => Arrival::Continued,
+            Some(_) => Arrival::Jumped,
+            None => Arrival::Begun,
+        };
+        if self.differences[0].is_some() {
+            self.forget();
+        }
+        (self.newest, self.since_ms) = (*motion, Some(now_ms));
+        arrival
+    }
+
+    /// Whether the newest setpoint leads to a motion so many seconds later, in position and velocity. Within the gap that
+    /// setpoints may leave, what is left out here is far below the bounds.
+    #[inline(always)]
+    fn leads_to(&self, motion: &Motion, t: f32) -> bool {
+        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, .. } = &self.newest;
+        let ahead = |a: &Vector3<f32>, b: &Vector3<f32>| Vector3::new(a.x + t * b.x, a.y + t * b.y, a.z + t * b.z);
+        distance(&motion.position_m, &ahead(p, v)) <= JUMP[0] && distance(&motion.velocity_m_s, &ahead(v, a)) <= JUMP[1]
+    }
+
+    #[inline(always)]
+    fn is_newest(&self, motion: &Motion) -> bool {
+        *motion == self.newest && self.since_ms.is_some()
+    }
+
+    /// Time since the newest setpoint, if it is not too long ago for another one to continue it, ms.
+    #[inline(always)]
+    fn gap_ms(&self, now_ms: u32) -> Option<u32> {
+        let gap_ms = now_ms.wrapping_sub(self.since_ms?);
+        (1..=GAP_MAX_MS).contains(&gap_ms).then_some(gap_ms)
+    }
+
+    /// Forgets snap and crackle.
+    #[cold]
+    #[inline(never)]
+    fn forget(&mut self) {
+        *self = Self { newest: self.newest, since_ms: self.since_ms, ..Self::new() };
     }
 
     /// The newest setpoint's motion as it was sent.
@@ -83,34 +133,33 @@ impl Stream {
         &self.newest
     }
 
-    /// Time since the newest setpoint, as far as it is extrapolated; s.
-    pub fn age_s(&self, now_ms: u32) -> f32 {
-        let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
-        age_ms.min(EXTRAPOLATION_MAX_MS) as f32 * 1e-3
-    }
-
-    /// The motion at a time, heading aside, into `sample`; with snap and crackle only where they are asked for.
-    #[inline]
-    pub fn at(&self, now_ms: u32, to_fifth: bool, sample: &mut FifthOrderSample) {
+    /// The motion at a time, heading aside, into `sample`; with snap and crackle only where they are asked for. Gives the
+    /// time since the newest setpoint, as far as it is extrapolated, s.
+    #[inline(always)]
+    pub fn at(&self, now_ms: u32, to_fifth: bool, sample: &mut FifthOrderSample) -> f32 {
         let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
         if age_ms > EXTRAPOLATION_MAX_MS {
             return self.end(sample);
         }
         let t = age_ms as f32 * 1e-3;
-        if to_fifth { self.put_to_fifth(t, sample) } else { self.put_to_jerk(t, sample) }
+        if to_fifth {
+            self.put_to_fifth(t, sample);
+            return t;
+        }
+        let flat = &mut sample.flat;
+        [flat.position_m, flat.velocity_m_s, flat.acceleration_m_s2] = self.extrapolated(t);
+        flat.jerk_m_s3 = self.newest.jerk_m_s3;
+        t
     }
 
-    #[inline]
-    fn put_to_jerk(&self, t: f32, sample: &mut FifthOrderSample) {
+    /// Position, velocity and acceleration so many seconds after the newest setpoint, by its own derivatives.
+    #[inline(always)]
+    fn extrapolated(&self, t: f32) -> [Vector3<f32>; 3] {
         let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
         let (t2, t3) = (t * (1.0 / 2.0), t * (1.0 / 3.0));
         let along = |p: f32, v: f32, a: f32, j: f32| (p + t * (v + t2 * (a + t3 * j)), v + t * (a + t2 * j), a + t * j);
         let (x, y, z) = (along(p.x, v.x, a.x, j.x), along(p.y, v.y, a.y, j.y), along(p.z, v.z, a.z, j.z));
-        let flat = &mut sample.flat;
-        flat.position_m = Vector3::new(x.0, y.0, z.0);
-        flat.velocity_m_s = Vector3::new(x.1, y.1, z.1);
-        flat.acceleration_m_s2 = Vector3::new(x.2, y.2, z.2);
-        flat.jerk_m_s3 = *j;
+        [Vector3::new(x.0, y.0, z.0), Vector3::new(x.1, y.1, z.1), Vector3::new(x.2, y.2, z.2)]
     }
 
     #[inline]
@@ -142,9 +191,11 @@ impl Stream {
     /// Where a motion without successors has come to.
     #[cold]
     #[inline(never)]
-    fn end(&self, sample: &mut FifthOrderSample) {
-        self.put_to_fifth(EXTRAPOLATION_MAX_MS as f32 * 1e-3, sample);
+    fn end(&self, sample: &mut FifthOrderSample) -> f32 {
+        let t = EXTRAPOLATION_MAX_MS as f32 * 1e-3;
+        self.put_to_fifth(t, sample);
         *sample = FifthOrderSample::at_rest(sample.flat.position_m, 0.0);
+        t
     }
 
     /// Snap and crackle at a setpoint that continues the ones before, so many milliseconds after the last of them.
@@ -153,12 +204,9 @@ impl Stream {
         let mut expected = FifthOrderSample::at_rest(motion.position_m, 0.0);
         self.put_to_fifth(gap_s, &mut expected);
         let expected = &expected.flat;
-        let is_near = |a: &Vector3<f32>, b: &Vector3<f32>, bound: f32| {
-            (a.x - b.x).abs() <= bound && (a.y - b.y).abs() <= bound && (a.z - b.z).abs() <= bound
-        };
-        let continues = is_near(&motion.position_m, &expected.position_m, JUMP[0])
-            && is_near(&motion.velocity_m_s, &expected.velocity_m_s, JUMP[1])
-            && is_near(&motion.acceleration_m_s2, &expected.acceleration_m_s2, JUMP[2]);
+        let continues = distance(&motion.position_m, &expected.position_m) <= JUMP[0]
+            && distance(&motion.velocity_m_s, &expected.velocity_m_s) <= JUMP[1]
+            && distance(&motion.acceleration_m_s2, &expected.acceleration_m_s2) <= JUMP[2];
         if !continues {
             return Arrival::Jumped;
         }
@@ -192,4 +240,10 @@ impl Stream {
         (self.differences, self.gap_s) = ([Some(snap), crackle], gap_s);
         Arrival::Continued
     }
+}
+
+/// Summed over the axes.
+#[inline(always)]
+fn distance(a: &Vector3<f32>, b: &Vector3<f32>) -> f32 {
+    (a.x - b.x).abs() + (a.y - b.y).abs() + (a.z - b.z).abs()
 }

@@ -1,8 +1,8 @@
-//! A table over the app channel: packets of at most 31 bytes in, answers and, at the end, an accepted table out.
+//! A table over the app channel: packets of at most 30 bytes in, answers and, at the end, an accepted table out.
 //!
 //! ```text
 //! 1  length: u16  checksum: u32      announces a table, by its own checksum: its last four bytes
-//! 2  offset: u16  bytes: 1 to 28     its next bytes
+//! 2  offset: u16  bytes: 1 to 27     its next bytes
 //! 3                                  all sent: check it and make it the uploaded table
 //! ```
 //!
@@ -18,7 +18,7 @@ use quatrack::link::{BlobKind, BlobReceiver, Chunk, UploadBegin, UploadError};
 use crate::craft::RATE;
 
 /// `APPCHANNEL_MTU`.
-pub const PACKET_BYTES: usize = 31;
+pub const PACKET_BYTES: usize = 30;
 
 /// CRC-32C of anything that ends with its own CRC-32C, as every table does: it tells a whole table, not one from another.
 const RESIDUE: u32 = 0x4867_4bc7;

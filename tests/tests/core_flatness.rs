@@ -3,8 +3,12 @@
 use proptest::prelude::*;
 use quatrack::error::ReferenceError;
 use quatrack::flatness::{phi, phi_at_heading, phi_inverse};
+use quatrack::gains::paper;
 use quatrack::nalgebra::Vector3;
-use quatrack::{FlatSample, Heading, Reference};
+use quatrack::{
+    Airframe, Equilibrium, FifthOrderSample, FlatOutput, FlatSample, Heading, Limits, MotorReference, Reference, State,
+    Tracker,
+};
 use quatrack_sim::model::flat::reference_point;
 
 /// Accelerations with a tilt of at most about 80 degrees and a thrust from a third of hover on.
@@ -82,6 +86,61 @@ proptest! {
         let scale = 1.0 + f64::from(j.norm()) / thrust + f64::from(rate.abs());
         for (found, exact) in core.input().body_rates_rad_s.iter().zip(model.input.fixed_rows::<3>(1).iter()) {
             prop_assert!((f64::from(*found) - exact).abs() <= 5e-6 * scale);
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn a_known_heading_gives_the_same_reference(a in acceleration(), j in jerk(), psi in -9.0_f32..9.0, rate in -3.0_f32..3.0) {
+        let flat = FlatSample {
+            acceleration_m_s2: a,
+            jerk_m_s3: j,
+            heading_rate_rad_s: rate,
+            ..FlatSample::at_rest(Vector3::new(0.1, -0.2, 0.3), psi)
+        };
+        let unknown = FlatSample { heading_rad: 0.0, ..flat };
+        let heading = Heading::from_angle(psi);
+        let wanted = Reference::from_flat(&flat).unwrap();
+        prop_assert_eq!(Reference::from_flat_at(&unknown, heading).unwrap(), wanted);
+        let mut moved = Reference::hover(Vector3::zeros(), 1.0).unwrap();
+        moved.move_to_finite_flat(&unknown, heading).unwrap();
+        prop_assert_eq!(moved, wanted);
+        let fifth = |flat| FifthOrderSample { snap_m_s4: j * 3.0, crackle_m_s5: a * 9.0, ..FifthOrderSample::of_jerk(flat) };
+        let craft = Airframe::CRAZYFLIE_2_1;
+        let wanted = MotorReference::from_flat(&fifth(flat), &craft).unwrap();
+        prop_assert_eq!(MotorReference::from_flat_at(&fifth(unknown), heading, &craft).unwrap(), wanted);
+    }
+}
+
+#[test]
+fn a_reference_that_cannot_move_stays_and_one_that_is_not_finite_gives_no_command() {
+    let hover = Reference::hover(Vector3::zeros(), 0.3).unwrap();
+    let rest = FlatSample::at_rest(Vector3::zeros(), 0.0);
+    let falling = FlatSample { acceleration_m_s2: Vector3::new(0.0, 0.0, -9.81), ..rest };
+    let jerked = FlatSample { jerk_m_s3: Vector3::new(f32::INFINITY, 0.0, 0.0), ..rest };
+    for bad in [falling, jerked] {
+        let mut moved = hover;
+        assert_eq!(moved.move_to_finite_flat(&bad, Heading::ZERO), Reference::from_flat(&bad).map(|_| ()));
+        assert_eq!(moved, hover);
+    }
+    let state =
+        State { position_m: Vector3::zeros(), attitude: hover.state().attitude, velocity_m_s: Vector3::zeros() };
+    let laws = [
+        Tracker::new(Equilibrium::new(&paper::LQR_E), Limits::NONE),
+        Tracker::new(FlatOutput::new(&paper::LQR_F), Limits::NONE),
+    ];
+    for axis in 0..3 {
+        for value in [f32::NAN, f32::INFINITY] {
+            let mut far = rest;
+            far.position_m[axis] = value;
+            let mut fast = rest;
+            fast.velocity_m_s[axis] = value;
+            for (sample, law) in [far, fast].iter().flat_map(|sample| laws.iter().map(move |law| (sample, law))) {
+                let mut moved = hover;
+                moved.move_to_finite_flat(sample, Heading::ZERO).unwrap();
+                assert!(law.step(&state, &moved).is_err(), "{sample:?}");
+            }
         }
     }
 }

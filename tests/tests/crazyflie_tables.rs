@@ -10,7 +10,7 @@ use quatrack_crazyflie::abi::{Attitude, Mode, Modes, Setpoint};
 use quatrack_crazyflie::craft::{Craft as Flown, KNOWN, RATE};
 use quatrack_crazyflie::ffi;
 use quatrack_crazyflie::tables::{Gains, Refusal, Table, limits_within};
-use quatrack_crazyflie::upload::{Packet, Status};
+use quatrack_crazyflie::upload::{PACKET_BYTES, Packet, Status};
 use quatrack_sim::crazyflie::{Course, Design, Firmware, Sensors, Setpoints, Stated, Tune, motor_gains};
 use quatrack_sim::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use quatrack_sim::design::discretise::zero_order_hold;
@@ -137,7 +137,7 @@ fn table_within(vehicle: TableVehicle, limits: Limits) -> Vec<u8> {
 }
 
 fn exchange(bytes: &[u8]) -> (u8, u16) {
-    let mut packet = Packet { length: bytes.len() as u8, bytes: [0; 31] };
+    let mut packet = Packet { length: bytes.len() as u8, bytes: [0; PACKET_BYTES] };
     packet.bytes[..bytes.len()].copy_from_slice(bytes);
     let mut answer = packet;
     ffi::quatrackPacket(&packet, &mut answer);
@@ -150,8 +150,8 @@ fn send(table: &[u8]) -> u8 {
     let length = (table.len() as u16).to_le_bytes();
     let begin = [&[1][..], &length, &table[table.len() - 4..]].concat();
     assert_eq!(exchange(&begin), (Status::Taken as u8, 0));
-    for (index, bytes) in table.chunks(28).enumerate() {
-        let offset = (28 * index) as u16;
+    for (index, bytes) in table.chunks(27).enumerate() {
+        let offset = (27 * index) as u16;
         let chunk = [&[2][..], &offset.to_le_bytes(), bytes].concat();
         assert_eq!(exchange(&chunk), (Status::Taken as u8, offset + bytes.len() as u16));
     }

@@ -52,7 +52,13 @@ impl Turn {
     /// From the heading and its derivatives.
     #[inline(always)]
     pub(crate) fn new([heading_rad, h1, h2, h3]: [f32; 4]) -> Self {
-        Self { heading: Heading::from_angle_inlined(heading_rad), rates: [h1, h2, h3] }
+        Self::at(Heading::from_angle_inlined(heading_rad), [h1, h2, h3])
+    }
+
+    /// From a heading whose sine and cosine are known.
+    #[inline(always)]
+    pub(crate) fn at(heading: Heading, rates: [f32; 3]) -> Self {
+        Self { heading, rates }
     }
 
     /// Rate of the heading.

@@ -15,6 +15,7 @@ use crate::command::Command;
 use crate::error::{Field, ReferenceError, first_non_finite};
 use crate::mixer::Parts;
 use crate::motor_lag::MotorForces;
+use crate::quaternion::Heading;
 use crate::reference::{FlatSample, Reference};
 use crate::state::State;
 
@@ -97,9 +98,32 @@ impl MotorReference {
         }
     }
 
+    /// The same for a caller that knows sine and cosine of the heading; the sample's own angle is not looked at.
+    ///
+    /// # Errors
+    /// Those of [`Self::from_flat`].
+    #[inline]
+    pub fn from_flat_at(
+        sample: &FifthOrderSample,
+        heading: Heading,
+        airframe: &Airframe,
+    ) -> Result<Self, ReferenceError> {
+        let FlatSample { position_m: r, velocity_m_s: v, .. } = &sample.flat;
+        if ((r.x + r.y + r.z) + (v.x + v.y + v.z)).is_finite() {
+            return Self::of_sample(sample, heading, airframe);
+        }
+        // Not finite, or near the end of f32.
+        Err(sample.fault().unwrap_or(ReferenceError::NonFinite { field: Field::Position, value: f32::INFINITY }))
+    }
+
     /// The same for a sample whose position and velocity are known to be finite.
     #[inline(never)]
     pub(crate) fn of_finite(sample: &FifthOrderSample, airframe: &Airframe) -> Result<Self, ReferenceError> {
+        Self::of_sample(sample, Heading::from_angle_inlined(sample.flat.heading_rad), airframe)
+    }
+
+    #[inline(always)]
+    fn of_sample(sample: &FifthOrderSample, heading: Heading, airframe: &Airframe) -> Result<Self, ReferenceError> {
         let flat = &sample.flat;
         let motion = Motion {
             acceleration: flat.acceleration_m_s2,
@@ -108,7 +132,7 @@ impl MotorReference {
             crackle: sample.crackle_m_s5,
         };
         let (second, third) = (sample.heading_acceleration_rad_s2, sample.heading_jerk_rad_s3);
-        let turn = Turn::new([flat.heading_rad, flat.heading_rate_rad_s, second, third]);
+        let turn = Turn::at(heading, [flat.heading_rate_rad_s, second, third]);
         Self::of_motion(&flat.position_m, &flat.velocity_m_s, &motion, Some(&turn), airframe)
     }
 

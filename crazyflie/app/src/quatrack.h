@@ -16,7 +16,7 @@ typedef struct {
 /* A packet of the app channel. */
 typedef struct {
   uint8_t length;
-  uint8_t bytes[31];
+  uint8_t bytes[30];
 } quatrackPacket_t;
 
 /* Set by the owner; a value out of range counts as the nearest one in it. */

@@ -22,7 +22,7 @@
 _Static_assert(sizeof(quatrackParameters_t) == 36, "as in shared.rs");
 _Static_assert(sizeof(quatrackLog_t) == 38, "as in shared.rs");
 _Static_assert(sizeof(quatrack_t) == 160, "as in shared.rs");
-_Static_assert(APPCHANNEL_MTU <= sizeof(((quatrackPacket_t *)0)->bytes), "a packet fits");
+_Static_assert(APPCHANNEL_MTU == sizeof(((quatrackPacket_t *)0)->bytes), "as in upload.rs");
 
 void appMain(void)
 {

@@ -37,6 +37,14 @@ const FIRST_STEP: u32 = 200;
 const TABLES: [(&str, u8, f64); 5] =
     [("actuator-aware", 0, 0.126), ("lyap-e", 1, 0.02), ("lqr-e", 2, 0.02), ("lyap-f", 3, 0.005), ("lqr-f", 4, 0.005)];
 
+/// How the setpoints come.
+const SETPOINTS: [(Setpoints, &str); 4] = [
+    (Setpoints::HighLevel, "high-level"),
+    (Setpoints::HighLevelTurning, "high-level, turning"),
+    (Setpoints::FullState, "full-state"),
+    (Setpoints::FullStateTurning, "full-state, turning"),
+];
+
 /// Of one table under one kind of setpoint.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
@@ -70,7 +78,7 @@ pub fn count(checkout: &Path) -> Result<Counts, PilError> {
     let vehicle = Vehicle::by_name("crazyflie-2.1").map_err(|error| PilError::Plan(error.to_string()))?;
     let mut flights = Vec::new();
     for (table, number, lag_s) in TABLES {
-        for (setpoints, name) in [(Setpoints::HighLevel, "high-level"), (Setpoints::FullState, "full-state")] {
+        for (setpoints, name) in SETPOINTS {
             let tune = Tune { table: number, motor_lag_s: if number == 0 { 0.0 } else { lag_s } };
             let sensors = Sensors { gyro_noise_rad_s: 0.02, estimate_steps: 1 };
             let case = Case { sensors, setpoints, ..Case::of_lag(lag_s) };
@@ -176,14 +184,14 @@ impl fmt::Display for Counts {
             "Instructions a call of the Crazyflie controller's object on the emulated Cortex-M4F, {} calls\n",
             self.steps
         )?;
-        writeln!(f, "{:<28}{:^26}{:^26}", "", "control step (500 Hz)", "between (500 Hz)")?;
+        writeln!(f, "{:<37}{:^26}{:^26}", "", "control step (500 Hz)", "between (500 Hz)")?;
         writeln!(
             f,
-            "{:<16}{:<12}{:>8}{:>10}{:>8}{:>8}{:>10}{:>8}",
+            "{:<16}{:<21}{:>8}{:>10}{:>8}{:>8}{:>10}{:>8}",
             "table", "setpoints", "min", "mean", "max", "min", "mean", "max"
         )?;
         for Row { table, setpoints, control_step: c, other_step: o } in &self.rows {
-            write!(f, "{table:<16}{setpoints:<12}{:>8}{:>10.1}{:>8}", c.min, c.mean, c.max)?;
+            write!(f, "{table:<16}{setpoints:<21}{:>8}{:>10.1}{:>8}", c.min, c.mean, c.max)?;
             writeln!(f, "{:>8}{:>10.1}{:>8}", o.min, o.mean, o.max)?;
         }
         Ok(())

@@ -7,7 +7,7 @@
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use nalgebra::{UnitQuaternion, Vector3, Vector4};
+use nalgebra::{Vector3, Vector4};
 use quatrack_crazyflie::abi::{self, Mode};
 use quatrack_crazyflie::craft::Platform;
 use quatrack_crazyflie::ffi;
@@ -34,6 +34,23 @@ pub enum Setpoints {
     HighLevel,
     /// By a script on the ground, as full-state packets: whole millimetres, no jerk, the attitude of hover.
     FullState,
+    /// Like these two, while the craft turns about the vertical with [`TURN_RAD_S`].
+    HighLevelTurning,
+    /// Likewise.
+    FullStateTurning,
+}
+
+/// Rate of the heading of a course that is flown turning, rad/s.
+const TURN_RAD_S: f64 = 1.0;
+
+impl Setpoints {
+    /// Heading at a time, rad, and its rate, rad/s.
+    fn turn(self, t_s: f64) -> (f64, f64) {
+        match self {
+            Self::HighLevel | Self::FullState => (0.0, 0.0),
+            Self::HighLevelTurning | Self::FullStateTurning => (TURN_RAD_S * t_s, TURN_RAD_S),
+        }
+    }
 }
 
 /// What stands between the plant and the controller.
@@ -123,8 +140,10 @@ impl Firmware {
             return;
         }
         self.setpoint = course.at(t_s).map_or_else(abi::Setpoint::default, |motion| match setpoints {
-            Setpoints::HighLevel => high_level(&motion.map(|v| v.map(|c| c as f32))),
-            Setpoints::FullState => full_state(&motion),
+            Setpoints::HighLevel | Setpoints::HighLevelTurning => {
+                high_level(&motion.map(|v| v.map(|c| c as f32)), setpoints.turn(t_s))
+            }
+            Setpoints::FullState | Setpoints::FullStateTurning => full_state(&motion, setpoints.turn(t_s)),
         });
         self.setpoint.timestamp = self.step;
     }
@@ -218,8 +237,10 @@ fn estimate(state: &RigidState) -> abi::State {
     }
 }
 
-/// `crtpCommanderHighLevelGetSetpoint` at yaw 0.
-fn high_level(motion: &[Vector3<f32>; 4]) -> abi::Setpoint {
+/// `crtpCommanderHighLevelGetSetpoint`, the rate about the body's z axis as `poly4d_eval` has it to first order in the rate.
+fn high_level(motion: &[Vector3<f32>; 4], (heading_rad, rate_rad_s): (f64, f64)) -> abi::Setpoint {
+    let thrust = motion[2] + Vector3::z() * 9.81;
+    let body_rate_rad_s = rate_rad_s * f64::from(thrust.z / thrust.norm());
     let [position, velocity, acceleration, jerk] = motion.map(|v| abi::Vector { timestamp: 0, x: v.x, y: v.y, z: v.z });
     let modes = abi::Modes {
         x: Mode::ABSOLUTE,
@@ -228,13 +249,15 @@ fn high_level(motion: &[Vector3<f32>; 4]) -> abi::Setpoint {
         yaw: Mode::ABSOLUTE,
         ..Default::default()
     };
-    abi::Setpoint { position, velocity, acceleration, jerk, mode: modes, ..Default::default() }
+    let attitude = abi::Attitude { yaw: heading_rad.to_degrees() as f32, ..Default::default() };
+    let attitude_rate = abi::Attitude { yaw: body_rate_rad_s.to_degrees() as f32, ..Default::default() };
+    abi::Setpoint { attitude, attitude_rate, position, velocity, acceleration, jerk, mode: modes, ..Default::default() }
 }
 
-/// `fullStateDecoder`: whole millimetres.
-fn full_state(motion: &[Vector3<f64>; 4]) -> abi::Setpoint {
+/// `fullStateDecoder`: whole millimetres, and whole thousandths of a radian a second.
+fn full_state(motion: &[Vector3<f64>; 4], (heading_rad, rate_rad_s): (f64, f64)) -> abi::Setpoint {
     let [position, velocity, acceleration, _] = motion.map(|v| vector(&v.map(|c| (c * 1e3).trunc() / 1e3)));
-    let identity: UnitQuaternion<f32> = UnitQuaternion::identity();
+    let (sin, cos) = (0.5 * heading_rad).sin_cos();
     let modes = abi::Modes {
         x: Mode::ABSOLUTE,
         y: Mode::ABSOLUTE,
@@ -246,7 +269,8 @@ fn full_state(motion: &[Vector3<f64>; 4]) -> abi::Setpoint {
         position,
         velocity,
         acceleration,
-        attitude_quaternion: abi::Quaternion { w: identity.w, ..Default::default() },
+        attitude_quaternion: abi::Quaternion { w: cos as f32, z: sin as f32, ..Default::default() },
+        attitude_rate: abi::Attitude { yaw: rate_rad_s.to_degrees() as f32, ..Default::default() },
         mode: modes,
         ..Default::default()
     }

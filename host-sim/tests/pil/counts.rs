@@ -53,3 +53,18 @@ fn every_part_stays_within_its_bound_when_everything_is_turned_fed_forward_and_l
     // Of degree 7, with a heading in every quarter, where a piece begins.
     assert!(report.motor_reference_turning.max <= 700, "{:?}", report.motor_reference_turning);
 }
+
+#[test]
+fn every_call_of_the_crazyflies_stabilizer_stays_within_what_its_own_controllers_take() {
+    if !has_emulator() {
+        return;
+    }
+    // Every bit is compared on the way.
+    let counts = quatrack_sim::crazyflie::count(&image::checkout().unwrap()).unwrap();
+    assert_eq!(counts.rows.len(), 5 * 4);
+    for row in &counts.rows {
+        // Mellinger's controller takes 590 for an attitude that is sent to it, without a check; Lee's 2,794.
+        let bound = if row.table == "actuator-aware" { 1_200 } else { 600 };
+        assert!(row.control_step.max <= bound && row.other_step.max <= bound, "{row:?}");
+    }
+}

@@ -1,0 +1,417 @@
+//! The controller: setpoints, estimates and gyroscope readings at 1 kHz in; thrust and torque, or motor forces, out at
+//! 500 Hz.
+//!
+//! A change of the table is faded over [`FADE_STEPS`] control steps, both laws stepping side by side. The stabilizer's
+//! stack is small: what is large lies here and is written in place.
+
+mod law_step;
+mod outcome;
+
+use quatrack::law::ActuatorMemory;
+use quatrack::mixer::MotorLimited;
+use quatrack::nalgebra::Vector3;
+use quatrack::{Command, FifthOrderSample, Heading, MotorForces, Quaternion, Reference, RigidState, State, StepError};
+
+use self::law_step::{LawStep, is_finite};
+pub use self::outcome::{Counters, Mode, Outcome, Output, Settings};
+use crate::abi;
+use crate::craft::{Craft, DECIMATION, PERIOD_S};
+use crate::demand::{Demand, Flight, Horizontal, Motion, Turn, Vertical};
+use crate::edge;
+use crate::guide::{Along, Guide};
+use crate::stream::{Arrival, GAP_MAX_MS, Stream};
+use crate::tables::{Gains, Table};
+
+/// Control steps that a change of the table takes: a quarter of a second.
+pub const FADE_STEPS: u16 = 125;
+
+/// Control steps without a sound estimate after which the motors count as standing still.
+const BAD_STATES_MAX: u16 = 25;
+
+/// How fast a craft goes down whose setpoint makes no sense, m/s.
+const DESCENT_M_S: f32 = 0.3;
+
+/// The controller of a craft.
+///
+/// In this order: a load of a float reaches a kilobyte from where the controller lies, and what every step looks at is to be
+/// within.
+#[derive(Clone, Debug)]
+#[repr(C)]
+pub struct Controller {
+    /// The newest one taken, as far as [`edge::keep`] keeps it.
+    setpoint: abi::Setpoint,
+    stream: Stream,
+    sample: FifthOrderSample,
+    heading: Heading,
+    /// What the sample asks of the paper's laws, and at which step that is still to come.
+    prepared: Option<Reference>,
+    prepared_for: Option<u32>,
+    flight: Option<Flight>,
+    guide: Guide,
+    settings: Settings,
+    outcome: Outcome,
+    last_step: u32,
+    fade_left: u16,
+    bad_states_in_a_row: u16,
+    counters: Counters,
+    mode: Mode,
+    /// The flight goes along the stream.
+    is_along: bool,
+    /// The controller has just been selected.
+    is_selected: bool,
+    craft: Craft,
+    memory: ActuatorMemory,
+    table: Table,
+    /// The table on its way out and its memory, for as many steps as the fade still takes.
+    before: Table,
+    memory_before: ActuatorMemory,
+}
+
+impl Controller {
+    /// For a craft, with motors off.
+    pub const fn new(craft: Craft, table: Table, settings: Settings) -> Self {
+        const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
+        let (output, limited) = (Output::OFF, MotorLimited::NOTHING);
+        Self {
+            setpoint: abi::Setpoint::OFF,
+            stream: Stream::new(),
+            sample: FifthOrderSample::at_rest(ZERO, 0.0),
+            heading: Heading::ZERO,
+            prepared: None,
+            prepared_for: None,
+            flight: None,
+            guide: Guide::new(PERIOD_S),
+            settings,
+            outcome: Outcome { output, limited, target: Quaternion::IDENTITY, error_m: ZERO },
+            last_step: 0,
+            fade_left: 0,
+            bad_states_in_a_row: 0,
+            counters: Counters { bad_states: 0, bad_setpoints: 0, limited_steps: 0, jumps: 0 },
+            mode: Mode::NoCraft,
+            is_along: false,
+            is_selected: true,
+            craft,
+            memory: ActuatorMemory::at_rest(),
+            table,
+            before: table,
+            memory_before: ActuatorMemory::at_rest(),
+        }
+    }
+
+    /// One of the firmware's steps: whether [`Self::outcome`] is new; between control steps the last one holds.
+    #[inline]
+    pub fn step(&mut self, setpoint: &abi::Setpoint, sensors: &abi::SensorData, state: &abi::State, step: u32) -> bool {
+        if !step.is_multiple_of(DECIMATION) {
+            return false;
+        }
+        if self.mode == Mode::NoCraft {
+            self.outcome.output = Output::OFF;
+            return true;
+        }
+        let state = RigidState { state: edge::state(state), body_rates_rad_s: edge::body_rates_rad_s(sensors) };
+        let is_late = step.wrapping_sub(self.last_step) > GAP_MAX_MS || self.is_selected;
+        self.last_step = step;
+        if is_late {
+            self.restart();
+        }
+        if is_late || edge::is_urgent(&self.setpoint, setpoint) {
+            self.take(setpoint, &state.state, step);
+        }
+        self.outcome.limited = MotorLimited::NOTHING;
+        match self.flight {
+            None => self.outcome.output = Output::OFF,
+            Some(_) => match self.fly(&state, step) {
+                Ok(()) => self.bad_states_in_a_row = 0,
+                Err(_) => self.blind(),
+            },
+        }
+        if self.outcome.limited.any() {
+            self.counters.limited_steps = self.counters.limited_steps.wrapping_add(1);
+        }
+        true
+    }
+
+    /// Between control steps: takes a setpoint that continues a flight, so that no control step has to. Whether there was
+    /// one. Until then the one before is carried on, which leads to the same place unless it jumps.
+    #[inline]
+    pub fn between(&mut self, setpoint: &abi::Setpoint, state: &abi::State, step: u32) -> bool {
+        let is_new = if self.is_along {
+            !edge::is_same_along(&self.setpoint, self.stream.newest(), setpoint)
+        } else {
+            self.flight.is_some() && !edge::is_same(&self.setpoint, setpoint)
+        };
+        if is_new {
+            // It has come with the control step before.
+            let since_ms = step.wrapping_sub(1);
+            if !(self.is_along && self.go_on(setpoint, since_ms)) {
+                self.take(setpoint, &edge::state(state), since_ms);
+            }
+        }
+        is_new
+    }
+
+    /// Takes one more setpoint of a flight along a trajectory, of which only figures are new; whether it is one.
+    #[inline(always)]
+    fn go_on(&mut self, setpoint: &abi::Setpoint, since_ms: u32) -> bool {
+        let turn = self.flight.as_mut().map(|flight| &mut flight.turn);
+        let Some(Turn::Heading { heading, rate_rad_s }) = turn else { return false };
+        let Some(rate) = edge::turn_on(heading, &self.setpoint, setpoint) else { return false };
+        *rate_rad_s = rate;
+        edge::keep_on(&mut self.setpoint, setpoint);
+        if self.looks_beyond_jerk() {
+            self.accept(setpoint, since_ms);
+        } else {
+            let arrival = self.stream.accept_to_jerk(&edge::motion(setpoint), since_ms);
+            self.count(arrival);
+        }
+        true
+    }
+
+    /// Takes the motion of a setpoint, or the one that is flown instead.
+    #[inline(never)]
+    fn accept(&mut self, setpoint: &abi::Setpoint, since_ms: u32) {
+        let motion = match self.mode {
+            Mode::Descending => Motion { velocity_m_s: Vector3::new(0.0, 0.0, -DESCENT_M_S), ..Motion::ZERO },
+            _ => edge::motion(setpoint),
+        };
+        let arrival = if self.looks_beyond_jerk() {
+            self.stream.accept(&motion, since_ms)
+        } else {
+            self.stream.accept_to_jerk(&motion, since_ms)
+        };
+        self.count(arrival);
+    }
+
+    #[inline(always)]
+    fn count(&mut self, arrival: Arrival) {
+        if arrival == Arrival::Jumped {
+            self.counters.jumps = self.counters.jumps.wrapping_add(1);
+        }
+    }
+
+    /// Whether a law that is flown takes snap and crackle.
+    #[inline(always)]
+    fn looks_beyond_jerk(&self) -> bool {
+        matches!(self.table.gains, Gains::ActuatorAware(_)) || self.fade_left > 0
+    }
+
+    /// Between control steps: makes the reference of the next one for the paper's laws along a trajectory. It takes nothing
+    /// from the estimate but where the leash ends.
+    #[inline]
+    pub fn prepare(&mut self, state: &abi::State, next_step: u32) {
+        let Some(flight) = self.flight.as_ref().filter(|_| self.is_along && !self.looks_beyond_jerk()) else { return };
+        let mass_kg = self.craft.airframe.figures().mass_kg;
+        let along = Along { flight, stream: &self.stream, now_ms: next_step, to_fifth: false, mass_kg };
+        self.heading = along.put(&edge::state(state), &self.settings.bounds, &mut self.sample);
+        let flat = &self.sample.flat;
+        let is_there = match &mut self.prepared {
+            Some(reference) => reference.move_to_finite_flat(flat, self.heading).is_ok(),
+            None => {
+                self.prepared = Reference::from_flat_at(flat, self.heading).ok();
+                self.prepared.is_some()
+            }
+        };
+        self.prepared_for = is_there.then_some(next_step);
+    }
+
+    /// Another controller has flown in the meantime, or nobody: nothing that was remembered holds. The motors are
+    /// taken to carry the craft until a setpoint says that they are off.
+    #[cold]
+    #[inline(never)]
+    fn restart(&mut self) {
+        self.memory = ActuatorMemory::hovering(&self.craft.airframe);
+        (self.flight, self.is_along, self.fade_left) = (None, false, 0);
+        (self.bad_states_in_a_row, self.is_selected) = (0, false);
+        self.prepared_for = None;
+    }
+
+    /// Forgets what it remembers, at the next control step.
+    pub fn forget(&mut self) {
+        self.is_selected = true;
+    }
+
+    /// Takes a setpoint whose contents have changed.
+    #[inline(never)]
+    fn take(&mut self, setpoint: &abi::Setpoint, state: &State, now_ms: u32) {
+        edge::keep(&mut self.setpoint, setpoint);
+        self.prepared_for = None;
+        let thrust_max_n = 4.0 * self.craft.airframe.figures().force_max_n;
+        let flight = match edge::demand(setpoint, thrust_max_n) {
+            Some(Demand::Off) => {
+                (self.flight, self.is_along, self.fade_left, self.mode) = (None, false, 0, Mode::Off);
+                self.memory = ActuatorMemory::at_rest();
+                return;
+            }
+            Some(Demand::Fly(flight)) => {
+                self.mode = Mode::Flying;
+                flight
+            }
+            None => {
+                self.mode = Mode::Descending;
+                self.counters.bad_setpoints = self.counters.bad_setpoints.wrapping_add(1);
+                Flight::DESCENT
+            }
+        };
+        let is_another = !self.flight.is_some_and(|before| before.is_like(&flight));
+        if is_another {
+            self.begin(&flight, state);
+        }
+        self.accept(setpoint, now_ms);
+        (self.is_along, self.flight) = (flight.is_along(), Some(flight));
+    }
+
+    /// Starts a flight of another kind.
+    #[inline(never)]
+    fn begin(&mut self, flight: &Flight, state: &State) {
+        self.stream = Stream::new();
+        self.guide.begin(state, edge::heading_rad(&state.attitude));
+        if matches!(flight.horizontal, Horizontal::Tilt(_) | Horizontal::Rates(_)) {
+            self.memory.clear_integral();
+        }
+    }
+
+    #[inline]
+    fn fly(&mut self, state: &RigidState, now_ms: u32) -> Result<(), StepError> {
+        let Some(flight) = &self.flight else { return Ok(()) };
+        if let Horizontal::Rates([p, q]) = flight.horizontal {
+            return self.turn([p, q], state);
+        }
+        let reference = self.prepared.as_ref().filter(|_| self.prepared_for == Some(now_ms));
+        if reference.is_none() {
+            let to_fifth = self.looks_beyond_jerk();
+            let mass_kg = self.craft.airframe.figures().mass_kg;
+            let along = Along { flight, stream: &self.stream, now_ms, to_fifth, mass_kg };
+            self.heading = self.guide.put(&along, &state.state, &self.settings.bounds, &mut self.sample);
+        }
+        let (r, p) = (&state.state.position_m, &self.sample.flat.position_m);
+        self.outcome.error_m = Vector3::new(r.x - p.x, r.y - p.y, r.z - p.z);
+        let (craft, settings, sample, heading) = (&self.craft, &self.settings, &self.sample, self.heading);
+        let law_step = LawStep { craft, settings, sample, heading, state };
+        if let Some(reference) = reference {
+            return law_step.follow(&self.table, reference, &mut self.outcome);
+        }
+        law_step.step(&self.table, &mut self.memory, &mut self.outcome)?;
+        if self.fade_left > 0 { self.mix_in_the_one_before(state) } else { Ok(()) }
+    }
+
+    /// Both laws, their forces mixed in changing shares.
+    #[cold]
+    #[inline(never)]
+    fn mix_in_the_one_before(&mut self, state: &RigidState) -> Result<(), StepError> {
+        self.fade_left -= 1;
+        let (craft, settings, sample, heading) = (&self.craft, &self.settings, &self.sample, self.heading);
+        let law_step = LawStep { craft, settings, sample, heading, state };
+        let mut before = self.outcome;
+        // Where only the old law has no answer, the new one's counts at once.
+        if law_step.step(&self.before, &mut self.memory_before, &mut before).is_err() {
+            self.fade_left = 0;
+        }
+        if self.fade_left > 0 {
+            let share = f32::from(self.fade_left) / f32::from(FADE_STEPS);
+            let (from, to) = (before.output.forces_n(&self.craft), self.outcome.output.forces_n(&self.craft));
+            self.outcome.output = Output::Forces(between(to, from, share));
+        }
+        Ok(())
+    }
+
+    /// Manual flight by body rates: the same under every table.
+    #[inline(never)]
+    fn turn(&mut self, [p, q]: [f32; 2], state: &RigidState) -> Result<(), StepError> {
+        let mass_kg = self.craft.airframe.figures().mass_kg;
+        let (vertical, turn) = match &self.flight {
+            Some(flight) => (flight.vertical, flight.turn),
+            None => return Ok(()),
+        };
+        let thrust_m_s2 = match vertical {
+            Vertical::Thrust(thrust_n) => thrust_n / mass_kg,
+            // A height that is held while the craft turns over is nothing that anybody asks for.
+            _ => quatrack::flatness::GRAVITY_M_S2,
+        };
+        let r = match turn {
+            Turn::Rate(rate) => rate,
+            Turn::Heading { .. } => 0.0,
+        };
+        let command = Command { thrust_m_s2, body_rates_rad_s: Vector3::new(p, q, r) };
+        let wrench = self.settings.limits.saturate(&command).map(|(command, limited)| {
+            self.outcome.limited = MotorLimited::from_bits(u16::from(limited.bits()) << 8);
+            self.craft.body_rates.wrench(&command, &state.body_rates_rad_s)
+        });
+        match wrench.filter(is_finite) {
+            Some(wrench) => {
+                self.outcome.output = Output::Wrench(wrench);
+                Ok(())
+            }
+            None => Err(StepError::Singular),
+        }
+    }
+
+    /// Motors off for this step: there is nothing to level by.
+    #[cold]
+    #[inline(never)]
+    fn blind(&mut self) {
+        self.counters.bad_states = self.counters.bad_states.wrapping_add(1);
+        self.bad_states_in_a_row = self.bad_states_in_a_row.saturating_add(1);
+        if self.bad_states_in_a_row >= BAD_STATES_MAX {
+            self.memory = ActuatorMemory::at_rest();
+        }
+        self.outcome.output = Output::OFF;
+    }
+
+    /// Flies another table from the next control step on; in flight over [`FADE_STEPS`] of them.
+    #[inline(never)]
+    pub fn change_table(&mut self, table: &Table) {
+        if self.flight.is_some() {
+            self.before = self.table;
+            (self.memory_before, self.fade_left) = (self.memory, FADE_STEPS);
+        }
+        self.table = *table;
+        self.prepared_for = None;
+    }
+
+    /// Starts for a craft: motors off until a setpoint comes.
+    #[inline(never)]
+    pub fn change_craft(&mut self, craft: &Craft) {
+        self.craft = *craft;
+        (self.flight, self.is_along, self.fade_left) = (None, false, 0);
+        (self.mode, self.is_selected) = (Mode::Off, true);
+        self.counters = Counters::default();
+    }
+
+    /// Takes over what the owner has set.
+    #[inline(never)]
+    pub fn set(&mut self, settings: &Settings, craft: &Craft) {
+        self.settings = *settings;
+        self.craft.body_rates = craft.body_rates;
+    }
+
+    /// How the last setpoint is flown.
+    pub fn mode(&self) -> Mode {
+        if self.flight.is_some() && self.bad_states_in_a_row > 0 { Mode::Blind } else { self.mode }
+    }
+
+    /// The craft.
+    pub fn craft(&self) -> &Craft {
+        &self.craft
+    }
+
+    /// What has been seen so far.
+    pub fn counters(&self) -> &Counters {
+        &self.counters
+    }
+
+    /// What the last control step gave.
+    pub fn outcome(&self) -> &Outcome {
+        &self.outcome
+    }
+
+    /// Rotation vector from the last control step's reference to an attitude, body frame, rad.
+    pub fn rotation_error_rad(&self, attitude: Quaternion) -> Vector3<f32> {
+        let q = self.outcome.target.conjugate() * attitude;
+        q.vector() * if q.w < 0.0 { -2.0 } else { 2.0 }
+    }
+}
+
+/// `share` of the way from one to another.
+fn between([a1, a2, a3, a4]: MotorForces, [b1, b2, b3, b4]: MotorForces, share: f32) -> MotorForces {
+    [a1 + (b1 - a1) * share, a2 + (b2 - a2) * share, a3 + (b3 - a3) * share, a4 + (b4 - a4) * share]
+}

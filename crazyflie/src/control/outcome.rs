@@ -1,0 +1,84 @@
+//! What goes into the controller beside setpoint and estimate, and what comes out of it: settings in; the output, what
+//! was given up for it, and what has been seen on the way, out.
+
+use quatrack::mixer::{MotorLimited, Wrench};
+use quatrack::nalgebra::Vector3;
+use quatrack::{FeedForward, Limits, MotorForces, Quaternion};
+
+use crate::craft::Craft;
+use crate::guide::Bounds;
+
+/// What a step puts out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Output {
+    /// For the firmware's mixer.
+    Wrench(Wrench),
+    /// Straight to the motors, N.
+    Forces(MotorForces),
+}
+
+impl Output {
+    /// Motors off.
+    pub const OFF: Self = Self::Forces([0.0; 4]);
+
+    /// As forces.
+    pub(super) fn forces_n(&self, craft: &Craft) -> MotorForces {
+        match self {
+            Self::Forces(forces) => *forces,
+            Self::Wrench(wrench) => craft.airframe.mix(wrench).map_or([0.0; 4], |(forces, _)| forces),
+        }
+    }
+}
+
+/// How the last setpoint is flown, for the log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Mode {
+    /// Motors off, as asked.
+    Off = 0,
+    /// As asked.
+    Flying = 1,
+    /// Level and slowly down: the setpoint makes no sense.
+    Descending = 2,
+    /// Motors off: the estimate or the gyroscope is not to be flown on.
+    Blind = 3,
+    /// Motors off: the app has not said which craft this is, or there is no table for it.
+    NoCraft = 4,
+}
+
+/// What the owner may change, as the steps take it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Of setpoints.
+    pub bounds: Bounds,
+    /// What the paper's laws may command.
+    pub limits: Limits,
+    /// Of the paper's laws.
+    pub feed_forward: FeedForward,
+}
+
+/// What the steps have seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Steps on an estimate or gyroscope that is not to be flown on.
+    pub bad_states: u16,
+    /// Setpoints that make no sense.
+    pub bad_setpoints: u16,
+    /// Steps that gave something up.
+    pub limited_steps: u16,
+    /// Setpoints that were not where the ones before led.
+    pub jumps: u16,
+}
+
+/// What one step gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outcome {
+    /// What is put out.
+    pub output: Output,
+    /// What it gave up.
+    pub limited: MotorLimited,
+    /// The attitude that the reference has.
+    pub target: Quaternion,
+    /// Measured position less asked, world frame, m.
+    pub error_m: Vector3<f32>,
+}
