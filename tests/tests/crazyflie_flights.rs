@@ -44,9 +44,12 @@ fn a_stated_lag_is_flown_as_closely_on_every_craft() {
         // mass, wrong lag (half as much again, half), late commands, more inertia, noise. The Brushless has twice the
         // inertia, its longest published lag is 66 ms and its table for 126 ms designed for 100: there it may stray more.
         let bars = [0.0007, 0.134, 0.136, 0.032, 0.026, 0.0047, 0.011, 0.035, 0.006];
-        for (lag_s, bars) in
-            [(0.020, bars), (0.0635, bars), (0.126, [0.0007, 0.167, 0.17, 0.052, 0.056, 0.0052, 0.0125, 0.055, 0.006])]
-        {
+        for (lag_s, bars) in [
+            (0.004, bars),
+            (0.020, bars),
+            (0.0635, bars),
+            (0.126, [0.0007, 0.167, 0.17, 0.052, 0.056, 0.0052, 0.0125, 0.055, 0.006]),
+        ] {
             let right = case(lag_s);
             let wrong = [
                 right,

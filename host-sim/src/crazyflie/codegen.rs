@@ -23,8 +23,8 @@ const PERIOD_S: f64 = 0.002;
 /// Factors on the feedback that are tried, the largest first.
 const FACTORS: [f64; 5] = [2.0, 1.75, 1.5, 1.25, 1.1];
 
-/// Lags that may be stated, s, of each design.
-const STATED_S: [[f64; 2]; 3] = [[0.010, 0.040], [0.040, 0.080], [0.080, 0.126]];
+/// Lags that may be stated, s, of each design: from the shortest that a prediction at the control rate has.
+const STATED_S: [[f64; 2]; 3] = [[0.004, 0.040], [0.040, 0.080], [0.080, 0.126]];
 
 macro_rules! text {
     ($name:literal) => {
