@@ -3,7 +3,7 @@
 use quatrack::gains::table::{Name, Vehicle};
 use quatrack::{Airframe, BodyRateLoop, Rate};
 
-use crate::builtin::FIGURES;
+use crate::builtin::IDS;
 
 /// Control steps a second: every other one of the firmware's.
 pub const CONTROL_HZ: u32 = 500;
@@ -47,6 +47,8 @@ pub struct Craft {
     pub index: usize,
     /// Time constant of its motors as far as it is known, s.
     pub motor_lag_s: f32,
+    /// The same where its owner has stated it, s.
+    pub stated_lag_s: Option<f32>,
     /// One over the largest force of a motor, 1/N.
     pub per_force_max_1_n: f32,
 }
@@ -62,9 +64,9 @@ pub struct Known {
 
 /// The crafts that the controller knows.
 pub const KNOWN: [Known; 3] = [
-    known("crazyflie-2.1", FIGURES[0].0, Airframe::CRAZYFLIE_2_1),
-    known("crazyflie-2.1-upgrade", FIGURES[1].0, Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
-    known("crazyflie-2.1-brushless", FIGURES[2].0, Airframe::CRAZYFLIE_2_1_BRUSHLESS),
+    known("crazyflie-2.1", IDS[0], Airframe::CRAZYFLIE_2_1),
+    known("crazyflie-2.1-upgrade", IDS[1], Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
+    known("crazyflie-2.1-brushless", IDS[2], Airframe::CRAZYFLIE_2_1_BRUSHLESS),
 ];
 
 const fn known(name: &str, id: u32, airframe: Airframe) -> Known {
@@ -100,16 +102,18 @@ impl Craft {
         let figures = airframe.figures();
         let (motor_lag_s, per_force_max_1_n) = (figures.motor_lag_s, 1.0 / figures.force_max_n);
         let body_rates = BodyRateLoop::behind_lag(&airframe);
-        Self { airframe, body_rates, vehicle, index, motor_lag_s, per_force_max_1_n }
+        Self { airframe, body_rates, vehicle, index, motor_lag_s, stated_lag_s: None, per_force_max_1_n }
     }
 
     /// The same whose owner knows the time constant of the motors; 0 for the longest that is published.
     pub fn with_motor_lag(&self, motor_lag_s: f32) -> Self {
-        let published = self.airframe.figures().motor_lag_s;
-        let motor_lag_s = if motor_lag_s > 0.0 { motor_lag_s } else { published };
+        let stated_lag_s = Some(motor_lag_s).filter(|lag_s| *lag_s > 0.0);
+        let motor_lag_s = stated_lag_s.unwrap_or(self.airframe.figures().motor_lag_s);
         let figures = quatrack::AirframeFigures { motor_lag_s, ..*self.airframe.figures() };
         match Airframe::new(figures) {
-            Ok(airframe) => Self { body_rates: BodyRateLoop::behind_lag(&airframe), motor_lag_s, ..*self },
+            Ok(airframe) => {
+                Self { body_rates: BodyRateLoop::behind_lag(&airframe), motor_lag_s, stated_lag_s, ..*self }
+            }
             Err(_) => *self,
         }
     }

@@ -3,8 +3,8 @@
 
 use core::sync::atomic::Ordering::Relaxed;
 
-use quatrack::FeedForward;
 use quatrack::nalgebra::Vector3;
+use quatrack::{FeedForward, Limits};
 
 use crate::abi;
 use crate::control::{Controller, Output, Settings};
@@ -25,6 +25,8 @@ pub struct Service {
     uploaded: Option<Sent>,
     uploads_taken: u8,
     asked: Option<Asked>,
+    /// Of the table in the air.
+    limits: Limits,
 }
 
 /// What the owner last asked to be flown.
@@ -77,7 +79,15 @@ impl Handover {
 impl Service {
     /// Nothing known yet.
     pub(crate) const fn new() -> Self {
-        Self { craft: None, is_new: false, uploads: Uploads::new(), uploaded: None, uploads_taken: 0, asked: None }
+        Self {
+            craft: None,
+            is_new: false,
+            uploads: Uploads::new(),
+            uploaded: None,
+            uploads_taken: 0,
+            asked: None,
+            limits: Limits::NONE,
+        }
     }
 
     /// Starts anew for the craft that the firmware was built for; whether there are tables for it.
@@ -118,10 +128,11 @@ impl Service {
                 Err(refusal) => {
                     refuse(shared, refusal);
                     // There is always one to start with.
-                    if self.is_new { Table::actuator_aware(&craft).ok() } else { None }
+                    if self.is_new { Table::for_any_published_lag(&craft).ok() } else { None }
                 }
             };
         }
+        let limits = table.as_ref().map_or(self.limits, |table| table.limits);
         let handed = handover.with(|place| {
             if self.is_new {
                 place.craft = Some(craft);
@@ -129,10 +140,10 @@ impl Service {
             if let Some(table) = &table {
                 place.table = Some(*table);
             }
-            place.settings = Some((settings(shared, &craft), craft));
+            place.settings = Some((settings(shared, &craft, &limits), craft));
         });
         if handed.is_some() {
-            (self.is_new, self.asked) = (false, Some(asked));
+            (self.is_new, self.asked, self.limits) = (false, Some(asked), limits);
             if let Some(table) = &table {
                 show_table(shared, table);
             }
@@ -170,7 +181,8 @@ fn within(value: &AtomicF32, least: f32, most: f32) -> f32 {
     }
 }
 
-fn settings(shared: &Shared, craft: &Craft) -> Settings {
+/// What the owner has set, within what the table in the air says of itself.
+fn settings(shared: &Shared, craft: &Craft, table: &Limits) -> Settings {
     let parameters = &shared.parameters;
     let roll_pitch = within(&parameters.roll_pitch_rate_rad_s, 0.5, 100.0);
     let yaw = within(&parameters.yaw_rate_rad_s, 0.5, 100.0);
@@ -180,7 +192,7 @@ fn settings(shared: &Shared, craft: &Craft) -> Settings {
             speed_m_s: within(&parameters.speed_m_s, 0.1, 5.0),
             acceleration_m_s2: within(&parameters.acceleration_m_s2, 0.5, 10.0),
         },
-        limits: limits_within(&craft.airframe, Vector3::new(roll_pitch, roll_pitch, yaw)),
+        limits: limits_within(&craft.airframe, Vector3::new(roll_pitch, roll_pitch, yaw), table),
         feed_forward: if parameters.feed_forward.load(Relaxed) == 0 { FeedForward::Without } else { FeedForward::With },
     }
 }

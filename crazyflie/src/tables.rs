@@ -16,7 +16,7 @@ use crate::upload::Sent;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum TableId {
-    /// The craft's own actuator-aware one, for any motor lag that is published of it.
+    /// The craft's own actuator-aware one, for the motor lag that is stated or else for any that is published of it.
     ActuatorAware = 0,
     /// (LYAP-E) of the paper.
     LyapE = 1,
@@ -144,6 +144,8 @@ pub struct Table {
     pub gains: Gains,
     /// The loop stays stable with each of its channels weakened or strengthened by this factor, all at once.
     pub margin: f32,
+    /// What it may command; what its own head says, or nothing.
+    pub limits: Limits,
 }
 
 /// Factors on the feedback.
@@ -191,39 +193,62 @@ impl Table {
             TableId::Uploaded => return Self::uploaded(uploaded.ok_or(Refusal::NothingUploaded)?, craft),
         };
         let margin = behind_motors(margin, motor_lag_s, lag_max_s)?;
-        Ok(Self { id, gains, margin })
+        Ok(Self { id, gains, margin, limits: Limits::NONE })
     }
 
-    /// The craft's own.
+    /// The craft's own: the gain that is certified for the stated lag, flown with it; with none stated the one for any
+    /// published lag, flown with that of its design.
+    ///
+    /// # Errors
+    /// [`Refusal::MotorLag`] for a stated lag that none is certified for, [`Refusal::Unknown`] where the craft has none.
+    #[inline(never)]
+    pub fn actuator_aware(craft: &Craft) -> Result<Self, Refusal> {
+        let Some(lag_s) = craft.stated_lag_s else { return Self::for_any_published_lag(craft) };
+        let designs = builtin::ACTUATOR_AWARE.get(craft.index).ok_or(Refusal::Unknown)?;
+        let holds = |design: &&builtin::Design| {
+            let [shortest_s, longest_s] = design.stated_s;
+            lag_s >= shortest_s && lag_s <= longest_s
+        };
+        let design = designs.iter().find(holds).ok_or(Refusal::MotorLag)?;
+        Self::designed(design, craft, lag_s, design.margin)
+    }
+
+    /// The craft's own for any motor lag that is published of it.
     ///
     /// # Errors
     /// [`Refusal::Unknown`] where there is none.
     #[inline(never)]
-    pub fn actuator_aware(craft: &Craft) -> Result<Self, Refusal> {
-        let (gain, lag_s, margin) = builtin::ACTUATOR_AWARE.get(craft.index).ok_or(Refusal::Unknown)?;
-        let gains = Gains::ActuatorAware(MotorGains::new(gain, &craft.airframe, *lag_s)?);
-        Ok(Self { id: TableId::ActuatorAware, gains, margin: *margin })
+    pub fn for_any_published_lag(craft: &Craft) -> Result<Self, Refusal> {
+        let [.., design] = builtin::ACTUATOR_AWARE.get(craft.index).ok_or(Refusal::Unknown)?;
+        let (lag_s, margin) = builtin::ANY_LAG.get(craft.index).ok_or(Refusal::Unknown)?;
+        Self::designed(design, craft, *lag_s, *margin)
+    }
+
+    fn designed(design: &builtin::Design, craft: &Craft, lag_s: f32, margin: f32) -> Result<Self, Refusal> {
+        let gains = Gains::ActuatorAware(MotorGains::new(&design.gain, &craft.airframe, lag_s)?);
+        Ok(Self { id: TableId::ActuatorAware, gains, margin, limits: Limits::NONE })
     }
 
     #[inline(never)]
     fn uploaded(sent: &Sent, craft: &Craft) -> Result<Self, Refusal> {
-        let (certificate, gains) = match sent {
+        let (head, gains) = match sent {
             Sent::BodyRates(table) => {
                 let gains = match table.table().rows() {
                     Rows::Equilibrium(rows) => EquilibriumGain::new(rows).map(Gains::Equilibrium),
                     Rows::FlatOutput(rows) => FlatOutputGain::new(rows).map(Gains::FlatOutput),
                     Rows::Integral(_) => return Err(Refusal::Law),
                 };
-                (&table.head().certificate, gains.map_err(|_| Refusal::Table)?)
+                (table.head(), gains.map_err(|_| Refusal::Table)?)
             }
             Sent::Motors(table) => {
                 let gains = MotorGains::new(table.table().gain(), &craft.airframe, table.table().lag().lag_s())?;
-                (&table.table().head().certificate, Gains::ActuatorAware(gains))
+                (table.table().head(), Gains::ActuatorAware(gains))
             }
         };
+        let certificate = &head.certificate;
         let margin =
             behind_motors(certificate.all_channels.gain_factor, craft.motor_lag_s, certificate.motor_lag_max_s)?;
-        Ok(Self { id: TableId::Uploaded, gains, margin })
+        Ok(Self { id: TableId::Uploaded, gains, margin, limits: head.limits })
     }
 
     /// The same with its feedback scaled, as far as its margin allows.
@@ -255,12 +280,22 @@ impl Scales {
     pub const ONE: Self = Self { position: 1.0, yaw: 1.0 };
 }
 
-/// What the motors of a craft can do in the paper's terms, within body rates that its owner allows, rad/s.
-pub fn limits_within(airframe: &Airframe, body_rates_rad_s: Vector3<f32>) -> Limits {
+/// What the motors of a craft can do in the paper's terms, within body rates that its owner allows, rad/s, and within
+/// what a table says of itself: the tighter of each. Where nothing is left of the thrust, the table's counts for nothing.
+pub fn limits_within(airframe: &Airframe, body_rates_rad_s: Vector3<f32>, table: &Limits) -> Limits {
     let figures = airframe.figures();
     let per_mass = 4.0 / figures.mass_kg;
-    let limits = Limits::new(figures.force_min_n * per_mass, figures.force_max_n * per_mass, body_rates_rad_s);
-    limits.unwrap_or(Limits::NONE)
+    let (min, max) = (figures.force_min_n * per_mass, figures.force_max_n * per_mass);
+    let (table_rates, lesser) = (table.body_rates_max_rad_s(), |a: f32, b: f32| if a < b { a } else { b });
+    let rates = Vector3::new(
+        lesser(body_rates_rad_s.x, table_rates.x),
+        lesser(body_rates_rad_s.y, table_rates.y),
+        lesser(body_rates_rad_s.z, table_rates.z),
+    );
+    let (table_min, table_max) = (table.thrust_min_m_s2(), table.thrust_max_m_s2());
+    let tighter_min = if table_min > min { table_min } else { min };
+    let tighter = Limits::new(tighter_min, lesser(max, table_max), rates);
+    tighter.or_else(|_| Limits::new(min, max, rates)).unwrap_or(Limits::NONE)
 }
 
 /// What is left of a margin of the commands behind motors that lag, through the body-rate loop: half of what the lag

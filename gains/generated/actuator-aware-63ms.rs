@@ -1,8 +1,8 @@
 // actuator-aware-63ms for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 3af934f0f2a52ba6888a89edd7014e85f2cfd423e1665db383df4b1bea740f49
-// Certificate 915440420e9e5bedc9ff296a358ac77936f7ca0f8677c3abd414135bff32a190
+// Design 132f2f1c4c1bcc7049b5a28a7b337f49625b8ad88821d4bf97b71b850e254a39
+// Certificate 0ada178ea0df5c1d2a7d074b6a7675a1a1f1cc05b6cfeb1a7bb0c7a7e9e19e9b
 
-/// For a Crazyflie 2.1 whose motors are known to lag 63.5 ms.
+/// For a Crazyflie 2.1 whose motors are known to lag about 63.5 ms.
 #[rustfmt::skip]
 pub static ACTUATOR_AWARE_63MS: quatrack::law::ActuatorAwareGain = quatrack::law::ActuatorAwareGain::table([
     [-0.09626003, 0.09624093, 0.44143867, -0.057506446, 0.05748491, 0.22331734, -0.103709355, -0.103819355, -0.011127165, -0.009170884, -0.009190152, -0.005726086, 1.4697174, 0.23049286, -0.7088291, 0.22838296, -0.06828718, 0.068282485, 0.42469475],

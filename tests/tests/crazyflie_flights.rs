@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 use quatrack_crazyflie::abi::{Attitude, Control, Mode, Modes, Setpoint};
 use quatrack_crazyflie::ffi;
-use quatrack_sim::crazyflie::{Case, Course, Firmware, Sensors, Setpoints, Tune, fly};
+use quatrack_sim::crazyflie::{Case, Course, Firmware, Sensors, Tune, fly};
+use quatrack_sim::flight::robustness::NOISE;
 use quatrack_sim::plant::{Craft, RigidState};
 use quatrack_sim::vehicle::Vehicle;
 use std::sync::atomic::Ordering::Relaxed;
@@ -16,18 +17,90 @@ fn vehicle(name: &str) -> Vehicle {
 }
 
 fn case(lag_s: f64) -> Case {
-    Case { lag_s, mass_factor: 1.0, sensors: QUIET, setpoints: Setpoints::HighLevel }
+    Case { sensors: QUIET, ..Case::of_lag(lag_s) }
+}
+
+fn iae_m_s(craft: &Vehicle, rate_rad_s: f64, stated_s: f64, case: &Case) -> f64 {
+    let tune = Tune { table: 0, motor_lag_s: stated_s };
+    fly(craft, &Course::FigureEight(rate_rad_s), &tune, case).iae.unwrap_or(f64::INFINITY)
 }
 
 #[test]
 fn so_fed_the_actuator_aware_table_tracks_as_if_it_knew_the_course() {
     let craft = vehicle("crazyflie-2.1");
-    // With exact derivatives at 500 Hz the law strays 0.0007 m s in these 12 s at 2.1 m/s, with differences of jerks 0.0008.
-    let flown = fly(&craft, &Course::FigureEight(1.485), &DEFAULT, &case(0.126));
-    assert!(flown.iae.unwrap() <= 0.0008, "{flown:?}");
-    // At 3.1 m/s 0.0034 with exact derivatives; what the differences miss of the crackle's growth costs the rest.
-    let flown = fly(&craft, &Course::FigureEight(2.19), &DEFAULT, &case(0.126));
-    assert!(flown.iae.unwrap() <= 0.0045, "{flown:?}");
+    for stated_s in [0.0, 0.126] {
+        // With exact derivatives at 500 Hz the law strays 0.00014 m s in these 12 s at 2.1 m/s and 0.0013 at 3.1 m/s: what the
+        // differences of jerks miss of the crackle's growth costs the rest.
+        let [slow, fast] = [1.485, 2.19].map(|rate| iae_m_s(&craft, rate, stated_s, &case(0.126)));
+        assert!(slow <= 0.0004 && fast <= 0.0036, "{slow} {fast}");
+    }
+}
+
+#[test]
+fn a_stated_lag_is_flown_as_closely_on_every_craft() {
+    for name in ["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"] {
+        let craft = vehicle(name);
+        // What a prototype of the law in f64 strays in these 12 s on a Crazyflie 2.1 at 63.5 and 126 ms: everything known, wrong
+        // mass, wrong lag (half as much again, half), late commands, more inertia, noise. The Brushless has twice the
+        // inertia, its longest published lag is 66 ms and its table for 126 ms designed for 100: there it may stray more.
+        let bars = [0.0007, 0.134, 0.136, 0.032, 0.026, 0.0047, 0.011, 0.035, 0.006];
+        for (lag_s, bars) in [
+            (0.004, bars),
+            (0.020, bars),
+            (0.0635, bars),
+            (0.126, [0.0007, 0.167, 0.17, 0.052, 0.056, 0.0052, 0.0125, 0.055, 0.006]),
+        ] {
+            let right = case(lag_s);
+            let wrong = [
+                right,
+                Case { mass_factor: 1.1, ..right },
+                Case { mass_factor: 0.9, ..right },
+                Case { lag_s: 1.5 * lag_s, ..right },
+                Case { lag_s: 0.5 * lag_s, ..right },
+                Case { late_steps: 4, ..right },
+                Case { late_steps: 10, ..right },
+                Case { inertia_factor: 1.3, ..right },
+                Case { noise: Some(NOISE), ..right },
+            ];
+            for (index, (case, bar)) in wrong.iter().zip(bars).enumerate() {
+                let is_beyond = index == 7 && lag_s > 0.1 && name == "crazyflie-2.1-brushless";
+                let bar = if is_beyond { 1.1 * bar } else { bar };
+                let strayed = iae_m_s(&craft, 1.485, lag_s, case);
+                assert!(strayed <= bar, "{name} at {lag_s} s: {strayed} of {bar} in {case:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn at_the_corners_of_its_certificate_it_still_flies_the_figure() {
+    for name in ["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"] {
+        let craft = vehicle(name);
+        for stated_s in [0.004, 0.020, 0.040, 0.0401, 0.080, 0.0801, 0.126] {
+            for (lag_factor, mass_factor, inertia_factor) in [(1.25, 0.8, 1.3), (1.25, 1.2, 1.3), (0.75, 0.8, 0.7)] {
+                let off = Case { mass_factor, inertia_factor, late_steps: 10, ..case(lag_factor * stated_s) };
+                // Most of it is the first second, until the integral has learned a fifth of the weight.
+                let strayed = iae_m_s(&craft, 1.485, stated_s, &off);
+                assert!(strayed <= 0.2, "{name}, {stated_s} s stated: {strayed} in {off:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn at_20_ms_nothing_of_bitcrazes_comes_close() {
+    for name in ["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"] {
+        let craft = vehicle(name);
+        // With a noisy gyroscope; Bitcraze's controllers with an exact one: 0.85 m/s for 30 s Lee 0.018, Mellinger 0.143,
+        // 2.1 m/s Lee 0.047, Mellinger 0.097, 3.1 m/s Mellinger 0.235, Lee 0.271.
+        let noisy = Case { sensors: Sensors { gyro_noise_rad_s: 0.02, ..QUIET }, ..case(0.020) };
+        for (rate, bar) in [(0.601, 0.018 / 5.0), (1.485, 0.047 / 20.0), (2.19, 0.235 / 100.0)] {
+            let strayed = iae_m_s(&craft, rate, 0.020, &noisy);
+            assert!(strayed <= bar, "{name}: {strayed} at {rate} rad/s");
+        }
+        // With nothing stated it flies outside what it is certified for, and strays as far as they do.
+        assert!(iae_m_s(&craft, 1.485, 0.0, &noisy) > 0.03, "{name}");
+    }
 }
 
 #[test]

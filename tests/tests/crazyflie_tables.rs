@@ -6,10 +6,12 @@ use std::sync::atomic::Ordering::Relaxed;
 use nalgebra::{DMatrix, Vector3};
 use quatrack::Limits;
 use quatrack::gains::table::{ActuatorTable, Certificate, Hash, Margins, Name, TableHead, Vehicle as TableVehicle};
-use quatrack_crazyflie::craft::{KNOWN, RATE};
+use quatrack_crazyflie::abi::{Attitude, Mode, Modes, Setpoint};
+use quatrack_crazyflie::craft::{Craft as Flown, KNOWN, RATE};
 use quatrack_crazyflie::ffi;
+use quatrack_crazyflie::tables::{Gains, Refusal, Table, limits_within};
 use quatrack_crazyflie::upload::{PACKET_BYTES, Packet, Status};
-use quatrack_sim::crazyflie::{Course, Firmware, Sensors, Setpoints, Tune, motor_gains};
+use quatrack_sim::crazyflie::{Course, Design, Firmware, Sensors, Setpoints, Stated, Tune, motor_gains};
 use quatrack_sim::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use quatrack_sim::design::discretise::zero_order_hold;
 use quatrack_sim::plant::{Craft, RigidState};
@@ -22,6 +24,47 @@ const LAG_S: f32 = 0.0635;
 fn the_source_of_the_gains_is_what_the_designs_give() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crazyflie/src/builtin/motor_gains.rs");
     assert_eq!(std::fs::read_to_string(path).unwrap(), motor_gains().unwrap());
+}
+
+/// The lag that a table for motor forces reckons with, s, and its gain.
+fn flown(table: &Table) -> (f32, &quatrack::law::ActuatorAwareGain) {
+    let Gains::ActuatorAware(motors) = &table.gains else { panic!("no table for motor forces") };
+    (motors.airframe.figures().motor_lag_s, &motors.gain)
+}
+
+#[test]
+fn a_stated_lag_is_flown_with_the_committed_design_that_is_certified_for_it() {
+    for (index, (known, designs)) in KNOWN.iter().zip(Design::of_crafts().unwrap()).enumerate() {
+        let (name, craft) = (known.vehicle.name.as_str(), Flown::with(known.airframe, known.vehicle, index));
+        let tables = designs.map(|design| {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../gains/generated/{}.bin", design.name));
+            ActuatorTable::from_bytes(&std::fs::read(path).unwrap()).unwrap()
+        });
+        let stated = |lag_s: f32| Table::choose(0, &craft.with_motor_lag(lag_s), None);
+        for (lag_s, index) in
+            [(0.004, 0), (0.02, 0), (0.04, 0), (0.041, 1), (0.0635, 1), (0.08, 1), (0.1, 2), (0.126, 2)]
+        {
+            let table = stated(lag_s).unwrap();
+            assert_eq!(flown(&table), (lag_s, tables[index].gain()), "{name} at {lag_s} s");
+        }
+        for lag_s in [0.0039, 0.127, 1.0] {
+            assert_eq!(stated(lag_s).err(), Some(Refusal::MotorLag), "{name} at {lag_s} s");
+        }
+        let unstated = stated(0.0).unwrap();
+        assert_eq!(flown(&unstated), (tables[2].lag().lag_s(), tables[2].gain()), "{name}");
+    }
+}
+
+#[test]
+fn what_flies_with_a_stated_lag_is_stable_with_that_off_by_a_quarter_and_everything_else_off() {
+    for design in Design::of_crafts().unwrap().as_flattened() {
+        let lag_s = design.stated.lag_s;
+        for stated in [Stated::all_at_once(lag_s), Stated::lag_alone(lag_s)] {
+            // The integral's pole is near 0.9979 all over; a chain that is about to swing shows above it.
+            let radius = stated.spectral_radius(&design.vehicle, &design.gain_in_parts).unwrap();
+            assert!(radius < 0.9991, "{}, {stated:?}: {radius}", design.name);
+        }
+    }
 }
 
 #[test]
@@ -65,6 +108,11 @@ fn the_longest_lags_of_the_papers_tables_are_where_hover_becomes_unstable() {
 
 /// A table for a known lag, certified for half of it more.
 fn known_lag_table(vehicle: TableVehicle) -> Vec<u8> {
+    table_within(vehicle, Limits::new(1.8, 16.5, Vector3::new(20.0, 20.0, 10.0)).unwrap())
+}
+
+/// The same with limits of its own.
+fn table_within(vehicle: TableVehicle, limits: Limits) -> Vec<u8> {
     let craft = Vehicle::by_name("crazyflie-2.1").unwrap();
     let design = actuator_aware(&craft, f64::from(LAG_S), &ActuatorAwareWeights::STANDARD, 0.002).unwrap();
     let rows = std::array::from_fn(|i| std::array::from_fn(|j| design.gain[(i, j)] as f32));
@@ -73,7 +121,7 @@ fn known_lag_table(vehicle: TableVehicle) -> Vec<u8> {
         name: Name::literal("known-lag"),
         vehicle,
         rate: RATE,
-        limits: Limits::new(1.8, 16.5, Vector3::new(20.0, 20.0, 10.0)).unwrap(),
+        limits,
         design_hash: Hash([1; 32]),
         certificate: Certificate {
             hash: Hash([2; 32]),
@@ -121,8 +169,7 @@ fn with_checksum(mut table: Vec<u8>) -> Vec<u8> {
 #[test]
 fn a_table_is_sent_in_flight_and_taken_over_without_a_bump() {
     let craft = Vehicle::by_name("crazyflie-2.1").unwrap();
-    let tune = Tune { table: 0, motor_lag_s: LAG_S.into() };
-    let mut firmware = Firmware::start(&craft, &tune, QUIET);
+    let mut firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: 0.0 }, QUIET);
     let mut plant = Craft::new(&craft);
     plant.motors = plant.motors.with_lag(LAG_S.into(), LAG_S.into());
     let course = Course::FigureEight(1.485);
@@ -133,6 +180,7 @@ fn a_table_is_sent_in_flight_and_taken_over_without_a_bump() {
         if step == 4000 {
             assert_eq!(send(&known_lag_table(KNOWN[0].vehicle)), Status::Taken as u8);
             ffi::quatrack.parameters.table.store(5, Relaxed);
+            ffi::quatrack.parameters.motor_lag_s.set(LAG_S);
             ffi::quatrackService();
         }
         firmware.command(&course, t_s, Setpoints::HighLevel);
@@ -181,6 +229,78 @@ fn what_is_damaged_uncertified_or_for_another_craft_is_refused_and_changes_nothi
     let refused = ffi::quatrack.log.refused_tables.load(Relaxed);
     ffi::quatrackService();
     assert_eq!(ffi::quatrack.log.refused_tables.load(Relaxed), refused + 1);
+}
+
+#[test]
+fn a_lag_is_stated_in_flight_and_one_that_nothing_is_certified_for_changes_nothing() {
+    let craft = Vehicle::by_name("crazyflie-2.1").unwrap();
+    let _firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: 0.0 }, QUIET);
+    let state = |lag_s: f32| {
+        ffi::quatrack.parameters.motor_lag_s.set(lag_s);
+        ffi::quatrackService();
+        let log = &ffi::quatrack.log;
+        (log.refused_tables.load(Relaxed), ffi::quatrack.gains.entries[0].get(), log.table.load(Relaxed))
+    };
+    let (refused, unstated, _) = state(0.0);
+    let (_, short, _) = state(0.02);
+    assert!(short != unstated, "{short}");
+    assert_eq!(state(0.2), (refused + 1, short, 0), "refused, the one before stays");
+    assert_eq!(ffi::quatrack.log.refusal.load(Relaxed), Refusal::MotorLag as u16);
+    assert_eq!(state(0.126), (refused + 1, unstated, 0), "the same design, told its own lag");
+}
+
+#[test]
+fn limits_are_the_tighter_of_the_owners_and_the_tables() {
+    let craft = KNOWN[0].airframe;
+    // Four motors of 0.01282 to 0.12 N on 29 g: 1.768 to 16.55 m/s^2.
+    let owner = Vector3::new(20.0, 20.0, 10.0);
+    let physical = limits_within(&craft, owner, &Limits::NONE);
+    assert_eq!(physical.body_rates_max_rad_s(), owner);
+    let wide = Limits::new(0.0, 50.0, Vector3::new(99.0, 99.0, 99.0)).unwrap();
+    assert_eq!(limits_within(&craft, owner, &wide), physical, "a table widens nothing");
+    let tight = Limits::new(5.0, 15.0, Vector3::new(3.0, 30.0, 2.0)).unwrap();
+    assert_eq!(limits_within(&craft, owner, &tight), Limits::new(5.0, 15.0, Vector3::new(3.0, 20.0, 2.0)).unwrap());
+    let beyond = Limits::new(20.0, 30.0, Vector3::new(3.0, 3.0, 3.0)).unwrap();
+    let left = limits_within(&craft, owner, &beyond);
+    assert_eq!(
+        (left.thrust_min_m_s2(), left.thrust_max_m_s2()),
+        (physical.thrust_min_m_s2(), physical.thrust_max_m_s2())
+    );
+}
+
+#[test]
+fn a_sent_table_is_flown_within_its_own_limits() {
+    let craft = Vehicle::by_name("crazyflie-2.1").unwrap();
+    let mut firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: LAG_S.into() }, QUIET);
+    let plant = Craft::new(&craft);
+    // Manual flight at 200 degrees a second of roll, which is 3.5 rad/s.
+    let off = Mode::DISABLED;
+    let mode =
+        Modes { x: off, y: off, z: off, roll: Mode::VELOCITY, pitch: Mode::VELOCITY, yaw: Mode::VELOCITY, quat: off };
+    let attitude_rate = Attitude { roll: 200.0, ..Attitude::default() };
+    let thrust = 65_535.0 * 0.029 * 9.81 / 0.48;
+    let setpoint = Setpoint { attitude_rate, thrust, mode, ..Setpoint::OFF };
+    let roll_rate_after = |firmware: &mut Firmware| {
+        let mut state = RigidState::at_rest(Vector3::z(), craft.hover_thrust_n());
+        for step in 0..1000 {
+            let commands_n = firmware.step(&state, Some(&setpoint));
+            state = plant.hold(&state, &commands_n, f64::from(step) * 1e-3, 1e-3);
+        }
+        state.body_rates_rad_s.x
+    };
+    let own = roll_rate_after(&mut firmware);
+    assert!((own - 3.49).abs() < 0.1, "{own}");
+    let limits = Limits::new(1.8, 16.5, Vector3::new(1.5, 1.5, 1.5)).unwrap();
+    assert_eq!(send(&table_within(KNOWN[0].vehicle, limits)), Status::Taken as u8);
+    ffi::quatrack.parameters.table.store(5, Relaxed);
+    ffi::quatrackService();
+    let limited = roll_rate_after(&mut firmware);
+    assert!((limited - 1.5).abs() < 0.1, "{limited}");
+    // Back to a table that says nothing of itself.
+    ffi::quatrack.parameters.table.store(0, Relaxed);
+    ffi::quatrackService();
+    let own = roll_rate_after(&mut firmware);
+    assert!((own - 3.49).abs() < 0.1, "{own}");
 }
 
 #[test]

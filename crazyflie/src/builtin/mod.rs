@@ -14,10 +14,12 @@ use crate::tables::{Gains, MotorGains, Table, TableId};
 /// As it is when switched on: it knows no craft and keeps the motors off.
 pub(crate) const CONTROLLER: Controller = {
     let [known, ..] = KNOWN;
-    let Ok(gains) = MotorGains::new(&motor_gains::CRAZYFLIE_2_1, &Airframe::CRAZYFLIE_2_1, 0.126) else {
+    let [.., design] = &motor_gains::CRAZYFLIE_2_1;
+    let Ok(gains) = MotorGains::new(&design.gain, &Airframe::CRAZYFLIE_2_1, motor_gains::CRAZYFLIE_2_1_ANY.0) else {
         panic!("no lag")
     };
-    let table = Table { id: TableId::ActuatorAware, gains: Gains::ActuatorAware(gains), margin: 1.0 };
+    let table =
+        Table { id: TableId::ActuatorAware, gains: Gains::ActuatorAware(gains), margin: 1.0, limits: Limits::NONE };
     let bounds = Bounds { leash_m: 1.0, speed_m_s: 1.0, acceleration_m_s2: 1.0 };
     let settings = Settings { bounds, limits: Limits::NONE, feed_forward: FeedForward::With };
     Controller::new(Craft::with(known.airframe, known.vehicle, 0), table, settings)
@@ -37,18 +39,34 @@ pub(crate) const LYAP_F: Certified = (3.714, 0.02);
 pub(crate) const LQR_F: Certified = (14.71, 0.02);
 
 /// A gain for where one has to stand that is not looked at.
-pub(crate) static ANY: ActuatorAwareGain = motor_gains::CRAZYFLIE_2_1;
+pub(crate) static ANY: ActuatorAwareGain = {
+    let [design, ..] = motor_gains::CRAZYFLIE_2_1;
+    design.gain
+};
 
-/// Gain, design lag (s) and factor for each of [`crate::craft::KNOWN`].
-pub(crate) static ACTUATOR_AWARE: [(ActuatorAwareGain, f32, f32); 3] = [
-    (motor_gains::CRAZYFLIE_2_1, FIGURES[0].1, FIGURES[0].2),
-    (motor_gains::CRAZYFLIE_2_1_UPGRADE_KIT, FIGURES[1].1, FIGURES[1].2),
-    (motor_gains::CRAZYFLIE_2_1_BRUSHLESS, FIGURES[2].1, FIGURES[2].2),
+/// A gain for motor forces with what it is certified for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Design {
+    /// The gain.
+    pub(crate) gain: ActuatorAwareGain,
+    /// Shortest and longest lag of the motors, s, that it flies with where its owner states it.
+    pub(crate) stated_s: [f32; 2],
+    /// The factor by which its feedback may be off.
+    pub(crate) margin: f32,
+}
+
+/// For each of [`crate::craft::KNOWN`], for the shortest lags first; the last one also where none is stated.
+pub(crate) static ACTUATOR_AWARE: [[Design; 3]; 3] =
+    [motor_gains::CRAZYFLIE_2_1, motor_gains::CRAZYFLIE_2_1_UPGRADE_KIT, motor_gains::CRAZYFLIE_2_1_BRUSHLESS];
+
+/// Lag (s) that the last one of each craft flies with where none is stated, and the factor by which its feedback may be off
+/// then.
+pub(crate) const ANY_LAG: [(f32, f32); 3] = [
+    motor_gains::CRAZYFLIE_2_1_ANY,
+    motor_gains::CRAZYFLIE_2_1_UPGRADE_KIT_ANY,
+    motor_gains::CRAZYFLIE_2_1_BRUSHLESS_ANY,
 ];
 
-/// Vehicle id, design lag (s) and factor of each.
-pub(crate) const FIGURES: [(u32, f32, f32); 3] = [
-    motor_gains::CRAZYFLIE_2_1_FIGURES,
-    motor_gains::CRAZYFLIE_2_1_UPGRADE_KIT_FIGURES,
-    motor_gains::CRAZYFLIE_2_1_BRUSHLESS_FIGURES,
-];
+/// Vehicle id of each.
+pub(crate) const IDS: [u32; 3] =
+    [motor_gains::CRAZYFLIE_2_1_ID, motor_gains::CRAZYFLIE_2_1_UPGRADE_KIT_ID, motor_gains::CRAZYFLIE_2_1_BRUSHLESS_ID];

@@ -81,7 +81,7 @@ pub fn count(checkout: &Path) -> Result<Counts, PilError> {
         for (setpoints, name) in SETPOINTS {
             let tune = Tune { table: number, motor_lag_s: if number == 0 { 0.0 } else { lag_s } };
             let sensors = Sensors { gyro_noise_rad_s: 0.02, estimate_steps: 1 };
-            let case = Case { lag_s, mass_factor: 1.0, sensors, setpoints };
+            let case = Case { sensors, setpoints, ..Case::of_lag(lag_s) };
             let course = Course::FigureEight(if number < 3 { 1.485 } else { 0.601 });
             let recording = fly_recorded(&vehicle, &course, &tune, &case, STEPS);
             flights.push((table, name, tune, recording));

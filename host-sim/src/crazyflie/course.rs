@@ -5,6 +5,7 @@ use thiserror::Error;
 
 use crate::plan::{self, Plan, PlanError};
 use crate::trajectory::bspline::BSpline;
+use crate::trajectory::fifth_order::{Course as _, Eight, FifthOrder};
 
 /// Position and its derivatives up to the jerk at one time, SI, world frame.
 pub(super) type Motion = [Vector3<f64>; 4];
@@ -65,7 +66,7 @@ impl Course {
         match self {
             Self::Hover(p) => Some(rest(p)),
             Self::Step(from, to) => Some(rest(if t_s < 1.0 { from } else { to })),
-            Self::FigureEight(w) => Some(figure_eight(*w, t_s)),
+            Self::FigureEight(w) => Some(to_jerk(&figure_eight(*w, t_s))),
             Self::Hop(low, high) => {
                 let [up, down, end] = HOP_S;
                 let height = if t_s <= down {
@@ -77,6 +78,11 @@ impl Course {
             }
             Self::Septics(septics) => Some(septics.at(t_s)),
         }
+    }
+
+    /// Where it comes from: what flies on before the start as it does after it, at a time that may be negative.
+    pub(super) fn coming_from(&self, t_s: f64) -> Option<FifthOrder> {
+        if let Self::FigureEight(w) = self { Some(figure_eight(*w, t_s)) } else { None }
     }
 
     /// Where it is at a time, m.
@@ -101,16 +107,15 @@ impl Course {
     }
 }
 
-/// The figure with its derivatives.
-pub(super) fn figure_eight(w: f64, t_s: f64) -> Motion {
-    let (s1, c1) = (w * t_s).sin_cos();
-    let (s2, c2) = (2.0 * w * t_s).sin_cos();
-    [
-        Vector3::new(s1, 0.5 * s2, 1.0),
-        Vector3::new(w * c1, w * c2, 0.0),
-        Vector3::new(-w * w * s1, -2.0 * w * w * s2, 0.0),
-        Vector3::new(-w.powi(3) * c1, -4.0 * w.powi(3) * c2, 0.0),
-    ]
+/// To the fifth derivative; also before its start.
+fn figure_eight(w: f64, t_s: f64) -> FifthOrder {
+    Eight { rate_rad_s: w, duration_s: f64::INFINITY }.at(t_s)
+}
+
+/// As far as the commander knows it.
+fn to_jerk(point: &FifthOrder) -> Motion {
+    let [position, velocity, acceleration, jerk, _, _] = point.position;
+    [position, velocity, acceleration, jerk]
 }
 
 /// From rest at one value to rest at another, jerk and all, as `piecewise_plan_7th_order_no_jerk` has it; then rest.
@@ -190,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_septic_ends_as_it_should() {
-        let ends: [Motion; 2] = [0.3, 1.7].map(|t| figure_eight(1.485, t));
+        let ends: [Motion; 2] = [0.3, 1.7].map(|t| to_jerk(&figure_eight(1.485, t)));
         let septics = Septics { pieces: vec![hermite(&ends[0], &ends[1], 1.4)], duration_s: 1.4, fit_error_m: 0.0 };
         for (t, end) in [(0.0, &ends[0]), (1.4, &ends[1])] {
             for (found, wanted) in septics.at(t).iter().zip(end) {

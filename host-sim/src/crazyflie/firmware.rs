@@ -14,6 +14,7 @@ use quatrack_crazyflie::ffi;
 
 use super::course::Course;
 use super::recording::Recording;
+use crate::flight::noise::Source;
 use crate::plant::RigidState;
 use crate::vehicle::Vehicle;
 
@@ -81,7 +82,7 @@ pub struct Firmware {
     thrust_max_n: f64,
     mixing: [f64; 3],
     step: u32,
-    noise: Noise,
+    noise: Source,
     sensors: Sensors,
     recording: Option<Recording>,
     is_selected: bool,
@@ -116,7 +117,7 @@ impl Firmware {
             thrust_max_n: motors.thrust_max_n,
             mixing: [0.25 / motors.half_arm_m(), 0.25 / motors.half_arm_m(), 0.25 / motors.torque_per_thrust_m],
             step: 1,
-            noise: Noise(1),
+            noise: Source::new(1),
             sensors,
             recording,
             is_selected: false,
@@ -272,24 +273,5 @@ fn full_state(motion: &[Vector3<f64>; 4], (heading_rad, rate_rad_s): (f64, f64))
         attitude_rate: abi::Attitude { yaw: rate_rad_s.to_degrees() as f32, ..Default::default() },
         mode: modes,
         ..Default::default()
-    }
-}
-
-/// Normally distributed numbers, the same on every run: SplitMix64 (Steele, Lea and Flood 2014), Box and Muller 1958.
-struct Noise(u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^= z >> 31;
-        ((z >> 11) + 1) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        let (radius, turn) = ((-2.0 * self.uniform().ln()).sqrt(), self.uniform());
-        radius * (std::f64::consts::TAU * turn).cos()
     }
 }

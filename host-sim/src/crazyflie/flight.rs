@@ -1,13 +1,19 @@
 //! One flight: a course, a craft and what is wrong with it in; how far it strayed out.
+//!
+//! What moves at its start is known by then: the craft is carried along it for a second before, setpoints and all, as if
+//! it had flown there. What is recorded begins as switched on.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
-use quatrack::{Airframe, AirframeFigures, FifthOrderSample, FlatSample, MotorReference};
+use std::collections::VecDeque;
+
 use serde::Serialize;
 
-use super::course::{Course, Motion};
+use super::course::Course;
 use super::firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
 use super::recording::Recording;
+use crate::flight::motor_loop;
+use crate::flight::noise::{Noise, Source};
 use crate::plant::{Craft, Ground, RigidState};
+use crate::trajectory::fifth_order::FifthOrder;
 use crate::vehicle::Vehicle;
 
 /// Farther than this from its course a craft counts as lost, m.
@@ -16,6 +22,9 @@ const LOST_M: f64 = 5.0;
 /// Steps between two samples of the error: 100 Hz.
 const SAMPLE_STEPS: u32 = 10;
 
+/// Steps for which a craft is carried along a course that moves at its start; a whole number of setpoints.
+const CARRIED_STEPS: u32 = 1000;
+
 /// What is not as the controller thinks, and how it is spoken to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
@@ -23,10 +32,31 @@ pub struct Case {
     pub lag_s: f64,
     /// True mass over the assumed one.
     pub mass_factor: f64,
+    /// True inertia over the assumed one.
+    pub inertia_factor: f64,
+    /// Steps of the firmware by which commands act late.
+    pub late_steps: usize,
+    /// What the estimate is off by, where it is.
+    pub noise: Option<Noise>,
     /// Sensors.
     pub sensors: Sensors,
     /// How setpoints come.
     pub setpoints: Setpoints,
+}
+
+impl Case {
+    /// Motors of a lag, everything else as it should be.
+    pub const fn of_lag(lag_s: f64) -> Self {
+        Self {
+            lag_s,
+            mass_factor: 1.0,
+            inertia_factor: 1.0,
+            late_steps: 0,
+            noise: None,
+            sensors: Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 },
+            setpoints: Setpoints::HighLevel,
+        }
+    }
 }
 
 /// How a flight went.
@@ -45,6 +75,7 @@ pub struct Flown {
 /// Flies a course from its start in the air, or from the ground where it begins there.
 pub fn fly(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case) -> Flown {
     let mut firmware = Firmware::start(vehicle, tune, case.sensors);
+    carry(&mut firmware, vehicle, course, case);
     fly_with(&mut firmware, vehicle, course, case, None)
 }
 
@@ -55,25 +86,36 @@ pub fn fly_recorded(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case
     firmware.recorded().unwrap_or_default()
 }
 
+/// To the start of a course that comes from somewhere.
+fn carry(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case: &Case) {
+    for steps_left in (1..=CARRIED_STEPS).rev() {
+        let t_s = -f64::from(steps_left) / f64::from(STEPS_HZ);
+        let Some(state) = course.coming_from(t_s).and_then(|point| on_course(&point, vehicle)) else { return };
+        firmware.command(course, t_s, case.setpoints);
+        firmware.step(&state, None);
+    }
+}
+
 fn fly_with(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case: &Case, limit: Option<u32>) -> Flown {
     let mut craft = Craft::new(vehicle);
-    craft.body = craft.body.scaled(case.mass_factor, 1.0);
+    craft.body = craft.body.scaled(case.mass_factor, case.inertia_factor);
     craft.motors = craft.motors.with_lag(case.lag_s, case.lag_s);
-    let start = course.at(0.0).unwrap_or([Vector3::zeros(); 4]);
-    let hovering = RigidState::at_rest(start[0], vehicle.hover_thrust_n());
-    let mut state = on_course(&start, vehicle).unwrap_or(hovering);
+    let start = course.position_m(0.0).unwrap_or_default();
+    let hovering = RigidState::at_rest(start, vehicle.hover_thrust_n());
+    let mut state = course.coming_from(0.0).and_then(|point| on_course(&point, vehicle)).unwrap_or(hovering);
     if matches!(course, Course::Hop(..)) {
         craft = craft.with_load(Ground::under(vehicle));
-        state = RigidState::at_rest(start[0], 0.0);
+        state = RigidState::at_rest(start, 0.0);
     }
+    let mut source = Source::new(case.noise.map_or(0, |noise| noise.seed));
+    let mut on_their_way = VecDeque::from(vec![state.thrusts_n; case.late_steps]);
 
     let whole = (course.duration_s() * f64::from(STEPS_HZ)).round() as u32;
     let mut flown = Flown { iae: Some(0.0), max_error_m: 0.0, end_error_m: 0.0, max_tilt_deg: 0.0 };
     for step in 0..limit.unwrap_or(whole + 1) {
         let t_s = f64::from(step) / f64::from(STEPS_HZ);
         firmware.command(course, t_s, case.setpoints);
-        let target = course.at(t_s).unwrap_or(start);
-        let error_m = (state.position_m - target[0]).norm();
+        let error_m = (state.position_m - course.position_m(t_s).unwrap_or(start)).norm();
         if step % SAMPLE_STEPS == 0 {
             flown.iae = flown.iae.map(|iae| iae + error_m * f64::from(SAMPLE_STEPS) / f64::from(STEPS_HZ));
         }
@@ -83,34 +125,16 @@ fn fly_with(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case: &
         if !state.is_finite() || error_m > LOST_M {
             return Flown { iae: None, ..flown };
         }
-        let commands_n = firmware.step(&state, None);
+        let measured = case.noise.map_or(state, |noise| source.measured(&state, &noise));
+        on_their_way.push_back(firmware.step(&measured, None));
+        let commands_n = on_their_way.pop_front().unwrap_or_default();
         state = craft.hold(&state, &commands_n, t_s, 1.0 / f64::from(STEPS_HZ));
     }
     flown
 }
 
-/// The state that flies the start of a course: attitude, body rates and forces from its derivatives.
-fn on_course([position, velocity, acceleration, jerk]: &Motion, vehicle: &Vehicle) -> Option<RigidState> {
-    let single = |v: &Vector3<f64>| v.map(|c| c as f32);
-    let sample = FifthOrderSample::of_jerk(FlatSample {
-        position_m: single(position),
-        velocity_m_s: single(velocity),
-        acceleration_m_s2: single(acceleration),
-        jerk_m_s3: single(jerk),
-        heading_rad: 0.0,
-        heading_rate_rad_s: 0.0,
-    });
-    let figures = Airframe::CRAZYFLIE_2_1.figures();
-    let airframe = Airframe::new(AirframeFigures { mass_kg: vehicle.mass_kg() as f32, ..*figures }).ok()?;
-    let reference = MotorReference::from_flat(&sample, &airframe).ok()?;
-    let q = reference.state().attitude;
-    let [w, x, y, z] = [q.w, q.x, q.y, q.z].map(f64::from);
-    let attitude = Quaternion::new(w, x, y, z);
-    Some(RigidState {
-        position_m: *position,
-        velocity_m_s: *velocity,
-        attitude: UnitQuaternion::from_quaternion(attitude),
-        body_rates_rad_s: reference.body_rates_rad_s().map(f64::from),
-        thrusts_n: Vector4::from(reference.forces_n().map(f64::from)),
-    })
+/// The state that flies a point of a course: attitude, body rates and forces from its derivatives.
+fn on_course(point: &FifthOrder, vehicle: &Vehicle) -> Option<RigidState> {
+    let airframe = motor_loop::airframe(vehicle, vehicle.motors().lag_s).ok()?;
+    motor_loop::state_on(point, &airframe).ok()
 }

@@ -16,7 +16,7 @@ mod flight;
 mod recording;
 mod report;
 
-pub use codegen::{feedback_margin, motor_gains};
+pub use codegen::{CodegenError, Design, Stated, motor_gains};
 pub use count::{Counts, count};
 pub use course::{Course, CourseError, Septics};
 pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};

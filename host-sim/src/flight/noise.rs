@@ -19,12 +19,12 @@ pub struct Noise {
 
 /// A source of normally distributed numbers.
 #[derive(Clone, Debug)]
-pub(super) struct Source {
+pub(crate) struct Source {
     state: u64,
 }
 
 impl Source {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self { state: seed }
     }
 
@@ -39,7 +39,7 @@ impl Source {
     }
 
     /// Box and Muller 1958, the cosine half: mean 0, deviation 1.
-    fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         let (radius, turn) = ((-2.0 * self.uniform().ln()).sqrt(), self.uniform());
         radius * (std::f64::consts::TAU * turn).cos()
     }
@@ -49,7 +49,7 @@ impl Source {
     }
 
     /// What is measured of a state.
-    pub(super) fn measured(&mut self, state: &RigidState, noise: &Noise) -> RigidState {
+    pub(crate) fn measured(&mut self, state: &RigidState, noise: &Noise) -> RigidState {
         RigidState {
             position_m: state.position_m + self.vector(noise.position_m),
             velocity_m_s: state.velocity_m_s + self.vector(noise.velocity_m_s),
