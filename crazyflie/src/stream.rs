@@ -9,6 +9,7 @@
 use quatrack::FifthOrderSample;
 use quatrack::nalgebra::Vector3;
 
+use crate::craft::PERIOD_S;
 use crate::demand::Motion;
 
 /// Longest time between two setpoints over which jerks are differenced, ms.
@@ -123,6 +124,13 @@ impl Stream {
         }
         (self.newest, self.since_ms) = (Motion { jerk_m_s3, ..*motion }, Some(now_ms));
         arrival
+    }
+
+    /// Changes place and velocity of the newest setpoint, which came when it came.
+    #[cold]
+    #[inline(never)]
+    pub fn divert(&mut self, motion: &Motion) {
+        (self.newest.position_m, self.newest.velocity_m_s) = (motion.position_m, motion.velocity_m_s);
     }
 
     /// Time since the newest setpoint, if it is not too long ago for another one to continue it, s.
@@ -297,7 +305,8 @@ impl Stream {
             return Arrival::Jumped;
         }
         self.snap_m_s4 = ahead(&snap, &ahead(&middle, &growth, 0.75 * gap_s), 0.5 * gap_s);
-        self.crackle_m_s5 = ahead(&middle, &growth, gap_s);
+        // Held until the next setpoint, it is that of the middle of the control steps until then.
+        self.crackle_m_s5 = ahead(&middle, &growth, 1.5 * gap_s + 0.5 * PERIOD_S);
         (self.differences, self.gap_s) = ([Some(snap), crackle], gap_s);
         Arrival::Continued
     }

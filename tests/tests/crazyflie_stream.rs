@@ -53,11 +53,14 @@ fn four_jerks_give_a_curve_of_degree_six_to_its_fifth_derivative() {
             let age_ms = 6;
             let sample = at(&stream, origin_ms.wrapping_add(end_ms + age_ms), true);
             let t_s = f64::from(end_ms + age_ms) * 1e-3;
-            // The jerk is a cubic, which three differences have exactly; jerks of 40 m/s^3 are rounded by 2e-6, twice that
-            // and 4 times that over the gap and its square, and the crackle grows by 6480 m/s^6 in the age.
+            // The jerk is a cubic, which three differences have exactly; jerks of 40 m/s^3 are rounded by 2e-6, and four
+            // times that over the gap and its square. The crackle grows by 6480 m/s^6 and is held as it is at an age of half
+            // the gap and 1 ms; the snap follows it.
             let gap_s = f64::from(gap_ms) * 1e-3;
-            assert_near(&sample.snap_m_s4, 4, t_s, 0.25 + 4e-6 * 4.0 / gap_s);
-            assert_near(&sample.crackle_m_s5, 5, t_s, 6480.0 * f64::from(age_ms) * 1e-3 * 1.1 + 2e-5 / gap_s.powi(2));
+            let (age_s, held_s) = (f64::from(age_ms) * 1e-3, 0.5 * gap_s + 0.001);
+            let off = 6480.0 * (held_s - age_s);
+            assert_near(&sample.snap_m_s4, 4, t_s, 6480.0 * age_s * (held_s - 0.5 * age_s) + 0.12 + 2e-5 / gap_s);
+            assert_near(&sample.crackle_m_s5, 5, t_s, 1.1 * off + 2e-5 / gap_s.powi(2));
             assert_near(&sample.flat.jerk_m_s3, 3, t_s, 2e-3);
             assert_near(&sample.flat.acceleration_m_s2, 2, t_s, 1e-5);
             assert_near(&sample.flat.velocity_m_s, 1, t_s, 1e-6);

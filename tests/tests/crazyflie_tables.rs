@@ -175,9 +175,9 @@ fn a_table_is_sent_in_flight_and_taken_over_without_a_bump() {
     let course = Course::FigureEight(1.485);
     let mut state = RigidState::at_rest(Vector3::z(), craft.hover_thrust_n());
     let (mut after, mut largest_m) = (0.0, 0.0_f64);
-    for step in 0..14_000_u32 {
+    for step in 0..18_000_u32 {
         let t_s = f64::from(step) * 1e-3;
-        if step == 4000 {
+        if step == 8000 {
             assert_eq!(send(&known_lag_table(KNOWN[0].vehicle)), Status::Taken as u8);
             ffi::quatrack.parameters.table.store(5, Relaxed);
             ffi::quatrack.parameters.motor_lag_s.set(LAG_S);
@@ -186,10 +186,10 @@ fn a_table_is_sent_in_flight_and_taken_over_without_a_bump() {
         firmware.command(&course, t_s, Setpoints::HighLevel);
         let commands_n = firmware.step(&state, None);
         let error_m = (state.position_m - course.position_m(t_s).unwrap()).norm();
-        if step >= 4000 {
+        if step >= 8000 {
             largest_m = largest_m.max(error_m);
         }
-        if step >= 10_000 {
+        if step >= 14_000 {
             after += error_m * 1e-3;
         }
         state = plant.hold(&state, &commands_n, t_s, 1e-3);

@@ -178,6 +178,11 @@ impl Controller {
         if !(edge::goes_on(&self.setpoint, setpoint) && is_turned) {
             return false;
         }
+        if setpoint.timestamp == self.setpoint.timestamp {
+            // The same one, as collision avoidance has changed it.
+            self.stream.divert(&edge::motion(setpoint));
+            return true;
+        }
         (self.setpoint.timestamp, self.is_turn_due) = (setpoint.timestamp, true);
         if self.looks_beyond_jerk() {
             self.accept(setpoint, since_ms);
