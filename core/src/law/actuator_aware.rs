@@ -86,6 +86,12 @@ impl ActuatorMemory {
         Self { forces_n: [airframe.hover_force_n(); 4], integral_m_s: Vector3::new(0.0, 0.0, 0.0) }
     }
 
+    /// Motors that are switched off run down: this share of their forces is left.
+    pub fn run_down(&mut self, share: f32) {
+        let [a, b, c, d] = self.forces_n;
+        self.forces_n = [a * share, b * share, c * share, d * share];
+    }
+
     /// Forces that the motors should have, N.
     pub const fn forces_n(&self) -> MotorForces {
         self.forces_n

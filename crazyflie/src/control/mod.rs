@@ -28,9 +28,6 @@ use crate::tables::{Gains, Table};
 /// Control steps that a change of the table takes: a quarter of a second.
 pub const FADE_STEPS: u16 = 125;
 
-/// Control steps without a sound estimate after which the motors count as standing still.
-const BAD_STATES_MAX: u16 = 25;
-
 /// How fast a craft goes down whose setpoint makes no sense, m/s.
 const DESCENT_M_S: f32 = 0.3;
 
@@ -58,7 +55,6 @@ pub struct Controller {
     outcome: Outcome,
     last_step: u32,
     fade_left: u16,
-    bad_states_in_a_row: u16,
     counters: Counters,
     mode: Mode,
     /// The flight goes along the stream.
@@ -67,6 +63,8 @@ pub struct Controller {
     is_turn_due: bool,
     /// The controller has just been selected.
     is_selected: bool,
+    /// The last control step could not be flown.
+    is_blind: bool,
     chores: Chores,
     craft: Craft,
     memory: ActuatorMemory,
@@ -96,12 +94,12 @@ impl Controller {
             outcome: Outcome { output, limited, target: Quaternion::IDENTITY, error_m: ZERO },
             last_step: 0,
             fade_left: 0,
-            bad_states_in_a_row: 0,
             counters: Counters { bad_states: 0, bad_setpoints: 0, limited_steps: 0, jumps: 0 },
             mode: Mode::NoCraft,
             is_along: false,
             is_turn_due: false,
             is_selected: true,
+            is_blind: false,
             chores: Chores::new(),
             craft,
             memory: ActuatorMemory::at_rest(),
@@ -132,11 +130,14 @@ impl Controller {
         }
         self.outcome.limited = MotorLimited::NOTHING;
         match self.flight {
-            None => self.outcome.output = Output::OFF,
-            Some(_) => match self.fly(&state, step) {
-                Ok(()) => self.bad_states_in_a_row = 0,
-                Err(_) => self.blind(),
-            },
+            None => self.switch_off(),
+            Some(_) => {
+                self.is_blind = self.fly(&state, step).is_err();
+                if self.is_blind {
+                    self.counters.bad_states = self.counters.bad_states.wrapping_add(1);
+                    self.switch_off();
+                }
+            }
         }
         if self.outcome.limited.any() {
             self.counters.limited_steps = self.counters.limited_steps.wrapping_add(1);
@@ -261,7 +262,7 @@ impl Controller {
     fn restart(&mut self) {
         self.memory = ActuatorMemory::hovering(&self.craft.airframe);
         (self.flight, self.is_along, self.fade_left) = (None, false, 0);
-        (self.bad_states_in_a_row, self.is_selected) = (0, false);
+        (self.is_blind, self.is_selected) = (false, false);
         self.prepared_for = None;
     }
 
@@ -279,7 +280,7 @@ impl Controller {
         let flight = match edge::demand(setpoint, thrust_max_n) {
             Some(Demand::Off) => {
                 (self.flight, self.is_along, self.fade_left, self.mode) = (None, false, 0, Mode::Off);
-                self.memory = ActuatorMemory::at_rest();
+                self.memory.clear_integral();
                 return;
             }
             Some(Demand::Fly(flight)) => {
@@ -394,16 +395,12 @@ impl Controller {
         }
     }
 
-    /// Motors off for this step: there is nothing to level by.
+    /// Motors off for this step. They run down with their lag: who flies on soon has the rest of their forces.
     #[cold]
     #[inline(never)]
-    fn blind(&mut self) {
-        self.counters.bad_states = self.counters.bad_states.wrapping_add(1);
-        self.bad_states_in_a_row = self.bad_states_in_a_row.saturating_add(1);
-        if self.bad_states_in_a_row >= BAD_STATES_MAX {
-            self.memory = ActuatorMemory::at_rest();
-        }
+    fn switch_off(&mut self) {
         self.outcome.output = Output::OFF;
+        self.memory.run_down(self.craft.motor_lag_s / (self.craft.motor_lag_s + PERIOD_S));
     }
 
     /// Flies another table from the next control step on; in flight over [`FADE_STEPS`] of them.
@@ -435,7 +432,7 @@ impl Controller {
 
     /// How the last setpoint is flown.
     pub fn mode(&self) -> Mode {
-        if self.flight.is_some() && self.bad_states_in_a_row > 0 { Mode::Blind } else { self.mode }
+        if self.flight.is_some() && self.is_blind { Mode::Blind } else { self.mode }
     }
 
     /// The craft.

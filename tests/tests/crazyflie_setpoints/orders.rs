@@ -126,8 +126,8 @@ fn the_high_level_commander_takes_over_after_a_few_null_setpoints() {
         flight.hold(&Setpoint::OFF, 20);
         assert!(flight.is_off(), "{name}");
         let here = Planned::at(flight.state.position_m.map(|c| c as f32).into(), 0.0);
-        // The motors fall off by a sixth, and are taken to stand still.
+        // Off for 20 ms the craft falls 2 mm and has 0.2 m/s to be caught; the motors are known to run down meanwhile.
         let largest_m = flight.follow(2.0, |_| here);
-        assert!(largest_m < 0.05, "{name}: {largest_m} m");
+        assert!(largest_m < 0.01, "{name}: {largest_m} m");
     }
 }
