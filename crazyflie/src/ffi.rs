@@ -8,8 +8,7 @@
 use core::sync::atomic::Ordering::Relaxed;
 
 use crate::abi::{Control, SensorData, Setpoint, State};
-use crate::builtin;
-use crate::control::{Chore, Controller};
+use crate::control::{self, Chore, Controller};
 use crate::craft::Platform;
 use crate::cycles;
 use crate::edge;
@@ -23,7 +22,7 @@ use crate::upload::Packet;
 pub static quatrack: Shared = Shared::new();
 
 /// The stabilizer task's.
-static CONTROLLER: TryCell<Controller> = TryCell::new(builtin::CONTROLLER);
+static CONTROLLER: TryCell<Controller> = TryCell::new(control::CONTROLLER);
 /// The app task's.
 static SERVICE: TryCell<Service> = TryCell::new(Service::new());
 /// From the one to the other.

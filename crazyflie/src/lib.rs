@@ -10,9 +10,10 @@
 //!       guide    demands -> a motion with heading
 //!         stream setpoints at 100 Hz -> position to crackle at every step
 //!       tables   gains as flown
-//!         craft  what the firmware was built for -> which craft
 //!       edge     the firmware's units and conventions -> SI
-//!         abi, demand
+//!         abi, demand, output
+//!           craft  what the firmware was built for -> which craft
+//!             builtin  the tables in the image
 //! ```
 //!
 //! On the target it is linked into one object whose only symbols are those of [`ffi`]; on a desk the same code flies in
@@ -29,6 +30,7 @@ pub mod demand;
 pub mod edge;
 pub mod ffi;
 pub mod guide;
+pub mod output;
 pub mod service;
 pub mod shared;
 pub mod stream;

@@ -7,10 +7,11 @@ use quatrack::nalgebra::Vector3;
 use quatrack::{FeedForward, Limits};
 
 use crate::abi;
-use crate::control::{Controller, Output, Settings};
+use crate::control::{Controller, Settings};
 use crate::craft::{Craft, Platform};
 use crate::edge;
 use crate::guide::Bounds;
+use crate::output::Output;
 use crate::shared::{AtomicF32, Shared};
 use crate::tables::{Refusal, Scales, Table, limits_within};
 use crate::try_cell::TryCell;

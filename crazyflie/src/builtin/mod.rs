@@ -4,26 +4,6 @@
 mod motor_gains;
 
 use quatrack::law::ActuatorAwareGain;
-use quatrack::{Airframe, FeedForward, Limits};
-
-use crate::control::{Controller, Settings};
-use crate::craft::{Craft, KNOWN};
-use crate::guide::Bounds;
-use crate::tables::{Gains, MotorGains, Table, TableId};
-
-/// As it is when switched on: it knows no craft and keeps the motors off.
-pub(crate) const CONTROLLER: Controller = {
-    let [known, ..] = KNOWN;
-    let [.., design] = &motor_gains::CRAZYFLIE_2_1;
-    let Ok(gains) = MotorGains::new(&design.gain, &Airframe::CRAZYFLIE_2_1, motor_gains::CRAZYFLIE_2_1_ANY.0) else {
-        panic!("no lag")
-    };
-    let table =
-        Table { id: TableId::ActuatorAware, gains: Gains::ActuatorAware(gains), margin: 1.0, limits: Limits::NONE };
-    let bounds = Bounds { leash_m: 1.0, speed_m_s: 1.0, acceleration_m_s2: 1.0 };
-    let settings = Settings { bounds, limits: Limits::NONE, feed_forward: FeedForward::With };
-    Controller::new(Craft::with(known.airframe, known.vehicle, 0), table, settings)
-};
 
 /// Of a table of the paper: the factor by which all channels of the command may be off at once, from its certificate, and
 /// the longest lag of the motors, s, that the body-rate loop of this crate still makes up for at hover.

@@ -7,8 +7,9 @@ use quatrack::{
     ReferenceError, RigidState, StepError, Tracker,
 };
 
-use super::outcome::{Outcome, Output, Settings};
+use super::outcome::{Outcome, Settings};
 use crate::craft::Craft;
+use crate::output::Output;
 use crate::tables::{Gains, MotorGains, Table};
 
 /// Why a step gave nothing.

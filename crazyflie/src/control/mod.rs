@@ -7,6 +7,7 @@
 mod chores;
 mod law_step;
 mod outcome;
+mod power_on;
 
 use quatrack::law::ActuatorMemory;
 use quatrack::mixer::MotorLimited;
@@ -16,12 +17,14 @@ use quatrack::{Command, FifthOrderSample, Heading, MotorForces, Quaternion, Refe
 pub use self::chores::Chore;
 use self::chores::Chores;
 use self::law_step::{LawStep, Unflown, is_finite};
-pub use self::outcome::{Counters, Mode, Outcome, Output, Settings};
+pub use self::outcome::{Counters, Mode, Outcome, Settings};
+pub(crate) use self::power_on::CONTROLLER;
 use crate::abi;
 use crate::craft::{Craft, DECIMATION, PERIOD_S};
 use crate::demand::{Demand, Flight, Horizontal, Motion, Turn, Vertical};
 use crate::edge;
 use crate::guide::{Along, Guide};
+use crate::output::Output;
 use crate::stream::{Arrival, GAP_MAX_MS, Stream};
 use crate::tables::{Gains, Table};
 

@@ -1,34 +1,12 @@
 //! What goes into the controller beside setpoint and estimate, and what comes out of it: settings in; the output, what
 //! was given up for it, and what has been seen on the way, out.
 
-use quatrack::mixer::{MotorLimited, Wrench};
+use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
-use quatrack::{FeedForward, Limits, MotorForces, Quaternion};
+use quatrack::{FeedForward, Limits, Quaternion};
 
-use crate::craft::Craft;
 use crate::guide::Bounds;
-
-/// What a step puts out.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Output {
-    /// For the firmware's mixer.
-    Wrench(Wrench),
-    /// Straight to the motors, N.
-    Forces(MotorForces),
-}
-
-impl Output {
-    /// Motors off.
-    pub const OFF: Self = Self::Forces([0.0; 4]);
-
-    /// As forces.
-    pub(super) fn forces_n(&self, craft: &Craft) -> MotorForces {
-        match self {
-            Self::Forces(forces) => *forces,
-            Self::Wrench(wrench) => craft.airframe.mix(wrench).map_or([0.0; 4], |(forces, _)| forces),
-        }
-    }
-}
+use crate::output::Output;
 
 /// How the last setpoint is flown, for the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
