@@ -11,7 +11,8 @@ use quatrack::nalgebra::Vector3;
 use quatrack::{FifthOrderSample, Heading, State};
 
 use crate::demand::{Flight, Horizontal, Turn, Vertical};
-use crate::stream::{EXTRAPOLATION_MAX_MS, Stream};
+use crate::stream::Stream;
+use crate::turning::Turning;
 
 /// How fast and how far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,8 +47,8 @@ pub struct Along<'a> {
     pub flight: &'a Flight,
     /// Along what.
     pub stream: &'a Stream,
-    /// When its heading was asked for.
-    pub turned_ms: u32,
+    /// With which heading, where it has one.
+    pub turning: &'a Turning,
     /// When.
     pub now_ms: u32,
     /// Whether the law looks beyond the jerk.
@@ -62,27 +63,9 @@ impl Along<'_> {
     #[inline(always)]
     pub fn put(&self, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) -> Heading {
         self.stream.at(self.now_ms, self.to_fifth, sample);
-        let heading = match &self.flight.turn {
-            Turn::Heading { heading, rate_rad_s } => self.turned(heading, *rate_rad_s, sample),
-            Turn::Rate(_) => Heading::ZERO,
-        };
+        let heading = self.turning.at(self.now_ms, sample);
         leash(sample, state, bounds.leash_m);
         heading
-    }
-
-    /// A heading some time after it was asked for, its rate into `sample`; it stands where it has come to when it has no
-    /// successor.
-    #[inline(always)]
-    fn turned(&self, heading: &Heading, rate_rad_s: f32, sample: &mut FifthOrderSample) -> Heading {
-        sample.flat.heading_rate_rad_s = rate_rad_s;
-        if rate_rad_s == 0.0 {
-            return *heading;
-        }
-        let mut age_ms = self.now_ms.wrapping_sub(self.turned_ms);
-        if age_ms > EXTRAPOLATION_MAX_MS {
-            (age_ms, sample.flat.heading_rate_rad_s) = (EXTRAPOLATION_MAX_MS, 0.0);
-        }
-        heading.turned_slightly(rate_rad_s * (age_ms as f32 * 1e-3))
     }
 }
 
@@ -107,7 +90,7 @@ impl Guide {
         let flight = along.flight;
         along.stream.at(along.now_ms, along.to_fifth, sample);
         let heading = match &flight.turn {
-            Turn::Heading { heading, rate_rad_s } => along.turned(heading, *rate_rad_s, sample),
+            Turn::Heading { .. } => along.turning.at(along.now_ms, sample),
             Turn::Rate(rate_rad_s) => self.turn(sample, *rate_rad_s),
         };
         if !matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position)) {
@@ -127,6 +110,7 @@ impl Guide {
             self.heading_rad -= if self.heading_rad > 0.0 { 2.0 * TURN } else { -2.0 * TURN };
         }
         sample.flat.heading_rate_rad_s = rate_rad_s;
+        (sample.heading_acceleration_rad_s2, sample.heading_jerk_rad_s3) = (0.0, 0.0);
         Heading::from_angle(self.heading_rad)
     }
 

@@ -8,7 +8,7 @@
 //!   service      parameters, logs, tables that are sent
 //!     control    one step; changes of the table
 //!       guide    demands -> a motion with heading
-//!         stream setpoints at 100 Hz -> position to crackle at every step
+//!         stream, turning  setpoints at 100 Hz -> position to crackle, heading to its jerk, at every step
 //!       tables   gains as flown
 //!       edge     the firmware's units and conventions -> SI
 //!         abi, demand, output
@@ -36,6 +36,7 @@ pub mod shared;
 pub mod stream;
 pub mod tables;
 mod try_cell;
+pub mod turning;
 pub mod upload;
 
 #[cfg(target_os = "none")]

@@ -1,9 +1,10 @@
 //! Setpoints that come slowly: what the Crazyflie's controller makes of the motion between them.
 
-use quatrack::FifthOrderSample;
 use quatrack::nalgebra::Vector3;
+use quatrack::{FifthOrderSample, Heading};
 use quatrack_crazyflie::demand::Motion;
 use quatrack_crazyflie::stream::{Arrival, EXTRAPOLATION_MAX_MS, GAP_MAX_MS, Stream};
+use quatrack_crazyflie::turning::Turning;
 
 /// A curve of degree 6, whose crackle still changes; the order is that of the derivative.
 fn curve(order: usize, t_s: f64) -> Vector3<f64> {
@@ -130,4 +131,57 @@ fn the_setpoint_that_is_flown_already_changes_nothing() {
     assert_eq!(stream.accept(&motion(0.05), 57), Arrival::Continued);
     assert_eq!(stream.accept_to_jerk(&motion(0.05), 58), Arrival::Continued);
     assert_eq!(at(&stream, 58, true), before);
+}
+
+/// A heading whose jerk is 12 rad/s^3 throughout, with its derivatives.
+fn turn(t_s: f64) -> [f64; 4] {
+    [0.3 + 0.5 * t_s - 2.0 * t_s * t_s + 2.0 * t_s.powi(3), 0.5 - 4.0 * t_s + 6.0 * t_s * t_s, -4.0 + 12.0 * t_s, 12.0]
+}
+
+/// Headings every `gap_ms` up to the last, that came at `end_ms`.
+fn turned(gap_ms: u32, end_ms: u32, is_differenced: bool) -> Turning {
+    let mut turning = Turning::new();
+    for ms in (0..=end_ms).step_by(gap_ms as usize) {
+        let [heading, rate, ..] = turn(f64::from(ms) * 1e-3).map(|c| c as f32);
+        if ms == 0 {
+            turning.begin(Heading::from_angle(heading), rate, 0);
+        } else {
+            *turning.heading_mut() = Heading::from_angle(heading);
+            turning.go_on(rate, ms, is_differenced);
+        }
+    }
+    turning
+}
+
+fn heading_at(turning: &Turning, ms: u32) -> [f64; 4] {
+    let mut sample = FifthOrderSample::at_rest(Vector3::zeros(), 0.0);
+    let heading = turning.at(ms, &mut sample);
+    let half = f64::from(heading.sin_half()).atan2(f64::from(heading.cos_half()));
+    let (rate, second, third) =
+        (sample.flat.heading_rate_rad_s, sample.heading_acceleration_rad_s2, sample.heading_jerk_rad_s3);
+    [2.0 * half, f64::from(rate), f64::from(second), f64::from(third)]
+}
+
+#[test]
+fn three_rates_give_a_turn_to_its_third_derivative() {
+    let turning = turned(10, 40, true);
+    let (found, wanted) = (heading_at(&turning, 46), turn(0.046));
+    // The heading lacks t^3/6 of the jerk; rates of 0.5 rad/s are rounded by 3e-8, over the gap and its square.
+    for (order, tolerance) in [(0, 12.0 * 0.006_f64.powi(3) / 6.0 + 5e-7), (1, 2e-7), (2, 2e-5), (3, 3e-3)] {
+        assert!((found[order] - wanted[order]).abs() <= tolerance, "{order}: {found:?}, not {wanted:?}");
+    }
+}
+
+#[test]
+fn a_turn_that_jumps_pauses_or_is_not_to_be_differenced_has_a_rate_alone() {
+    let bare = |turning: &Turning, ms: u32| heading_at(turning, ms)[2..] == [0.0, 0.0];
+    assert!(bare(&turned(10, 40, false), 44));
+    assert!(bare(&turned(GAP_MAX_MS + 1, 4 * (GAP_MAX_MS + 1), true), 4 * (GAP_MAX_MS + 1)));
+    let mut jumped = turned(10, 40, true);
+    jumped.go_on(1.5, 50, true);
+    assert!(bare(&jumped, 54));
+    // Without successors it stands after a tenth of a second.
+    let [heading, rate, _, _] = turn(0.04);
+    let late = heading_at(&turned(10, 40, true), 40 + EXTRAPOLATION_MAX_MS + 1);
+    assert!((late[0] - heading - 0.1 * rate).abs() < 1e-6 && late[1..] == [0.0; 3], "{late:?}");
 }

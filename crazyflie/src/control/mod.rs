@@ -27,6 +27,7 @@ use crate::guide::{Along, Guide};
 use crate::output::Output;
 use crate::stream::{Arrival, GAP_MAX_MS, Stream};
 use crate::tables::{Gains, Table};
+use crate::turning::Turning;
 
 /// Control steps that a change of the table takes: a quarter of a second.
 pub const FADE_STEPS: u16 = 125;
@@ -50,9 +51,9 @@ pub struct Controller {
     prepared: Option<Reference>,
     prepared_for: Option<u32>,
     flight: Option<Flight>,
-    /// When the newest setpoint came that continued it, and the one whose heading was taken last, ms.
+    /// When the newest setpoint came that continued it, ms.
     came_ms: u32,
-    turned_ms: u32,
+    turning: Turning,
     guide: Guide,
     settings: Settings,
     outcome: Outcome,
@@ -91,7 +92,7 @@ impl Controller {
             prepared_for: None,
             flight: None,
             came_ms: 0,
-            turned_ms: 0,
+            turning: Turning::new(),
             guide: Guide::new(PERIOD_S),
             settings,
             outcome: Outcome { output, limited, target: Quaternion::IDENTITY, error_m: ZERO },
@@ -202,10 +203,9 @@ impl Controller {
     #[inline(never)]
     fn turn_on(&mut self, setpoint: &abi::Setpoint) -> bool {
         self.is_turn_due = false;
-        let turn = self.flight.as_mut().map(|flight| &mut flight.turn);
-        let Some(Turn::Heading { heading, rate_rad_s }) = turn else { return false };
-        let Some(rate) = edge::turn_on(heading, &self.setpoint, setpoint) else { return false };
-        (*rate_rad_s, self.turned_ms) = (rate, self.came_ms);
+        let Some(rate) = edge::turn_on(self.turning.heading_mut(), &self.setpoint, setpoint) else { return false };
+        let is_differenced = self.looks_beyond_jerk() && edge::is_by_yaw(setpoint);
+        self.turning.go_on(rate, self.came_ms, is_differenced);
         self.setpoint.attitude.yaw = setpoint.attitude.yaw;
         true
     }
@@ -244,8 +244,8 @@ impl Controller {
     pub fn prepare(&mut self, state: &abi::State, next_step: u32) {
         let Some(flight) = self.flight.as_ref().filter(|_| self.is_along && !self.looks_beyond_jerk()) else { return };
         let mass_kg = self.craft.airframe.figures().mass_kg;
-        let (stream, turned_ms) = (&self.stream, self.turned_ms);
-        let along = Along { flight, stream, turned_ms, now_ms: next_step, to_fifth: false, mass_kg };
+        let (stream, turning) = (&self.stream, &self.turning);
+        let along = Along { flight, stream, turning, now_ms: next_step, to_fifth: false, mass_kg };
         self.heading = along.put(&edge::state(state), &self.settings.bounds, &mut self.sample);
         let flat = &self.sample.flat;
         let is_there = match &mut self.prepared {
@@ -301,7 +301,10 @@ impl Controller {
             self.begin(&flight, state);
         }
         self.accept(setpoint, now_ms);
-        (self.is_along, self.flight, self.turned_ms) = (flight.is_along(), Some(flight), now_ms);
+        if let Turn::Heading { heading, rate_rad_s } = flight.turn {
+            self.turning.begin(heading, rate_rad_s, now_ms);
+        }
+        (self.is_along, self.flight) = (flight.is_along(), Some(flight));
     }
 
     /// Starts a flight of another kind.
@@ -324,8 +327,8 @@ impl Controller {
         if reference.is_none() {
             let to_fifth = self.looks_beyond_jerk();
             let mass_kg = self.craft.airframe.figures().mass_kg;
-            let (stream, turned_ms) = (&self.stream, self.turned_ms);
-            let along = Along { flight, stream, turned_ms, now_ms, to_fifth, mass_kg };
+            let (stream, turning) = (&self.stream, &self.turning);
+            let along = Along { flight, stream, turning, now_ms, to_fifth, mass_kg };
             self.heading = self.guide.put(&along, &state.state, &self.settings.bounds, &mut self.sample);
         }
         let (r, p) = (&state.state.position_m, &self.sample.flat.position_m);

@@ -135,14 +135,19 @@ pub fn goes_on(kept: &abi::Setpoint, setpoint: &abi::Setpoint) -> bool {
 #[inline(always)]
 pub fn turn_on(heading: &mut Heading, kept: &abi::Setpoint, setpoint: &abi::Setpoint) -> Option<f32> {
     let rate = heading_rate_rad_s(setpoint);
-    let is_by_yaw = kept.mode.yaw == Mode::ABSOLUTE;
-    if is_by_yaw && kept.attitude.yaw.to_bits() == setpoint.attitude.yaw.to_bits() {
+    if is_by_yaw(kept) && kept.attitude.yaw.to_bits() == setpoint.attitude.yaw.to_bits() {
         // Most flights do not turn.
         return is_sound(rate).then_some(rate);
     }
     *heading = self::heading(setpoint)?;
     let (cos, sin) = heading.cos_sin();
     is_sound(cos + sin + rate).then_some(rate)
+}
+
+/// Whether a heading is asked for by an angle of yaw: the commander on board does so, scripts on the ground send an attitude.
+#[inline(always)]
+pub fn is_by_yaw(setpoint: &abi::Setpoint) -> bool {
+    setpoint.mode.yaw == Mode::ABSOLUTE
 }
 
 /// And the sum of the figures that it is made of, finite only if all of them are.
