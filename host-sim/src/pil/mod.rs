@@ -6,6 +6,7 @@
 //! measure          instructions a step, flash, RAM
 //!   worst          what makes a step cost most, on the host
 //!   flights        the paper's flights, flown by the core on the host
+//!     bits         what is compared, and its hash
 //!     emulated     a board in an emulator
 //!     client       a board behind its line
 //!       emulator   the process that runs an image
@@ -14,6 +15,7 @@
 //!         stored   the trajectories that the board has in flash
 //! ```
 
+mod bits;
 pub mod client;
 pub mod emulated;
 pub mod emulator;

@@ -16,9 +16,9 @@ use quatrack::{
 };
 use serde::Serialize;
 
+use super::bits::Fnv1a;
 use super::client::Client;
-use super::flights::{COURSES, Plans, RATE_HZ};
-use super::lock_step::{Fnv1a, PATIENCE_TICKS, trajectory_id};
+use super::flights::{COURSES, PATIENCE_TICKS, Plans, RATE_HZ, share, trajectory_id};
 use super::{PilError, stored};
 use crate::flight::closed_loop::SAMPLE_PERIOD_S;
 use crate::flight::reference::{Exact, Reference as _};
@@ -169,7 +169,7 @@ pub(super) fn fly_all(
     let mut hash = Fnv1a::new();
     let flights = COURSES.iter().flat_map(|course| MotorFlight::ALL.map(|flight| (*course, flight)));
     for (index, (course, flight)) in flights.enumerate() {
-        let share = limit.map(|limit| super::lock_step::share(limit, index as u32, FLIGHTS));
+        let share = limit.map(|limit| share(limit, index as u32, FLIGHTS));
         let iae = fly_one(client, plans, (course, flight), (&vehicle, share), (&mut report, &mut hash), advance)?;
         report.iae.entry(course).or_default().insert(flight, iae);
     }
