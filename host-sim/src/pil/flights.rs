@@ -3,12 +3,13 @@
 use quatrack::link::{Table, TrajectoryId};
 use quatrack::{Command, Limits, Player, Rate, State, Tracker};
 
-use super::{PilError, stored};
+use super::PilError;
 use crate::flight::closed_loop::{Flight, HeldCommand, fly_sampled};
 use crate::flight::core_loop;
 use crate::flight::reference::Exact;
 use crate::model::StateVector;
 use crate::plan;
+use crate::plan::stored;
 use crate::reproduction::table::{Controller, Course, core_law};
 use crate::trajectory::polynomial::PiecewisePolynomial;
 

@@ -13,6 +13,7 @@ use super::client::Client;
 use super::flights::{COURSES, HostCore, PATIENCE_TICKS, Plans, RATE_HZ, fly, share, table, trajectory_id};
 use super::motors::{self, MotorReport};
 use crate::flight::metrics::Metrics;
+use crate::plan::stored;
 use crate::reproduction::report::digits;
 use crate::reproduction::table::{Controller, Course};
 
@@ -94,7 +95,7 @@ fn of_motors(limit: u32) -> u32 {
 pub fn step_count(limit: Option<u32>) -> u64 {
     let whole: u64 = COURSES
         .iter()
-        .map(|course| super::stored::pieces(*course).iter().map(|piece| piece.duration_ns).sum::<u64>())
+        .map(|course| stored::pieces(*course).iter().map(|piece| piece.duration_ns).sum::<u64>())
         .map(|duration_ns| duration_ns * u64::from(RATE_HZ) / 1_000_000_000 + 1)
         .sum();
     // Each course once with every law.

@@ -12,7 +12,6 @@
 //!       emulator   the process that runs an image
 //!       line       pipes or a serial port, with deadlines
 //!         image    built here, or given; what it takes in flash and RAM
-//!         stored   the trajectories that the board has in flash
 //! ```
 
 mod bits;
@@ -26,13 +25,14 @@ pub mod line;
 pub mod lock_step;
 pub mod measure;
 pub mod motors;
-pub mod stored;
 mod worst;
 
 use std::io;
 use std::path::PathBuf;
 
 use thiserror::Error;
+
+pub use crate::plan::stored;
 
 /// Why an image was not flown or counted.
 #[derive(Debug, Error)]

@@ -16,13 +16,14 @@ use quatrack::{
 };
 use serde::Serialize;
 
+use super::PilError;
 use super::bits::Fnv1a;
 use super::client::Client;
 use super::flights::{COURSES, PATIENCE_TICKS, Plans, RATE_HZ, share, trajectory_id};
-use super::{PilError, stored};
 use crate::flight::closed_loop::SAMPLE_PERIOD_S;
 use crate::flight::reference::{Exact, Reference as _};
 use crate::model::position;
+use crate::plan::stored;
 use crate::plant::{Craft, Ground, RigidState as PlantState};
 use crate::reproduction::report::digits;
 use crate::reproduction::table::Course;

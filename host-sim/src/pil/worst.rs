@@ -12,9 +12,10 @@ use quatrack::{
     Trajectory, gains::paper,
 };
 
+use super::PilError;
 use super::bits::words;
 use super::flights::{RATE_HZ, table};
-use super::{PilError, stored};
+use crate::plan::stored;
 use crate::reproduction::table::{Controller, Course};
 
 /// The name of a gain without a zero.
