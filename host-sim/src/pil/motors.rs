@@ -21,6 +21,7 @@ use super::bits::Fnv1a;
 use super::client::Client;
 use super::flights::{COURSES, PATIENCE_TICKS, Plans, RATE_HZ, share, trajectory_id};
 use crate::flight::closed_loop::SAMPLE_PERIOD_S;
+use crate::flight::motor_laws::body_rate_bandwidth_rad_s;
 use crate::flight::reference::{Exact, Reference as _};
 use crate::model::position;
 use crate::plan::stored;
@@ -68,9 +69,9 @@ impl MotorFlight {
         }
     }
 
-    /// The body-rate loop for that lag: the fastest that leaves it well damped, rad/s.
+    /// The body-rate loop for that lag.
     fn bandwidth_rad_s(self, vehicle: &Vehicle) -> [f32; 3] {
-        [(0.5 / self.lag_s(vehicle)) as f32; 3]
+        [body_rate_bandwidth_rad_s(self.lag_s(vehicle)) as f32; 3]
     }
 }
 
