@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 /// What computes commands, seen from the workspace's root.
-const CONTROL_PATH: [&str; 10] = [
+const CONTROL_PATH: [&str; 11] = [
     "core/src",
     "plans",
     "gains/generated/actuator-aware.rs",
@@ -16,6 +16,7 @@ const CONTROL_PATH: [&str; 10] = [
     "firmware/src/motor_control.rs",
     "firmware/src/playback.rs",
     "firmware/src/playback",
+    "firmware/src/rates.rs",
 ];
 
 fn main() -> io::Result<()> {

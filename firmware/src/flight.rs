@@ -22,21 +22,7 @@ use crate::playback::{self, Playback};
 
 use self::motors::StepInput;
 pub use self::motors::ToMotors;
-
-/// Ticks of the loop a second.
-pub const TICK_RATE_HZ: u32 = 1000;
-
-/// The same as a rate.
-pub const TICK_RATE: Rate = match Rate::from_hz(TICK_RATE_HZ) {
-    Some(rate) => rate,
-    None => panic!("the core does not tick at this rate"),
-};
-
-/// Ticks for one control step unless it is set otherwise: 500 Hz.
-pub const DECIMATION: u32 = 2;
-
-/// Decimation at which the steps are taken when states come, on the clock of the states: lock-step with a simulation.
-pub const LOCK_STEP: u32 = 0;
+pub use crate::rates::{DECIMATION, LOCK_STEP, TICK_RATE, TICK_RATE_HZ};
 
 /// Bounds of a flight unless they are set otherwise: 50 ms without a state, half a second without a frame.
 pub const CONFIG: Config = Config { state_age_max_ticks: 50, link_silence_max_ticks: 500, overruns_tolerated: 2 };

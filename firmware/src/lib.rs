@@ -14,6 +14,7 @@
 //!       playback, stored      what is followed; the trajectories in flash
 //!         motor_control       laws carried to the motors
 //!         control, timing     the step against traits; overruns, jitter, the longest step
+//!           rates             how often the loop ticks and steps
 //!     craft                   a flight's gyroscope and motors
 //!       drivers               BMI088, brushed motors, battery, against the traits of `embedded-hal`
 //! ```
@@ -29,6 +30,7 @@ pub mod flight;
 pub mod laws;
 pub mod motor_control;
 pub mod playback;
+pub mod rates;
 #[cfg(feature = "motors")]
 pub mod session;
 pub mod stored;

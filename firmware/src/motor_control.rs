@@ -11,7 +11,7 @@ use quatrack::{
     MotorReference, MotorStep, MotorTracker, Rate, ReferenceError, RigidState, StateError, Step, StepError, Tick,
 };
 
-use crate::flight::{DECIMATION, TICK_RATE_HZ};
+use crate::rates::{DECIMATION, TICK_RATE_HZ};
 
 /// The table in the image.
 pub mod table {

@@ -8,7 +8,7 @@ use quatrack::trajectory::Bookmark;
 use quatrack::{FlatSample, Player, Reference, ReferenceError, Tick};
 
 use crate::control::ReferenceSource;
-use crate::flight::TICK_RATE;
+use crate::rates::TICK_RATE;
 
 /// Uploaded trajectories: the one in use and the one that is being checked.
 pub type Store = TrajectoryStore<TRAJECTORY_PIECES>;

@@ -3,7 +3,7 @@
 use quatrack::link::TrajectoryId;
 use quatrack::{Piece, Player, Trajectory};
 
-use crate::flight::TICK_RATE;
+use crate::rates::TICK_RATE;
 
 include!("../../plans/mild.rs");
 include!("../../plans/aggressive.rs");

@@ -5,7 +5,7 @@ use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};
 
 use quatrack::Tick;
 
-use crate::flight::{DECIMATION, LOCK_STEP};
+use crate::rates::{DECIMATION, LOCK_STEP};
 
 /// All interrupts run on one core and each number has one writer: relaxed order is order enough.
 pub struct Timing {

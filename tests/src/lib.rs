@@ -1,5 +1,7 @@
 //! What the tests that cross crates share; they live in `tests/`.
 
+pub mod design_problem;
+
 /// The README's example is compiled and run.
 #[doc = include_str!("../../README.md")]
 #[cfg(doctest)]

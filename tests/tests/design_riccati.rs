@@ -1,13 +1,12 @@
 //! The Riccati solver on cases with a known answer, on random pairs by property, and on what it must refuse.
 
-mod design_problem;
-
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use proptest::prelude::*;
 use quatrack_sim::analysis::MatrixError;
 use quatrack_sim::design::{DesignError, RiccatiSolution, care, lqr, strong_care};
-
-use design_problem::{cases, identity, matrix, random_problem, relative_error};
+use quatrack_tests::design_problem::{
+    cases, hidden_mode, identity, matrix, random_problem, relative_error, scales_with_the_states,
+};
 
 /// CAREX 2.2 with eps = 2^-24 and 2^-40: p11, p12, p22.
 const REFERENCE_2_2_A: (i32, [f64; 3]) = (24, [74.723_329_897_026_65, 830.150_239_126_018_5, 9_222.981_792_028_486]);
@@ -259,35 +258,16 @@ proptest! {
     }
 
     #[test]
-    fn scaling_the_states_scales_the_solution((a, b, q, r) in random_problem(), exponents in prop::collection::vec(-30..30_i32, 8)) {
+    fn scaling_the_states_scales_the_solution(
+        (a, b, q, r) in random_problem(), exponents in prop::collection::vec(-30..30_i32, 8),
+    ) {
         prop_assume!(b.norm() > 1e-3);
-        let n = a.nrows();
-        let d = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| f64::from(exponents[i]).exp2()));
-        let inverse = DMatrix::from_diagonal(&DVector::from_fn(n, |i, _| f64::from(-exponents[i]).exp2()));
-        let plain = lqr(&a, &b, &q, &r);
-        let scaled = lqr(&(&inverse * &a * &d), &(&inverse * &b), &(&d * &q * &d), &r);
-        if let (Ok(plain), Ok(scaled)) = (plain, scaled) {
-            // Both are exact to the last digit, and powers of two change none.
-            let back = &inverse * scaled.p * &inverse;
-            prop_assert!(relative_error(&back, &plain.p) <= 1e-15);
-        } else {
-            prop_assert!(false, "a change of units decides whether there is a solution");
-        }
+        scales_with_the_states((&a, &b, &q), &exponents, |a, b, q| Some(lqr(a, b, q, &r).ok()?.p))?;
     }
 
     #[test]
-    fn a_hidden_unstable_mode_is_found_in_any_basis(
-        n in 2_usize..8, growth in 0.1..2.0_f64, entries in prop::collection::vec(-1.0..1.0_f64, 200),
-    ) {
-        // The first state drives the others and is driven by nothing; then a rotation.
-        let a = DMatrix::from_fn(n, n, |i, j| match (i, j) {
-            (0, 0) => growth,
-            (0, _) => 0.0,
-            _ => entries[8 * i + j],
-        });
-        let b = DMatrix::from_fn(n, 2, |i, j| if i == 0 { 0.0 } else { entries[64 + 2 * i + j] });
-        let q = DMatrix::from_fn(n, n, |i, j| entries[100 + 8 * i + j]).qr().q();
-        let result = lqr(&(&q * &a * q.transpose()), &(&q * b), &identity(n), &identity(2));
+    fn a_hidden_unstable_mode_is_found_in_any_basis((a, b) in hidden_mode(0.1..2.0_f64)) {
+        let result = lqr(&a, &b, &identity(a.nrows()), &identity(2));
         prop_assert!(
             matches!(result, Err(DesignError::NotStabilisable { eigenvalue }) if eigenvalue.re >= 0.0),
             "{:?}", result

@@ -1,15 +1,14 @@
 //! Held inputs and the discrete Riccati and Lyapunov equations: closed forms, DAREX, properties, refusals.
 
-mod design_problem;
-
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 use quatrack_sim::analysis::eigenvalues;
 use quatrack_sim::design::discretise::{exponential, zero_order_hold, zero_order_hold_late};
 use quatrack_sim::design::sampled::{CostForm, Sampling, sampled_lqr};
 use quatrack_sim::design::{DesignError, dare, dlqr, dlqr_with_cross, stein};
-
-use design_problem::{cases, identity, matrix, random_problem, relative_error};
+use quatrack_tests::design_problem::{
+    cases, hidden_mode, identity, matrix, random_problem, relative_error, scales_with_the_states,
+};
 
 #[test]
 fn exponentials_are_right_to_the_last_digit() {
@@ -281,35 +280,12 @@ proptest! {
         (a, b, q, r) in random_problem(), exponents in prop::collection::vec(-30..30_i32, 8),
     ) {
         prop_assume!(b.norm() > 1e-3);
-        let n = a.nrows();
-        let diagonal = |sign: i32| DMatrix::from_fn(n, n, |i, j| {
-            if i == j { f64::from(sign * exponents[i]).exp2() } else { 0.0 }
-        });
-        let (d, inverse) = (diagonal(1), diagonal(-1));
-        let plain = dlqr(&a, &b, &q, &r);
-        let scaled = dlqr(&(&inverse * &a * &d), &(&inverse * &b), &(&d * &q * &d), &r);
-        if let (Ok(plain), Ok(scaled)) = (plain, scaled) {
-            // Both are exact to the last digit, and powers of two change none.
-            let back = &inverse * scaled.p * &inverse;
-            prop_assert!(relative_error(&back, &plain.p) <= 1e-15);
-        } else {
-            prop_assert!(false, "a change of units decides whether there is a solution");
-        }
+        scales_with_the_states((&a, &b, &q), &exponents, |a, b, q| Some(dlqr(a, b, q, &r).ok()?.p))?;
     }
 
     #[test]
-    fn a_hidden_unstable_mode_is_found_in_any_basis(
-        n in 2_usize..8, growth in 1.05..2.0_f64, entries in prop::collection::vec(-1.0..1.0_f64, 200),
-    ) {
-        // The first state drives the others and is driven by nothing; then a rotation.
-        let a = DMatrix::from_fn(n, n, |i, j| match (i, j) {
-            (0, 0) => growth,
-            (0, _) => 0.0,
-            _ => entries[8 * i + j],
-        });
-        let b = DMatrix::from_fn(n, 2, |i, j| if i == 0 { 0.0 } else { entries[64 + 2 * i + j] });
-        let basis = DMatrix::from_fn(n, n, |i, j| entries[100 + 8 * i + j]).qr().q();
-        let result = dlqr(&(&basis * &a * basis.transpose()), &(&basis * b), &identity(n), &identity(2));
+    fn a_hidden_unstable_mode_is_found_in_any_basis((a, b) in hidden_mode(1.05..2.0_f64)) {
+        let result = dlqr(&a, &b, &identity(a.nrows()), &identity(2));
         prop_assert!(
             matches!(result, Err(DesignError::NotStabilisable { eigenvalue }) if eigenvalue.norm() >= 1.0),
             "{:?}", result

@@ -24,7 +24,7 @@ use crate::counter::Counter;
 use crate::drivers::bmi088::{Address, Bandwidth, Gyro, GyroError, Range};
 use crate::drivers::motors::Motors;
 use crate::drivers::thrust_curve::ThrustCurve;
-use crate::flight::TICK_RATE_HZ;
+use crate::rates::TICK_RATE_HZ;
 use crate::transport::usart;
 
 /// With the crystal: 8 MHz / 4 * 168 / 2.

@@ -1,28 +1,17 @@
-//! The certificate: a plant, a controller and a timing in; every figure that the loop as flown is held to out.
+//! The certificate: every figure that the loop as flown is held to.
 
-use nalgebra::DMatrix;
 use num_complex::Complex64;
 use serde::Serialize;
 
-use super::CertifyError;
-use super::along::AlongFigures;
-use super::decrease::{self, Decrease};
-use super::limits::{Disturbance, StabilityLimit, limits};
-use super::linear_loop::LinearLoop;
-use super::margins::{self, LoopMargins};
-use super::plant::{Controller, LagModel, Plant, Predictor, Timing};
-use super::sampled_loop::SampledLoop;
-use crate::analysis::eigenvalues;
+use super::decrease::Decrease;
+use super::limits::StabilityLimit;
+use super::margins::LoopMargins;
+use super::rounding::Rounding;
 
-/// Periods for which the searches end in seconds, s.
-const SHORTEST_PERIOD_S: f64 = 1e-5;
-const LONGEST_PERIOD_S: f64 = 10.0;
 /// Real parts closer than this share of the largest pole count as equal.
 const SAME: f64 = 1e-9;
-/// A rounding below this share of an entry is the f64 design's own.
-const NO_ROUNDING: f64 = 1e-12;
-/// Each known sample of delay is a state a channel.
-const MOST_DELAY_SAMPLES: usize = 100;
+/// A figure counts as worse than another beyond this ratio: of equals the first one is named, on every processor the same.
+pub(super) const WORSE: f64 = 1.0 + 1e-9;
 
 /// What a gain promises, computed from it as rounded to f32.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -46,15 +35,6 @@ pub struct Certificate {
     /// Of gains over time; the figures above are then the worst of their knots.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub along: Option<AlongFigures>,
-}
-
-/// Distance of the gain as flown from the gain as designed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Rounding {
-    /// Largest difference of an entry.
-    pub largest_absolute: f64,
-    /// Largest difference of an entry over that entry; at most 2^-24 unless an entry is below 1e-38.
-    pub largest_relative: f64,
 }
 
 /// The loop in continuous time.
@@ -83,121 +63,25 @@ pub struct SampledLoopFigures {
     pub margins: LoopMargins,
 }
 
-/// Certifies a controller, every gain rounded to f32 first.
-///
-/// `motors_in_rate_loop`: the gain of the body rate loop, 1/s, for one more set of lag limits.
-///
-/// # Errors
-/// [`CertifyError::Matrix`] for a gain that does not fit the plant or is not finite; [`CertifyError::NotSinglePrecision`];
-/// [`CertifyError::Unstable`] for a loop that is not stable at its rate; [`CertifyError::RateGain`];
-/// [`CertifyError::Period`] and [`CertifyError::DelaySamples`] for a timing out of range; [`CertifyError::Design`] for an
-/// equation without a solution.
-pub fn certify(
-    plant: &Plant,
-    controller: &Controller,
-    timing: &Timing,
-    motors_in_rate_loop: Option<f64>,
-) -> Result<Certificate, CertifyError> {
-    plant.require_fitting(controller)?;
-    // Written so that NaN is refused.
-    if !(SHORTEST_PERIOD_S..=LONGEST_PERIOD_S).contains(&timing.period_s) {
-        return Err(CertifyError::Period { period_s: timing.period_s });
-    }
-    let memory = timing.delay_samples.max(controller.past_command_gains.len());
-    if memory > MOST_DELAY_SAMPLES {
-        return Err(CertifyError::DelaySamples { delay_samples: memory });
-    }
-    if let Some(gain_1_s) = motors_in_rate_loop.filter(|gain| !(gain.is_finite() && *gain > 0.0)) {
-        return Err(CertifyError::RateGain { gain_1_s });
-    }
-    let flown = Controller {
-        gain: single_precision(&controller.gain)?,
-        past_command_gains: controller.past_command_gains.iter().map(single_precision).collect::<Result<_, _>>()?,
-        predictor: controller
-            .predictor
-            .as_ref()
-            .map(|held| Ok::<_, CertifyError>(Predictor { gain: single_precision(&held.gain)?, ..*held }))
-            .transpose()?,
-    };
-    let whole = LinearLoop::new(plant, &flown);
-    let parts = whole.independent();
-    let names = plant.input_names();
-    let closed = SampledLoop::new(&whole, timing, &[])?.closed_loop();
-    let poles = eigenvalues(&closed)?;
-    let spectral_radius = poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max);
-    let rate_hz = 1.0 / timing.period_s;
-    let unstable = CertifyError::Unstable { rate_hz, spectral_radius };
-    if spectral_radius >= 1.0 {
-        return Err(unstable);
-    }
-    let sampled = SampledLoopFigures {
-        poles: pairs(&poles),
-        spectral_radius,
-        decrease: decrease::sampled(&closed)?,
-        margins: margins::sampled(&parts, timing, names)?.ok_or(unstable)?,
-    };
-    let has_continuous_form =
-        flown.past_command_gains.is_empty() && flown.predictor.is_none() && timing.delay_samples == 0;
-    let search = |disturbance| limits(&parts, timing, names, disturbance);
-    Ok(Certificate {
-        rate_hz,
-        delay_samples: timing.delay_samples,
-        rounding: rounding(controller, &flown),
-        continuous: if has_continuous_form { Some(continuous(&whole, &parts, names)?) } else { None },
-        sampled,
-        delay: search(Disturbance::Delay)?,
-        lag: search(Disturbance::Lag(LagModel::FirstOrder))?,
-        motors_in_rate_loop: motors_in_rate_loop
-            .map(|rate_gain_1_s| search(Disturbance::Lag(LagModel::MotorsInRateLoop { rate_gain_1_s })))
-            .transpose()?,
-        along: None,
-    })
-}
-
-fn continuous(whole: &LinearLoop, parts: &[LinearLoop], names: &[String]) -> Result<ContinuousLoop, CertifyError> {
-    let (a, b, gain) = whole.continuous();
-    let closed = a - b * gain;
-    let poles = eigenvalues(&closed)?;
-    let abscissa_1_s = poles.iter().map(|pole| pole.re).fold(f64::NEG_INFINITY, f64::max);
-    let stable = abscissa_1_s < 0.0;
-    Ok(ContinuousLoop {
-        poles_1_s: pairs(&poles),
-        abscissa_1_s,
-        decrease: if stable { Some(decrease::continuous(&closed)?) } else { None },
-        margins: if stable { margins::continuous(parts, names)? } else { None },
-    })
-}
-
-/// Every entry the nearest f32.
-pub(super) fn single_precision(gain: &DMatrix<f64>) -> Result<DMatrix<f64>, CertifyError> {
-    for column in 0..gain.ncols() {
-        for row in 0..gain.nrows() {
-            let value = gain[(row, column)];
-            if !(value as f32).is_finite() {
-                return Err(CertifyError::NotSinglePrecision { row, column, value });
-            }
-        }
-    }
-    Ok(gain.map(|value| f64::from(value as f32)))
-}
-
-fn rounding(designed: &Controller, flown: &Controller) -> Rounding {
-    let matrices = |controller: &Controller| -> Vec<DMatrix<f64>> {
-        let predictor = controller.predictor.iter().map(|held| &held.gain);
-        std::iter::once(&controller.gain).chain(&controller.past_command_gains).chain(predictor).cloned().collect()
-    };
-    let mut found = Rounding { largest_absolute: 0.0, largest_relative: 0.0 };
-    for (designed, flown) in matrices(designed).iter().zip(&matrices(flown)) {
-        for (designed, flown) in designed.iter().zip(flown.iter()).filter(|(designed, _)| **designed != 0.0) {
-            let difference = (designed - flown).abs();
-            if difference < NO_ROUNDING * designed.abs() {
-                continue;
-            }
-            found.largest_absolute = found.largest_absolute.max(difference);
-            found.largest_relative = found.largest_relative.max(difference / designed.abs());
-        }
-    }
-    found
+/// What is particular to gains over time. The figures beside it are the worst of the knots.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AlongFigures {
+    /// Knots.
+    pub knots: usize,
+    /// Time between two of them, s.
+    pub spacing_s: f64,
+    /// Control steps at which the decrease was checked, with that of the hover behind the last knot.
+    pub steps: usize,
+    /// What is left of V after the step that takes off least, as a share.
+    pub largest_ratio: f64,
+    /// When that step is, s.
+    pub largest_ratio_at_s: f64,
+    /// Largest distance of the interpolated gain from the optimal one at any control step, over the norm of that.
+    pub interpolation_error: f64,
+    /// Spectral radius of the loop frozen at each knot.
+    pub spectral_radii: Vec<f64>,
+    /// The knot with the least margin of all channels at once.
+    pub least_margin_at_knot: usize,
 }
 
 /// Sorted by real part, and by imaginary part where the real parts differ by rounding only: the order of poles that

@@ -8,13 +8,15 @@
 //! - the largest delay and the largest actuator lag up to which the sampled loop stays stable.
 //!
 //! A loop that falls apart into independent chains, as those of hover do, is taken apart first: its figures are then
-//! exact for all channels at once, too. [`certify_along`] does the same for gains over time. [`certify_region`] holds an actuator-aware gain against a region of lags, masses,
-//! inertias and delays. [`require`] holds a certificate against the least that a design asks for.
+//! exact for all channels at once, too. [`certify_along`] does the same for gains over time. [`certify_region`] holds an
+//! actuator-aware gain against a region of lags, masses, inertias and delays. [`require`] holds a certificate against the
+//! least that a design asks for.
 //!
 //! Reference: Seiler, Packard and Gahinet, An Introduction to Disk Margins, IEEE Control Systems Magazine 2020.
 
 mod along;
 mod certificate;
+mod constant;
 mod decrease;
 mod error;
 mod limits;
@@ -23,12 +25,14 @@ mod margins;
 mod minimum;
 mod plant;
 mod region;
+mod rounding;
 mod sampled_loop;
 mod structured;
 mod sweep;
 
-pub use along::{AlongFigures, MovingDecrease, certify_along, moving_decrease};
-pub use certificate::{Certificate, ContinuousLoop, Rounding, SampledLoopFigures, certify};
+pub use along::{MovingDecrease, certify_along, moving_decrease};
+pub use certificate::{AlongFigures, Certificate, ContinuousLoop, SampledLoopFigures};
+pub use constant::certify;
 pub use decrease::Decrease;
 pub use error::CertifyError;
 pub use limits::StabilityLimit;
@@ -36,4 +40,5 @@ pub use margins::{AllChannels, ChannelMargins, DiskMargin, LoopMargins};
 pub use minimum::{Judged, MarginTooSmall, Minimum, Quantity, judge, require};
 pub use plant::{Controller, LagModel, Plant, Predictor, Timing};
 pub use region::{Region, RegionBounds, RegionCertificate, Variation, certify_region, motor_lag_limit};
+pub use rounding::Rounding;
 pub use structured::{StructuredBounds, structured_bounds};

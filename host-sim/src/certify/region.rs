@@ -8,10 +8,10 @@ use nalgebra::DMatrix;
 use serde::Serialize;
 
 use super::CertifyError;
-use super::certificate::single_precision;
 use super::limits::StabilityLimit;
 use super::linear_loop::LinearLoop;
 use super::plant::{Controller, Plant, Predictor, Timing};
+use super::rounding::single_precision;
 use super::sampled_loop::SampledLoop;
 use crate::analysis::eigenvalues;
 use crate::vehicle::Vehicle;

@@ -4,10 +4,9 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use quatrack_sim::flight::core_loop;
-use quatrack_sim::pil::stored;
-use quatrack_sim::plan::{Limit, Plan, PlanError, Realised};
+use quatrack_sim::plan::{Limit, Plan, PlanError, Realised, stored};
 use quatrack_sim::trajectory::bspline::BSpline;
+use quatrack_sim::trajectory::on_board;
 use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
 use serde::Serialize;
 
@@ -60,7 +59,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         let pieces = PiecewisePolynomial::from_bspline(&curve).map_err(Failure::verdict)?;
         let name = args.plan.file_stem().unwrap_or_default().to_string_lossy().to_uppercase();
         let name = name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
-        output::write(rust, stored::rust_source(&name, &core_loop::pieces(&pieces)).as_bytes())?;
+        output::write(rust, stored::rust_source(&name, &on_board::pieces(&pieces)).as_bytes())?;
     }
     let mut text = format!("{path}\n{}", summary(&plan, &curve));
     for written in [&args.json, &args.toml, &args.rust].into_iter().flatten() {

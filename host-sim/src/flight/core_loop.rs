@@ -1,7 +1,7 @@
 //! The `f32` core in the loop: the crate that runs on the board, flown against the f64 plant.
 //!
-//! The one crossing between f64 and f32: states go in rounded, as from an estimator; trajectories go in as the pieces
-//! that the board stores; commands come out exactly.
+//! States go in rounded, as from an estimator; trajectories go in as the pieces that the board stores; commands come out
+//! exactly.
 
 use nalgebra::{Vector3, Vector4};
 use quatrack::trajectory::TrajectoryError;
@@ -9,7 +9,8 @@ use quatrack::{Command, Controller, FlightLaw, Limits, Memory, Piece, Player, Pr
 
 use super::closed_loop::HeldCommand;
 use crate::model::{InputVector, StateVector, attitude, position, velocity};
-use crate::trajectory::polynomial::{self, PiecewisePolynomial, PolynomialError};
+
+pub use crate::trajectory::on_board::{pieces, trajectory};
 
 fn vector(v: &Vector3<f64>) -> Vector3<f32> {
     v.map(|value| value as f32)
@@ -37,37 +38,6 @@ pub fn saturate(input: &InputVector, limits: &Limits) -> Option<(InputVector, bo
     let command = Command { thrust_m_s2: input[0] as f32, body_rates_rad_s: vector(&rates) };
     let (cut, limited) = limits.saturate(&command)?;
     Some(if limited.any() { (self::input(&cut), true) } else { (*input, false) })
-}
-
-/// A trajectory as the board stores it. Piece boundaries are rounded to a nanosecond from the start, so that their
-/// rounding does not add up.
-pub fn pieces(trajectory: &PiecewisePolynomial) -> Vec<Piece> {
-    let mut end_s = 0.0;
-    let mut start_ns = 0_u64;
-    trajectory
-        .pieces()
-        .iter()
-        .map(|piece| {
-            end_s += piece.duration_s;
-            let end_ns = (end_s * 1e9).round() as u64;
-            let duration_ns = end_ns - start_ns;
-            start_ns = end_ns;
-            let [x, y, z, heading] = piece.coefficients.map(|c| c.map(|value| value as f32));
-            Piece { duration_ns, x, y, z, heading }
-        })
-        .collect()
-}
-
-/// Pieces of the board as a trajectory, every number as it stands there; [`pieces`] gives them back.
-///
-/// # Errors
-/// [`PolynomialError`] for pieces that do not follow each other.
-pub fn trajectory(pieces: &[Piece]) -> Result<PiecewisePolynomial, PolynomialError> {
-    let piece = |piece: &Piece| polynomial::Piece {
-        duration_s: piece.duration_ns as f64 * 1e-9,
-        coefficients: [&piece.x, &piece.y, &piece.z, &piece.heading].map(|c| c.map(f64::from)),
-    };
-    PiecewisePolynomial::new(pieces.iter().map(piece).collect())
 }
 
 /// The core's step at a rate, with the trajectory evaluated on board.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! closed_loop        plant (1) under a law in continuous time, or under held commands at a rate
-//!   core_loop        the f32 core in the loop: the one crossing between f64 and f32
+//!   core_loop        the f32 core in the loop: f64 states in, its commands out
 //!   law, reference   the laws in f64; references sampled as in the paper, or exact
 //! deviation          how far one reference is from another
 //! rigid_loop         a craft with motors under commands at a rate, late and with noise if asked for

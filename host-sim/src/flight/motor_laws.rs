@@ -65,6 +65,12 @@ pub fn default_lag_s(vehicle: &Vehicle) -> f64 {
     longest_s.max(DEFAULT_LAG_MIN_S)
 }
 
+/// The bandwidth that the core's body-rate loop has behind motors of a lag, rad/s: that of [`BodyRateLoop::behind_lag`]
+/// below its bound.
+pub fn body_rate_bandwidth_rad_s(lag_s: f64) -> f64 {
+    0.5 / lag_s
+}
+
 impl AwareTable {
     /// Designs a table for a lag, rounds it and certifies it over a region.
     ///
@@ -158,8 +164,7 @@ impl<'a> CraftLaw<'a> {
 pub fn paper_law_limit_s(gain: &SMatrix<f64, 4, 9>, lag_s: f64) -> Result<f64, CertifyError> {
     let controller = Controller::memoryless(DMatrix::from_column_slice(4, 9, gain.as_slice()));
     let timing = Timing::at_rate(motor_loop::RATE.hz());
-    // The bandwidth of `BodyRateLoop::behind_lag`.
-    let found = certify(&Plant::equilibrium(), &controller, &timing, Some(0.5 / lag_s))?;
+    let found = certify(&Plant::equilibrium(), &controller, &timing, Some(body_rate_bandwidth_rad_s(lag_s)))?;
     // All channels at once stand last.
     Ok(found.motors_in_rate_loop.iter().flatten().last().map_or(0.0, |limit| limit.stable_to_s))
 }

@@ -12,7 +12,9 @@ use quatrack::law::EquilibriumGain;
 use quatrack::{Equilibrium, FeedForward};
 use serde::Serialize;
 
-use super::motor_laws::{self, AwareTable, CraftLaw, FlightError, default_lag_s, paper_law_limit_s};
+use super::motor_laws::{
+    self, AwareTable, CraftLaw, FlightError, body_rate_bandwidth_rad_s, default_lag_s, paper_law_limit_s,
+};
 use super::motor_loop::{self, STEPS_A_SAMPLE};
 use super::noise::Noise;
 use super::rigid_loop::{Conditions, RigidFlight};
@@ -164,7 +166,7 @@ pub fn report(vehicle: &Vehicle) -> Result<Report, FlightError> {
             } else {
                 let reason = format!(
                     "behind the rate loop for such motors, {:.1} 1/s, it is stable up to {:.1} ms of motor lag",
-                    0.5 / lag_s,
+                    body_rate_bandwidth_rad_s(lag_s),
                     1e3 * limit_s
                 );
                 report.not_certified.push(Grounded { law, lag_ms: 1e3 * lag_s, reason });

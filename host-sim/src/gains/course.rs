@@ -9,11 +9,11 @@ use quatrack::{Piece, Trajectory};
 use serde::{Serialize, Serializer};
 
 use super::GainsError;
-use crate::flight::core_loop;
-use crate::pil::stored;
-use crate::reproduction::table::Course as PaperCourse;
+use crate::plan::paper::Course as PaperCourse;
+use crate::plan::stored;
 use crate::trajectory::Trajectory as _;
 use crate::trajectory::file::{self, TrajectoryFile};
+use crate::trajectory::on_board;
 use crate::trajectory::polynomial::PiecewisePolynomial;
 
 /// At the end it rests: speed, acceleration and jerk are below this, m/s, m/s^2, m/s^3. In f32 coefficients rest is a
@@ -40,9 +40,9 @@ impl Course {
             "mild" => stored::pieces(PaperCourse::Mild).to_vec(),
             "aggressive" => stored::pieces(PaperCourse::Aggressive).to_vec(),
             path => match file::read(&folder.join(path)).map_err(|error| unusable(&error))? {
-                TrajectoryFile::Pieces(pieces) => core_loop::pieces(&pieces),
+                TrajectoryFile::Pieces(pieces) => on_board::pieces(&pieces),
                 TrajectoryFile::Spline(spline) => {
-                    core_loop::pieces(&PiecewisePolynomial::from_bspline(&spline).map_err(|error| unusable(&error))?)
+                    on_board::pieces(&PiecewisePolynomial::from_bspline(&spline).map_err(|error| unusable(&error))?)
                 }
                 TrajectoryFile::Plan(_) => {
                     return Err(refused(
@@ -55,7 +55,7 @@ impl Course {
             },
         };
         let checksum = Trajectory::new(&pieces).map_err(|error| unusable(&error))?.checksum();
-        let trajectory = core_loop::trajectory(&pieces).map_err(|error| unusable(&error))?;
+        let trajectory = on_board::trajectory(&pieces).map_err(|error| unusable(&error))?;
         let end = trajectory.at(trajectory.duration_s());
         let rests = [end.velocity_m_s, end.acceleration_m_s2, end.jerk_m_s3].iter().all(|rate| rate.norm() < REST);
         if !rests || end.heading_rate_rad_s.abs() >= REST {

@@ -1,13 +1,15 @@
 //! The paper's flights as the board flies them: both courses, four controllers, 500 Hz; states and commands out.
 
+use quatrack::link::{Table, TrajectoryId};
 use quatrack::{Command, Limits, Player, Rate, State, Tracker};
 
-use super::{PilError, stored};
+use super::PilError;
 use crate::flight::closed_loop::{Flight, HeldCommand, fly_sampled};
 use crate::flight::core_loop;
 use crate::flight::reference::Exact;
 use crate::model::StateVector;
 use crate::plan;
+use crate::plan::stored;
 use crate::reproduction::table::{Controller, Course, core_law};
 use crate::trajectory::polynomial::PiecewisePolynomial;
 
@@ -16,6 +18,32 @@ pub const RATE_HZ: u32 = 500;
 
 /// Both courses.
 pub const COURSES: [Course; 2] = [Course::Mild, Course::Aggressive];
+
+/// Ages beyond which the board ends a flight, ticks. A host that is held up for seconds is no danger here.
+pub(super) const PATIENCE_TICKS: u32 = 10_000;
+
+/// The board's name for a course.
+pub(super) fn trajectory_id(course: Course) -> TrajectoryId {
+    match course {
+        Course::Mild => TrajectoryId::Mild,
+        Course::Aggressive => TrajectoryId::Aggressive,
+    }
+}
+
+/// The board's name for a controller's gains.
+pub(super) fn table(controller: Controller) -> Table {
+    match controller {
+        Controller::LyapF => Table::LyapF,
+        Controller::LyapE => Table::LyapE,
+        Controller::LqrF => Table::LqrF,
+        Controller::LqrE => Table::LqrE,
+    }
+}
+
+/// What one of several flights gets of a number of steps.
+pub(super) fn share(limit: u32, index: u32, flights: u32) -> u32 {
+    limit / flights + u32::from(index < limit % flights)
+}
 
 /// The planned trajectories, against which errors are taken.
 pub struct Plans {

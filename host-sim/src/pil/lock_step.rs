@@ -3,20 +3,19 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use quatrack::link::{LawChoice, LimitsSetting, Parameter, Table, ToBoard, TrajectoryCommand, TrajectoryId};
+use quatrack::link::{LawChoice, LimitsSetting, Parameter, ToBoard, TrajectoryCommand};
 use quatrack::{Command, ErrorForm, State, Step};
 use serde::Serialize;
 
 use super::PilError;
+use super::bits::{Fnv1a, words};
 use super::client::Client;
-use super::flights::{COURSES, HostCore, Plans, RATE_HZ, fly};
+use super::flights::{COURSES, HostCore, PATIENCE_TICKS, Plans, RATE_HZ, fly, share, table, trajectory_id};
 use super::motors::{self, MotorReport};
 use crate::flight::metrics::Metrics;
+use crate::plan::stored;
 use crate::reproduction::report::digits;
 use crate::reproduction::table::{Controller, Course};
-
-/// Ages beyond which the board ends a flight, ticks. A host that is held up for seconds is no danger here.
-pub(super) const PATIENCE_TICKS: u32 = 10_000;
 
 /// What came of all flights.
 #[derive(Clone, Debug, Serialize)]
@@ -96,7 +95,7 @@ fn of_motors(limit: u32) -> u32 {
 pub fn step_count(limit: Option<u32>) -> u64 {
     let whole: u64 = COURSES
         .iter()
-        .map(|course| super::stored::pieces(*course).iter().map(|piece| piece.duration_ns).sum::<u64>())
+        .map(|course| stored::pieces(*course).iter().map(|piece| piece.duration_ns).sum::<u64>())
         .map(|duration_ns| duration_ns * u64::from(RATE_HZ) / 1_000_000_000 + 1)
         .sum();
     // Each course once with every law.
@@ -106,19 +105,6 @@ pub fn step_count(limit: Option<u32>) -> u64 {
 
 /// Flights of both courses under commands.
 const FLIGHTS: u32 = (COURSES.len() * Controller::ALL.len()) as u32;
-
-/// What one of several flights gets of a number of steps.
-pub(super) fn share(limit: u32, index: u32, flights: u32) -> u32 {
-    limit / flights + u32::from(index < limit % flights)
-}
-
-/// The board's name for a course.
-pub(super) fn trajectory_id(course: Course) -> TrajectoryId {
-    match course {
-        Course::Mild => TrajectoryId::Mild,
-        Course::Aggressive => TrajectoryId::Aggressive,
-    }
-}
 
 fn prepare(client: &mut Client) -> Result<(), PilError> {
     client.request(&ToBoard::Disarm)?;
@@ -183,16 +169,6 @@ fn law(controller: Controller) -> LawChoice {
     LawChoice { error_form: ErrorForm::Paper, ..LawChoice::new(table(controller)) }
 }
 
-/// The board's name for a controller's gains.
-pub(super) fn table(controller: Controller) -> Table {
-    match controller {
-        Controller::LyapF => Table::LyapF,
-        Controller::LyapE => Table::LyapE,
-        Controller::LqrF => Table::LqrF,
-        Controller::LqrE => Table::LqrE,
-    }
-}
-
 struct Comparison {
     hash: Fnv1a,
     steps: u64,
@@ -210,33 +186,6 @@ impl Comparison {
             self.difference =
                 Some(Difference { course, controller, step, state: *state, host: *host, target: *target });
         }
-    }
-}
-
-/// The bits of a command.
-pub(super) fn words(command: &Command) -> [u32; 4] {
-    let rates = &command.body_rates_rad_s;
-    [command.thrust_m_s2, rates.x, rates.y, rates.z].map(f32::to_bits)
-}
-
-/// The hash FNV-1a of 64 bits.
-pub(super) struct Fnv1a(u64);
-
-impl Fnv1a {
-    pub(super) const fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-
-    pub(super) fn add(&mut self, word: u32) {
-        for byte in word.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
-    }
-}
-
-impl fmt::Display for Fnv1a {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:016x}", self.0)
     }
 }
 

@@ -12,7 +12,6 @@ use std::time::Duration;
 use quatrack::{Command, State};
 use serde::Serialize;
 
-use super::PilError;
 use super::emulated::{self, Transport};
 use super::emulator::{Emulator, Folder};
 use super::flights::{COURSES, HostCore, Plans, fly};
@@ -24,6 +23,7 @@ use super::worst::{
     self,
     motors::{self, Motors},
 };
+use super::{PilError, bits};
 use crate::reproduction::table::{Controller, Course};
 
 /// Longest time for an emulator to count all flights.
@@ -235,11 +235,11 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<Report, PilError> {
                 turning.add([of_reference; 3], 1);
                 law.add([least, sum, most], worst::CALLS);
                 let expected = host.step(step as u32, state)?;
-                hash == expected.hash && expected.command.is_none_or(|command| found == lock_step::words(&command))
+                hash == expected.hash && expected.command.is_none_or(|command| found == bits::words(&command))
             } else {
                 reference.add([of_reference; 3], 1);
                 law.add([least, sum, most], 1);
-                found == lock_step::words(recorded)
+                found == bits::words(recorded)
             };
             if !is_same {
                 return Err(PilError::Answer(format!("{name}, step {step}: another command than the host's")));

@@ -6,14 +6,15 @@
 //! measure          instructions a step, flash, RAM
 //!   worst          what makes a step cost most, on the host
 //!   flights        the paper's flights, flown by the core on the host
+//!     bits         what is compared, and its hash
 //!     emulated     a board in an emulator
 //!     client       a board behind its line
 //!       emulator   the process that runs an image
 //!       line       pipes or a serial port, with deadlines
 //!         image    built here, or given; what it takes in flash and RAM
-//!         stored   the trajectories that the board has in flash
 //! ```
 
+mod bits;
 pub mod client;
 pub mod emulated;
 pub mod emulator;
@@ -24,13 +25,14 @@ pub mod line;
 pub mod lock_step;
 pub mod measure;
 pub mod motors;
-pub mod stored;
 mod worst;
 
 use std::io;
 use std::path::PathBuf;
 
 use thiserror::Error;
+
+pub use crate::plan::stored;
 
 /// Why an image was not flown or counted.
 #[derive(Debug, Error)]

@@ -16,13 +16,15 @@ use quatrack::{
 };
 use serde::Serialize;
 
+use super::PilError;
+use super::bits::Fnv1a;
 use super::client::Client;
-use super::flights::{COURSES, Plans, RATE_HZ};
-use super::lock_step::{Fnv1a, PATIENCE_TICKS, trajectory_id};
-use super::{PilError, stored};
+use super::flights::{COURSES, PATIENCE_TICKS, Plans, RATE_HZ, share, trajectory_id};
 use crate::flight::closed_loop::SAMPLE_PERIOD_S;
+use crate::flight::motor_laws::body_rate_bandwidth_rad_s;
 use crate::flight::reference::{Exact, Reference as _};
 use crate::model::position;
+use crate::plan::stored;
 use crate::plant::{Craft, Ground, RigidState as PlantState};
 use crate::reproduction::report::digits;
 use crate::reproduction::table::Course;
@@ -67,9 +69,9 @@ impl MotorFlight {
         }
     }
 
-    /// The body-rate loop for that lag: the fastest that leaves it well damped, rad/s.
+    /// The body-rate loop for that lag.
     fn bandwidth_rad_s(self, vehicle: &Vehicle) -> [f32; 3] {
-        [(0.5 / self.lag_s(vehicle)) as f32; 3]
+        [body_rate_bandwidth_rad_s(self.lag_s(vehicle)) as f32; 3]
     }
 }
 
@@ -169,7 +171,7 @@ pub(super) fn fly_all(
     let mut hash = Fnv1a::new();
     let flights = COURSES.iter().flat_map(|course| MotorFlight::ALL.map(|flight| (*course, flight)));
     for (index, (course, flight)) in flights.enumerate() {
-        let share = limit.map(|limit| super::lock_step::share(limit, index as u32, FLIGHTS));
+        let share = limit.map(|limit| share(limit, index as u32, FLIGHTS));
         let iae = fly_one(client, plans, (course, flight), (&vehicle, share), (&mut report, &mut hash), advance)?;
         report.iae.entry(course).or_default().insert(flight, iae);
     }

@@ -12,8 +12,10 @@ use quatrack::{
     Trajectory, gains::paper,
 };
 
-use super::flights::RATE_HZ;
-use super::{PilError, lock_step, stored};
+use super::PilError;
+use super::bits::words;
+use super::flights::{RATE_HZ, table};
+use crate::plan::stored;
 use crate::reproduction::table::{Controller, Course};
 
 /// The name of a gain without a zero.
@@ -94,7 +96,7 @@ impl Host {
             for feed_forward in FEED_FORWARD {
                 let Step { command, .. } =
                     Tracker::new(self.law(feed_forward)?, limits).step(&state, &reference).ok()?;
-                hash = hashed(hash, lock_step::words(&command));
+                hash = hashed(hash, words(&command));
             }
         }
         let command = match self.controller {
@@ -111,7 +113,7 @@ impl Host {
 
     fn law(&self, feed_forward: FeedForward) -> Option<AnyLaw<'_>> {
         match self.controller {
-            Some(controller) => LawChoice { feed_forward, ..LawChoice::new(lock_step::table(controller)) }.built_in(),
+            Some(controller) => LawChoice { feed_forward, ..LawChoice::new(table(controller)) }.built_in(),
             None => Some(Equilibrium { feed_forward, ..Equilibrium::new(&self.dense) }.into()),
         }
     }

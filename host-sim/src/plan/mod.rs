@@ -29,6 +29,7 @@ pub mod paper;
 mod program;
 mod realised;
 mod socp;
+pub mod stored;
 
 use std::ops::RangeInclusive;
 

@@ -1,6 +1,18 @@
 //! The two flights of the paper: nothing in, their plans out. The plan files are part of the program.
 
+use serde::Serialize;
+
 use super::{Plan, PlanError};
+
+/// The paper's trajectories.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Course {
+    /// 30 s through eight waypoints.
+    Mild,
+    /// The letter W in 12 s.
+    Aggressive,
+}
 
 /// Text of `plans/mild.toml`.
 pub const MILD_TOML: &str = include_str!("../../../plans/mild.toml");

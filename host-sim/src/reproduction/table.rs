@@ -22,6 +22,8 @@ use crate::integrator::DormandPrince;
 use crate::model::flat::reference_point;
 use crate::trajectory::polynomial::PiecewisePolynomial;
 
+pub use crate::plan::paper::Course;
+
 /// Rates at which the core is flown, Hz.
 pub const CORE_RATES_HZ: [u32; 3] = [100, 500, 1000];
 
@@ -62,16 +64,6 @@ impl fmt::Display for Controller {
             Self::LqrE => "LQR-E",
         })
     }
-}
-
-/// The paper's trajectories.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Course {
-    /// 30 s through eight waypoints.
-    Mild,
-    /// The letter W in 12 s.
-    Aggressive,
 }
 
 impl Course {

@@ -4,6 +4,7 @@
 pub mod bspline;
 pub mod fifth_order;
 pub mod file;
+pub mod on_board;
 pub mod poly4d;
 pub mod polynomial;
 pub mod refit;

@@ -3,7 +3,6 @@
 use core::f32::consts::PI;
 use core::fmt;
 
-use super::error::TableError;
 use super::name::Name;
 
 /// A vehicle, by name and by the parameters that a design used.
@@ -113,19 +112,18 @@ impl Certificate {
         ]
     }
 
-    /// Refuses figures that say nothing: a margin that allows for no error, no number at all.
-    pub(super) fn check(&self) -> Result<(), TableError> {
-        let Some((figure, value, _)) = self.figures().into_iter().find(|(figure, value, max)| {
+    /// The first figure that says nothing, with its value: a margin that allows for no error, no number at all.
+    pub(super) fn says_nothing(&self) -> Option<(Figure, f32)> {
+        let says_something = |(figure, value, max): &(Figure, f32, f32)| {
             let certifies = match figure {
                 Figure::OneChannelGain | Figure::AllChannelsGain => *value > 1.0,
                 Figure::F32Distance => *value >= 0.0,
                 _ => *value > 0.0,
             };
-            !(certifies && *value <= *max)
-        }) else {
-            return Ok(());
+            certifies && *value <= *max
         };
-        Err(TableError::Uncertified { figure, value })
+        let (figure, value, _) = self.figures().into_iter().find(|figure| !says_something(figure))?;
+        Some((figure, value))
     }
 }
 

@@ -224,7 +224,10 @@ impl TableHead {
         if self.certificate.hash == Hash::NONE {
             return Err(TableError::NoCertificate);
         }
-        self.certificate.check()
+        match self.certificate.says_nothing() {
+            Some((figure, value)) => Err(TableError::Uncertified { figure, value }),
+            None => Ok(()),
+        }
     }
 
     pub(crate) fn accept_for(&self, vehicle: &Vehicle, rate: Rate) -> Result<(), AcceptError> {

@@ -7,8 +7,9 @@
 
 use nalgebra::SMatrix;
 
-use super::{WORSE, flown};
+use super::flown::flown;
 use crate::certify::CertifyError;
+use crate::certify::certificate::WORSE;
 use crate::design::along::{GainsAlong, error_dynamics};
 use crate::model::flat::ReferencePoint;
 

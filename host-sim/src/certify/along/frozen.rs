@@ -6,8 +6,8 @@ use std::thread;
 use nalgebra::{DMatrix, SMatrix};
 use num_complex::Complex64;
 
-use super::WORSE;
 use crate::analysis::eigenvalues;
+use crate::certify::certificate::WORSE;
 use crate::certify::limits::{self, Disturbance};
 use crate::certify::linear_loop::LinearLoop;
 use crate::certify::margins::{Disk, sampled_grid};

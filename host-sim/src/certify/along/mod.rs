@@ -12,44 +12,18 @@
 //! lag are tried at four even parts of the limit found so far instead of in small steps.
 
 mod decrease;
+mod flown;
 mod frozen;
-
-use nalgebra::SMatrix;
-use serde::Serialize;
 
 pub use decrease::{MovingDecrease, moving_decrease};
 
-use super::certificate::{Certificate, Rounding, SampledLoopFigures, pairs};
+use super::certificate::{AlongFigures, Certificate, SampledLoopFigures, WORSE, pairs};
 use super::decrease::Decrease;
 use super::{CertifyError, LagModel};
 use crate::design::along::GainsAlong;
-use crate::design::codegen::rounded_along;
 use crate::model::flat::ReferencePoint;
+use flown::{flown, rounding};
 use frozen::Frozen;
-
-/// A figure counts as worse than another beyond this ratio: of equals the first one is named, on every processor the same.
-const WORSE: f64 = 1.0 + 1e-9;
-
-/// What is particular to gains over time. The figures beside it are the worst of the knots.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct AlongFigures {
-    /// Knots.
-    pub knots: usize,
-    /// Time between two of them, s.
-    pub spacing_s: f64,
-    /// Control steps at which the decrease was checked, with that of the hover behind the last knot.
-    pub steps: usize,
-    /// What is left of V after the step that takes off least, as a share.
-    pub largest_ratio: f64,
-    /// When that step is, s.
-    pub largest_ratio_at_s: f64,
-    /// Largest distance of the interpolated gain from the optimal one at any control step, over the norm of that.
-    pub interpolation_error: f64,
-    /// Spectral radius of the loop frozen at each knot.
-    pub spectral_radii: Vec<f64>,
-    /// The knot with the least margin of all channels at once.
-    pub least_margin_at_knot: usize,
-}
 
 /// Certifies gains over time, rounded to f32 and interpolated as on board, along a reference that is at rest behind its
 /// last knot.
@@ -112,33 +86,4 @@ pub fn certify_along(
             least_margin_at_knot,
         }),
     })
-}
-
-/// The gains in the table, in the digits of an f64.
-fn flown(designed: &GainsAlong) -> Result<Vec<SMatrix<f64, 4, 9>>, CertifyError> {
-    let flown: Vec<SMatrix<f64, 4, 9>> = rounded_along(designed)
-        .iter()
-        .map(|rows| SMatrix::from_fn(|row, column| f64::from(rows[row][column])))
-        .collect();
-    for (flown, designed) in flown.iter().zip(&designed.gains) {
-        if let Some(at) = flown.iter().position(|entry| !entry.is_finite()) {
-            let (row, column) = (at % 4, at / 4);
-            return Err(CertifyError::NotSinglePrecision { row, column, value: designed[(row, column)] });
-        }
-    }
-    Ok(flown)
-}
-
-fn rounding(designed: &GainsAlong, flown: &[SMatrix<f64, 4, 9>]) -> Rounding {
-    let entries = designed.gains.iter().zip(flown).flat_map(|(designed, flown)| designed.iter().zip(flown.iter()));
-    entries.filter(|(designed, _)| **designed != 0.0).fold(
-        Rounding { largest_absolute: 0.0, largest_relative: 0.0 },
-        |held, (designed, flown)| {
-            let difference = (designed - flown).abs();
-            Rounding {
-                largest_absolute: held.largest_absolute.max(difference),
-                largest_relative: held.largest_relative.max(difference / designed.abs()),
-            }
-        },
-    )
 }

@@ -12,8 +12,9 @@ use quatrack::{
 };
 
 use super::{HASH, hashed, turn};
+use crate::pil::PilError;
 use crate::pil::flights::RATE_HZ;
-use crate::pil::{PilError, stored};
+use crate::plan::stored;
 use crate::reproduction::table::Course;
 
 /// The same file that the image is built from.

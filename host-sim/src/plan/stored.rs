@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use quatrack::Piece;
 
-use crate::reproduction::table::Course;
+use super::paper::Course;
 
 /// The same files that the image is built from.
 #[allow(unreachable_pub, reason = "the image needs them public")]
-mod paper {
+mod image {
     use quatrack::Piece;
 
     include!("../../../plans/mild.rs");
@@ -18,8 +18,8 @@ mod paper {
 /// The pieces of a course as they stand in the board's flash.
 pub fn pieces(course: Course) -> &'static [Piece] {
     match course {
-        Course::Mild => &paper::MILD,
-        Course::Aggressive => &paper::AGGRESSIVE,
+        Course::Mild => &image::MILD,
+        Course::Aggressive => &image::AGGRESSIVE,
     }
 }
 
@@ -44,15 +44,15 @@ pub fn rust_source(name: &str, pieces: &[Piece]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::flight::core_loop;
-    use crate::plan::{self, Plan};
+    use crate::plan::{Plan, paper};
+    use crate::trajectory::on_board;
     use crate::trajectory::polynomial::PiecewisePolynomial;
 
     /// A solver's last digits differ between machines, and with them those of the coefficients.
     const TOLERANCE: f32 = 1e-6;
 
     fn assert_regenerates(stored: &[Piece], plan: &Plan) {
-        let planned = core_loop::pieces(&PiecewisePolynomial::from_bspline(&plan.solve().unwrap()).unwrap());
+        let planned = on_board::pieces(&PiecewisePolynomial::from_bspline(&plan.solve().unwrap()).unwrap());
         assert_eq!(stored.len(), planned.len(), "another number of pieces than the plan has: store it again");
         for (index, (stored, planned)) in stored.iter().zip(&planned).enumerate() {
             assert_eq!(stored.duration_ns, planned.duration_ns, "piece {index}");
@@ -71,8 +71,8 @@ mod tests {
 
     #[test]
     fn what_is_stored_is_what_is_planned() {
-        assert_regenerates(pieces(Course::Mild), &plan::paper::mild().unwrap());
-        assert_regenerates(pieces(Course::Aggressive), &plan::paper::aggressive().unwrap());
+        assert_regenerates(pieces(Course::Mild), &paper::mild().unwrap());
+        assert_regenerates(pieces(Course::Aggressive), &paper::aggressive().unwrap());
     }
 
     #[test]
