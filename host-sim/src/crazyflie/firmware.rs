@@ -34,7 +34,7 @@ pub enum Setpoints {
     HighLevel,
     /// By a script on the ground, as full-state packets: whole millimetres, no jerk, the attitude of hover.
     FullState,
-    /// Like these two, while the craft turns about the vertical with [`TURN_RAD_S`].
+    /// Like these two, while the craft turns about the vertical with 1 rad/s.
     HighLevelTurning,
     /// Likewise.
     FullStateTurning,
