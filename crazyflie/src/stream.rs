@@ -3,8 +3,8 @@
 //!
 //! Between two setpoints the newest is extrapolated by its own derivatives. Snap and crackle come from backward
 //! differences of the jerks of successive setpoints: the difference of two jerks is the snap halfway between them, that of
-//! two such snaps the crackle in the middle, and each is carried on to the newest setpoint by the next. Nothing is differenced over a jump, over a gap
-//! of more than [`GAP_MAX_MS`], or from a stream that sends no jerk.
+//! two such snaps the crackle in the middle, and each is carried on by the next. Nothing is differenced over a jump, over
+//! a gap of more than [`GAP_MAX_MS`], or from a stream that sends no jerk.
 
 use quatrack::FifthOrderSample;
 use quatrack::nalgebra::Vector3;
@@ -27,8 +27,8 @@ const JUMP: [f32; 3] = [0.02, 0.2, 2.0];
 const SNAP_MAX_M_S4: f32 = 1_000.0;
 const CRACKLE_MAX_M_S5: f32 = 25_000.0;
 
-/// Largest difference of a sound jerk, in the mean of two setpoints, from the slope of their accelerations, m/s^3, summed over the
-/// axes: four times that of the fastest flights.
+/// Largest difference of a sound jerk, in the mean of two setpoints, from the slope of their accelerations, m/s^3,
+/// summed over the axes: four times that of the fastest flights.
 const JERK_OFF_MAX_M_S3: f32 = 0.5;
 
 /// Sound jerks in a row after which they are taken again: a quarter of a second.
