@@ -49,3 +49,30 @@ pub fn high_water_bytes() -> u32 {
     let touched = (bottom()..top()).step_by(WORD).find(|address| !is_painted(*address));
     touched.map_or(0, |address| (top() - address) as u32)
 }
+
+/// How far below a caller's stack [`paint_below`] paints, bytes.
+const BELOW_BYTES: usize = 4 * 1024;
+
+/// Left out right below the caller: the frame of whoever paints and looks, bytes.
+const OWN_BYTES: usize = 64;
+
+/// Paints the stack that a function will use which is called next.
+#[inline(never)]
+#[allow(unsafe_code, reason = "writes memory below the stack pointer, which is nobody's variable")]
+pub fn paint_below() {
+    let here = 0_u32;
+    let top = (&raw const here as usize) - OWN_BYTES;
+    for address in (top - BELOW_BYTES..top).step_by(WORD) {
+        // SAFETY: an aligned address below every frame in use, and above the variables: the stack's bound is larger.
+        unsafe { ptr::write_volatile(address as *mut u32, STACK_PAINT_VALUE) };
+    }
+}
+
+/// Bytes of it that the function has used, as far as the paint tells.
+#[inline(never)]
+pub fn used_below() -> u32 {
+    let here = 0_u32;
+    let top = (&raw const here as usize) - OWN_BYTES;
+    let touched = (top - BELOW_BYTES..top).step_by(WORD).find(|address| !is_painted(*address));
+    touched.map_or(0, |address| (top - address + OWN_BYTES) as u32)
+}

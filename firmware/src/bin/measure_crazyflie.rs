@@ -3,8 +3,9 @@
 //!
 //! Both files are in the folder in which the emulator runs, all numbers little-endian. `calls.bin`: for each flight the
 //! platform (four floats), the table's number, the motors' lag (float) and the number of calls; then, for each call, the
-//! step, setpoint, sensors and state as they lie in memory. `counts.bin`: the cost of reading the counter, counts of two
-//! loops of known length; then, for each call, its count and the control.
+//! step, what is done before (bit 0: selected; from bit 8 on: the number of a table that is asked for, plus one), setpoint,
+//! sensors and state as they lie in memory. `counts.bin`: the cost of reading the counter, counts of two loops of known
+//! length; then, for each call, its count and the control; at the end the most stack that a call took, bytes.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -12,6 +13,7 @@ mod image {
     use cortex_m_rt::entry;
     use quatrack_firmware::counter::Counter;
     use quatrack_firmware::semihosting::{File, Mode, exit};
+    use quatrack_firmware::stack;
     use stm32f4::stm32f405::Peripherals;
 
     const SETPOINT_BYTES: usize = 128;
@@ -76,6 +78,7 @@ mod image {
         for word in [overhead, loops[0], loops[1]] {
             counts.write(&word.to_le_bytes()).then_some(())?;
         }
+        let mut stack_bytes = 0;
         while let Some([mass, arm, thrust, torque, table, lag, number]) = read_words::<7>(&mut calls) {
             object::set(MOTOR_LAG_AT, &lag.to_le_bytes());
             object::set(TABLE_AT, &table.to_le_bytes()[..1]);
@@ -83,20 +86,32 @@ mod image {
             object::quatrackService();
             let mut control = Bytes([0; CONTROL_BYTES]);
             for _ in 0..number {
-                let [step, is_selected] = read_words::<2>(&mut calls)?;
-                if is_selected != 0 {
+                let [step, before] = read_words::<2>(&mut calls)?;
+                if before & 1 != 0 {
                     object::controllerOutOfTreeInit();
+                }
+                if let Some(table) = (before >> 8).checked_sub(1) {
+                    object::set(TABLE_AT, &table.to_le_bytes()[..1]);
+                    object::quatrackService();
                 }
                 let setpoint = read::<SETPOINT_BYTES>(&mut calls)?;
                 let sensors = read::<SENSORS_BYTES>(&mut calls)?;
                 let state = read::<STATE_BYTES>(&mut calls)?;
+                // Three has no factor in common with the setpoints' ten steps: every kind of call is looked at.
+                let is_looked_at = step.is_multiple_of(3);
+                if is_looked_at {
+                    stack::paint_below();
+                }
                 let start = counter.now();
                 object::controllerOutOfTree(&mut control, &setpoint, &sensors, &state, step);
                 let count = counter.now().wrapping_sub(start).wrapping_sub(overhead);
+                if is_looked_at {
+                    stack_bytes = stack_bytes.max(stack::used_below());
+                }
                 (counts.write(&count.to_le_bytes()) && counts.write(&control.0)).then_some(())?;
             }
         }
-        Some(())
+        counts.write(&stack_bytes.to_le_bytes()).then_some(())
     }
 
     /// Out of line, so that both loops are the same one, with the same padding before it.

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::course::Course;
 use super::firmware::{Sensors, Setpoints, Tune, platform};
-use super::flight::{Case, fly_recorded};
+use super::flight::{Case, Recorded, fly_recorded};
 use super::recording::{CONTROL_BYTES, Recording};
 use crate::pil::PilError;
 use crate::pil::emulator::{Emulator, Folder};
@@ -28,7 +28,7 @@ const LIMIT: Duration = Duration::from_secs(120);
 const LOOP_INSTRUCTIONS: u32 = 2000;
 
 /// Steps of each flight that are counted.
-const STEPS: usize = 3000;
+const STEPS: u32 = 3000;
 
 /// The first step that counts: before it the craft is switched on and put on its course.
 const FIRST_STEP: u32 = 200;
@@ -44,6 +44,10 @@ const SETPOINTS: [(Setpoints, &str); 4] = [
     (Setpoints::FullState, "full-state"),
     (Setpoints::FullStateTurning, "full-state, turning"),
 ];
+
+/// What a change of the table in flight is called, and which: LQR-E to the default one for motors of 20 ms.
+const CHANGE: &str = "a change";
+const CHANGED: [u8; 2] = [2, 0];
 
 /// Of one table under one kind of setpoint.
 #[derive(Clone, Debug, Serialize)]
@@ -65,6 +69,8 @@ pub struct Counts {
     pub rows: Vec<Row>,
     /// Steps counted, on each of which the target put out the host's bits.
     pub steps: usize,
+    /// Most stack of a call, bytes.
+    pub stack_bytes: u32,
 }
 
 /// Builds the object as it is shipped, links it into the counting image and counts.
@@ -77,16 +83,21 @@ pub fn count(checkout: &Path) -> Result<Counts, PilError> {
     let interrupt = Interrupt::listen()?;
     let vehicle = Vehicle::by_name("crazyflie-2.1").map_err(|error| PilError::Plan(error.to_string()))?;
     let mut flights = Vec::new();
+    let sensors = Sensors { gyro_noise_rad_s: 0.02, estimate_steps: 1 };
     for (table, number, lag_s) in TABLES {
         for (setpoints, name) in SETPOINTS {
             let tune = Tune { table: number, motor_lag_s: if number == 0 { 0.0 } else { lag_s } };
-            let sensors = Sensors { gyro_noise_rad_s: 0.02, estimate_steps: 1 };
             let case = Case { sensors, setpoints, ..Case::of_lag(lag_s) };
             let course = Course::FigureEight(if number < 3 { 1.485 } else { 0.601 });
-            let recording = fly_recorded(&vehicle, &course, &tune, &case, STEPS);
+            let recording = fly_recorded(&vehicle, &course, &tune, &case, Recorded { steps: STEPS, then: None });
             flights.push((table, name, tune, recording));
         }
     }
+    let ([from, to], (setpoints, name)) = (CHANGED, SETPOINTS[1]);
+    let tune = Tune { table: from, motor_lag_s: 0.02 };
+    let case = Case { sensors, setpoints, ..Case::of_lag(tune.motor_lag_s) };
+    let recorded = Recorded { steps: STEPS, then: Some(to) };
+    flights.push((CHANGE, name, tune, fly_recorded(&vehicle, &Course::FigureEight(1.485), &tune, &case, recorded)));
     let folder = Folder::create()?;
     let mut calls = Vec::new();
     for (_, _, tune, recording) in &flights {
@@ -114,7 +125,7 @@ fn compare(flights: &[(&'static str, &'static str, Tune, Recording)], counted: &
     if of_loops != LOOP_INSTRUCTIONS {
         return Err(PilError::Miscounts { counted: of_loops, instructions: LOOP_INSTRUCTIONS });
     }
-    let (records, _) = rest.as_chunks::<{ 4 + CONTROL_BYTES }>();
+    let (records, end) = rest.as_chunks::<{ 4 + CONTROL_BYTES }>();
     let mut records = records.iter();
     let (mut rows, mut steps) = (Vec::new(), 0);
     for (table, setpoints, _, recording) in flights {
@@ -136,7 +147,7 @@ fn compare(flights: &[(&'static str, &'static str, Tune, Recording)], counted: &
         }
         rows.push(Row { table, setpoints, control_step: of(&control_steps), other_step: of(&others) });
     }
-    Ok(Counts { rows, steps })
+    Ok(Counts { rows, steps, stack_bytes: word(end, 0) })
 }
 
 fn of(counts: &[u32]) -> Count {
@@ -194,6 +205,6 @@ impl fmt::Display for Counts {
             write!(f, "{table:<16}{setpoints:<21}{:>8}{:>10.1}{:>8}", c.min, c.mean, c.max)?;
             writeln!(f, "{:>8}{:>10.1}{:>8}", o.min, o.mean, o.max)?;
         }
-        Ok(())
+        writeln!(f, "\nstack of a call, most: {} bytes", self.stack_bytes)
     }
 }

@@ -13,7 +13,7 @@ use quatrack_crazyflie::craft::Platform;
 use quatrack_crazyflie::ffi;
 
 use super::course::Course;
-use super::recording::Recording;
+use super::recording::{Before, Recording};
 use crate::flight::noise::Source;
 use crate::plant::RigidState;
 use crate::vehicle::Vehicle;
@@ -85,7 +85,7 @@ pub struct Firmware {
     noise: Source,
     sensors: Sensors,
     recording: Option<Recording>,
-    is_selected: bool,
+    before: Before,
     _alone: MutexGuard<'static, ()>,
 }
 
@@ -120,7 +120,7 @@ impl Firmware {
             noise: Source::new(1),
             sensors,
             recording,
-            is_selected: false,
+            before: Before::default(),
             _alone: alone,
         };
         // Motors off, until parameters have been looked at.
@@ -130,7 +130,7 @@ impl Firmware {
         }
         // Selected now: in flight, unless a setpoint says that the motors are off.
         ffi::controllerOutOfTreeInit();
-        firmware.is_selected = true;
+        firmware.before.is_selected = true;
         firmware
     }
 
@@ -160,7 +160,7 @@ impl Firmware {
         if let Some(recording) = &mut self.recording {
             recording.add(
                 self.step,
-                std::mem::take(&mut self.is_selected),
+                std::mem::take(&mut self.before),
                 setpoint,
                 &sensors,
                 &self.estimate,
@@ -169,6 +169,13 @@ impl Firmware {
         }
         self.step += 1;
         self.distribute()
+    }
+
+    /// The owner asks for another table.
+    pub fn ask_for(&mut self, table: u8) {
+        ffi::quatrack.parameters.table.store(table, Relaxed);
+        ffi::quatrackService();
+        self.before.table = Some(table);
     }
 
     /// What has been recorded.

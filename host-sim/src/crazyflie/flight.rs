@@ -79,10 +79,19 @@ pub fn fly(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case) -> Flow
     fly_with(&mut firmware, vehicle, course, case, None)
 }
 
-/// Flies so many steps of a course and keeps what passed between firmware and controller.
-pub fn fly_recorded(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case, steps: usize) -> Recording {
+/// How much of a flight is recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recorded {
+    /// So many steps.
+    pub steps: u32,
+    /// Halfway another table is asked for.
+    pub then: Option<u8>,
+}
+
+/// Flies a course and keeps what passed between firmware and controller.
+pub fn fly_recorded(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case, recorded: Recorded) -> Recording {
     let mut firmware = Firmware::start_recorded(vehicle, tune, case.sensors);
-    fly_with(&mut firmware, vehicle, course, case, Some(steps as u32));
+    fly_with(&mut firmware, vehicle, course, case, Some(recorded));
     firmware.recorded().unwrap_or_default()
 }
 
@@ -96,7 +105,13 @@ fn carry(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case: &Cas
     }
 }
 
-fn fly_with(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case: &Case, limit: Option<u32>) -> Flown {
+fn fly_with(
+    firmware: &mut Firmware,
+    vehicle: &Vehicle,
+    course: &Course,
+    case: &Case,
+    recorded: Option<Recorded>,
+) -> Flown {
     let mut craft = Craft::new(vehicle);
     craft.body = craft.body.scaled(case.mass_factor, case.inertia_factor);
     craft.motors = craft.motors.with_lag(case.lag_s, case.lag_s);
@@ -112,7 +127,11 @@ fn fly_with(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case: &
 
     let whole = (course.duration_s() * f64::from(STEPS_HZ)).round() as u32;
     let mut flown = Flown { iae: Some(0.0), max_error_m: 0.0, end_error_m: 0.0, max_tilt_deg: 0.0 };
-    for step in 0..limit.unwrap_or(whole + 1) {
+    for step in 0..recorded.map_or(whole + 1, |recorded| recorded.steps) {
+        match recorded {
+            Some(Recorded { steps, then: Some(table) }) if step == steps / 2 => firmware.ask_for(table),
+            _ => {}
+        }
         let t_s = f64::from(step) / f64::from(STEPS_HZ);
         firmware.command(course, t_s, case.setpoints);
         let error_m = (state.position_m - course.position_m(t_s).unwrap_or(start)).norm();

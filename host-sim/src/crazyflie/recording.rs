@@ -10,7 +10,7 @@ pub(super) const CONTROL_BYTES: usize = 20;
 /// Calls, one after the other, and what the controller put out at each.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
-    /// Step, whether the controller has just been selected, setpoint, sensors, state, of every call.
+    /// Step, what is done before, setpoint, sensors, state, of every call.
     pub calls: Vec<u8>,
     /// The control after every call.
     pub controls: Vec<[u8; CONTROL_BYTES]>,
@@ -18,12 +18,21 @@ pub struct Recording {
     pub steps: Vec<u32>,
 }
 
+/// What is done before a call.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Before {
+    /// The controller is selected.
+    pub is_selected: bool,
+    /// A table is asked for.
+    pub table: Option<u8>,
+}
+
 impl Recording {
-    /// Adds a call, and whether the controller has been selected just before it.
+    /// Adds a call.
     pub fn add(
         &mut self,
         step: u32,
-        is_selected: bool,
+        before: Before,
         setpoint: &Setpoint,
         sensors: &SensorData,
         state: &State,
@@ -31,7 +40,7 @@ impl Recording {
     ) {
         let bytes = &mut self.calls;
         word(bytes, step);
-        word(bytes, u32::from(is_selected));
+        word(bytes, u32::from(before.is_selected) | before.table.map_or(0, |table| (u32::from(table) + 1) << 8));
         setpoint_bytes(bytes, setpoint);
         for axis in [sensors.acc, sensors.gyro, sensors.mag] {
             floats(bytes, &axis);
@@ -97,7 +106,7 @@ mod tests {
             mode: Modes { quat: quatrack_crazyflie::abi::Mode(1), ..Default::default() },
             ..Default::default()
         };
-        recording.add(7, false, &setpoint, &SensorData::default(), &State::default(), &Control::default());
+        recording.add(7, Before::default(), &setpoint, &SensorData::default(), &State::default(), &Control::default());
         assert_eq!(recording.calls.len(), 8 + 128 + 56 + 80);
         // The last byte of the setpoint is the mode of the quaternion, at 127.
         assert_eq!(recording.calls[8 + 127], 1);
