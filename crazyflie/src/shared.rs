@@ -46,7 +46,7 @@ pub struct Parameters {
     pub position_scale: AtomicF32,
     /// Factor on the feedback about the vertical, likewise.
     pub yaw_scale: AtomicF32,
-    /// Farthest position error that is acted on, m.
+    /// Farthest error that is acted on: of position, m, and of velocity, m/s.
     pub leash_m: AtomicF32,
     /// Largest speed of a velocity setpoint, m/s.
     pub speed_m_s: AtomicF32,

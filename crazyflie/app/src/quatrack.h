@@ -23,7 +23,7 @@ typedef struct {
 typedef struct {
   float positionScale;    /* factor on the feedback of thrust, roll and pitch, within scaleMin..scaleMax */
   float yawScale;         /* factor on the feedback about the vertical, likewise */
-  float leashM;           /* farthest position error that is acted on, 0.1..10 */
+  float leashM;           /* farthest error that is acted on, 0.1..10: metres, and metres a second */
   float speedMS;          /* largest speed of a velocity setpoint, 0.1..5 */
   float accelerationMS2;  /* its largest acceleration, 0.5..10 */
   float rollPitchRateRadS; /* largest roll and pitch rate that the body-rate loop is asked for, 0.5..100 */
