@@ -205,7 +205,7 @@ impl Stream {
         *self = Self { newest: self.newest, since_ms: self.since_ms, mended: self.mended, ..Self::new() };
     }
 
-    /// The newest setpoint's motion as it was sent.
+    /// The newest setpoint's motion as it was sent, but for a jerk that was mended.
     pub fn newest(&self) -> &Motion {
         &self.newest
     }

@@ -415,6 +415,10 @@ impl Controller {
         if self.flight.is_some() {
             self.before = self.table;
             (self.memory_before, self.fade_left) = (self.memory, FADE_STEPS);
+            if !matches!(self.before.gains, Gains::ActuatorAware(_)) {
+                // A law that does not know of the motors has not kept it.
+                self.memory = ActuatorMemory::hovering(&self.craft.airframe);
+            }
         }
         self.table = *table;
         self.prepared_for = None;

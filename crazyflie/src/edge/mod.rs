@@ -1,8 +1,9 @@
 //! The edge: the firmware's units, signs and orders in, SI out. Nothing else converts.
 //!
 //! Degrees become radians, the scalar of a quaternion comes first, pitch changes its sign, the angle and in manual flight
-//! the rate (the gyroscope's does not), a thrust of 65535 becomes what four motors can do. A yaw angle becomes a heading: the same at hover; the firmware's own
-//! trajectories bend away from it as they tilt, Z-X-Y, by less than a degree below 15 degrees.
+//! the rate (the gyroscope's does not), a thrust of 65535 becomes what four motors can do. A yaw angle becomes a heading:
+//! the same at hover; the firmware's own trajectories bend away from it as they tilt, Z-X-Y, by less than a degree below
+//! 15 degrees.
 
 mod sameness;
 
@@ -144,13 +145,14 @@ pub fn turn_on(heading: &mut Heading, kept: &abi::Setpoint, setpoint: &abi::Setp
     is_sound(cos + sin + rate).then_some(rate)
 }
 
-/// Whether a heading is asked for by an angle of yaw: the commander on board does so, scripts on the ground send an attitude.
+/// Whether a heading is asked for by an angle of yaw: the commander on board does so, scripts on the ground send an
+/// attitude.
 #[inline(always)]
 pub fn is_by_yaw(setpoint: &abi::Setpoint) -> bool {
     setpoint.mode.yaw == Mode::ABSOLUTE
 }
 
-/// And the sum of the figures that it is made of, finite only if all of them are.
+/// How a setpoint asks to turn, and the sum of the figures that this is made of, finite only if all of them are.
 #[inline]
 fn turn(setpoint: &abi::Setpoint) -> Option<(Turn, f32)> {
     match (setpoint.mode.yaw, setpoint.mode.quat) {

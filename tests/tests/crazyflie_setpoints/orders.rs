@@ -152,3 +152,20 @@ fn a_turn_in_place_is_followed() {
         assert!(largest_deg < bound_deg, "86 degrees in {duration_s} s: {largest_deg} degrees");
     }
 }
+
+#[test]
+fn the_default_table_takes_over_from_one_of_the_papers_in_flight() {
+    for (table, lag_s) in [(1, 0.0635), (2, 0.02)] {
+        let mut flight = Flight::of("crazyflie-2.1", table, lag_s);
+        // Switched on standing: the motors are known to be at rest.
+        flight.hold(&Setpoint::OFF, 500);
+        let here = Planned::at([0.0, 0.0, 1.0], 0.0);
+        flight.state = RigidState::at_rest(Vector3::z(), flight.vehicle.hover_thrust_n());
+        flight.follow(3.0, |_| here);
+        flight.firmware.ask_for(0);
+        let largest_m = flight.follow(3.0, |_| here);
+        // Taken for standing still, as they were when a law last looked, the motors would cost 3.7 mm.
+        assert!(largest_m < 1e-4, "table {table}: {largest_m} m");
+        assert_eq!(ffi::quatrack.log.table.load(Relaxed), 0);
+    }
+}
