@@ -23,6 +23,7 @@
 
 pub mod analysis;
 pub mod certify;
+pub mod control_law;
 pub mod crazyflie;
 pub mod design;
 pub mod figures;
@@ -34,5 +35,7 @@ pub mod pil;
 pub mod plan;
 pub mod plant;
 pub mod reproduction;
+pub mod rivals;
+pub mod scenario;
 pub mod trajectory;
 pub mod vehicle;

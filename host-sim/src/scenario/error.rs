@@ -1,0 +1,50 @@
+//! Why there is no scenario, in one line that names file, key, value, range and remedy.
+
+use std::path::PathBuf;
+
+/// Why there is no scenario.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ScenarioError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read ({reason})", path.display())]
+    Unreadable {
+        /// Which file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
+    #[error("{origin}, line {line}, `{text}`: {reason}")]
+    Syntax {
+        /// Whose it is.
+        origin: String,
+        /// Where, from 1.
+        line: usize,
+        /// What is written there.
+        text: String,
+        /// What the parser says, in one line.
+        reason: String,
+    },
+    /// A value without sense.
+    #[error("{origin}: {key} = {value}: must be {must}")]
+    Value {
+        /// Whose it is.
+        origin: String,
+        /// The key with its table.
+        key: &'static str,
+        /// The value as read.
+        value: String,
+        /// What it must be.
+        must: String,
+    },
+    /// A vehicle or a trajectory that cannot be had.
+    #[error("{origin}: {key}: {reason}")]
+    Named {
+        /// Whose it is.
+        origin: String,
+        /// The key.
+        key: &'static str,
+        /// Why not, with the remedy.
+        reason: String,
+    },
+}

@@ -1,0 +1,4 @@
+//! Rivals beside other tools' figures, scenarios, and the table in which laws are compared.
+
+mod drone_controllers;
+mod stand_in;
