@@ -149,7 +149,7 @@ fn limits_that_bind_are_counted() {
 fn a_planned_file_flies_like_its_plan() {
     let dir = folder("planned");
     let json = dir.join("w.json");
-    let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/../plans/aggressive.toml");
+    let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/../../plans/aggressive.toml");
     assert!(quatrack(&["plan", plan, "--json", json.to_str().unwrap()]).status.success());
     let iae = |trajectory: &str| {
         let output = quatrack(&["fly", "--controller", "lqr-e", "--trajectory", trajectory]);

@@ -1,7 +1,7 @@
 //! Figures as SVG: every curve in every view, axes that fit the reference, whatever the flights do.
 
 use nalgebra::Vector3;
-use quatrack_sim::figures::{Curve, FigureError, TrackingFigure};
+use quatrack_cli::figures::{Curve, FigureError, TrackingFigure};
 
 const BLUE: &str = "#0072b2";
 const VERMILION: &str = "#d55e00";

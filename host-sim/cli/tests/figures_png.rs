@@ -1,7 +1,7 @@
 //! Figures as PNG: the picture is in the file, with its texts, and the same on every machine.
 
 use nalgebra::Vector3;
-use quatrack_sim::figures::{Curve, TrackingFigure};
+use quatrack_cli::figures::{Curve, TrackingFigure};
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
 
 const WIDTH: usize = 2400;

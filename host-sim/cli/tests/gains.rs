@@ -6,10 +6,10 @@ use std::process::{Command, Output};
 
 use quatrack::Trajectory;
 use quatrack::gains::table::{GainTable, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable};
-use quatrack_sim::flight::core_loop;
-use quatrack_sim::trajectory::file::{self, TrajectoryFile};
+use quatrack_plan::trajectory::file::{self, TrajectoryFile};
+use quatrack_plan::trajectory::on_board;
 
-const GAINS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../gains");
+const GAINS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../gains");
 
 fn quatrack(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_quatrack")).args(arguments).output().expect("the command starts")
@@ -199,7 +199,7 @@ fn gains_along_a_trajectory_fly_that_one_alone() {
     let (here, there) = (trajectory("here.csv", "0"), trajectory("there.csv", "1"));
     let flown = file::read(&here).unwrap();
     let TrajectoryFile::Pieces(pieces) = flown else { panic!("pieces") };
-    let pieces = core_loop::pieces(&pieces);
+    let pieces = on_board::pieces(&pieces);
     let lqr_e = fs::read(format!("{GAINS}/generated/lqr-e.bin")).unwrap();
     let head = *GainTable::from_bytes(&lqr_e).unwrap().head();
     let gain = *quatrack::gains::paper::LQR_E.gain().rows();

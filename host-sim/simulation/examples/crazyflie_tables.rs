@@ -2,6 +2,6 @@
 //! `cargo run --example crazyflie_tables > crazyflie/src/builtin/motor_gains.rs`.
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    print!("{}", quatrack_sim::crazyflie::motor_gains()?);
+    print!("{}", quatrack_simulation::crazyflie::motor_gains()?);
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use nalgebra::DMatrix;
-use quatrack_sim::analysis::{
+use quatrack_design::analysis::{
     Claim, JordanStructure, ModelAnalysis, NumericalRank, PbhTest, SectionThree, UncontrollableMode,
 };
 use serde::Serialize;

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use quatrack_sim::crazyflie::{Report, count};
-use quatrack_sim::pil::image;
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_cli::pil::crazyflie::count;
+use quatrack_cli::pil::image;
+use quatrack_simulation::crazyflie::Report;
+use quatrack_simulation::vehicles;
 
 use super::{Failure, output};
 
@@ -31,7 +32,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         let counts = image::checkout().and_then(|checkout| count(&checkout)).map_err(Failure::input)?;
         return report(args, &counts);
     }
-    let vehicle = Vehicle::by_name(&args.vehicle).map_err(Failure::input)?;
+    let vehicle = vehicles::by_name(&args.vehicle).map_err(Failure::input)?;
     report(args, &Report::of(&vehicle).map_err(Failure::input)?)
 }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use quatrack_sim::gains::{Design, Export};
+use quatrack_simulation::gains::{Design, Export};
 
 use super::{Failure, gains, output};
 
@@ -34,10 +34,10 @@ enum Format {
 
 /// The paper's designs, built in.
 const PAPER: [(&str, &str); 4] = [
-    ("lyap-f", include_str!("../../../gains/lyap-f.toml")),
-    ("lyap-e", include_str!("../../../gains/lyap-e.toml")),
-    ("lqr-f", include_str!("../../../gains/lqr-f.toml")),
-    ("lqr-e", include_str!("../../../gains/lqr-e.toml")),
+    ("lyap-f", include_str!("../../../../gains/lyap-f.toml")),
+    ("lyap-e", include_str!("../../../../gains/lyap-e.toml")),
+    ("lqr-f", include_str!("../../../../gains/lqr-f.toml")),
+    ("lqr-e", include_str!("../../../../gains/lqr-e.toml")),
 ];
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {

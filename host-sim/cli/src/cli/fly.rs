@@ -7,21 +7,21 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlightLaw, Limits, Rate};
-use quatrack_sim::design::codegen::rounded;
-use quatrack_sim::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
-use quatrack_sim::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
-use quatrack_sim::flight::core_loop::{self, CoreLoop};
-use quatrack_sim::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
-use quatrack_sim::flight::log;
-use quatrack_sim::flight::metrics::Metrics;
-use quatrack_sim::flight::reference::{Exact, Reference};
-use quatrack_sim::integrator::Method;
-use quatrack_sim::plan::{self, Plan, PlanError};
-use quatrack_sim::trajectory::Trajectory;
-use quatrack_sim::trajectory::bspline::BSpline;
-use quatrack_sim::trajectory::file::{self, TrajectoryFile};
-use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
-
+use quatrack_design::design::codegen::rounded;
+use quatrack_design::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
+use quatrack_plan::plan::{self, Plan, PlanError};
+use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::bspline::BSpline;
+use quatrack_plan::trajectory::file::{self, TrajectoryFile};
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_simulation::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
+use quatrack_simulation::flight::core_loop::{self, CoreLoop};
+use quatrack_simulation::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
+use quatrack_simulation::flight::log;
+use quatrack_simulation::flight::metrics::Metrics;
+use quatrack_simulation::flight::reference::{Exact, Reference};
+use quatrack_simulation::integrator::Method;
 use serde::Serialize;
 
 use super::limits::LimitsChoice;
@@ -280,7 +280,7 @@ fn fly_law(
     rate: Rate,
     limits: Limits,
 ) -> Result<Flight, Failure> {
-    let pieces = core_loop::pieces(trajectory);
+    let pieces = on_board::pieces(trajectory);
     let mut core = CoreLoop::new(&pieces, rate, law, limits)
         .map_err(|error| Failure::input(format!("{}: {error}", args.trajectory)))?;
     Ok(fly_sampled(&Exact(trajectory), rate.hz(), |tick, _, x| core.step(tick, x)))

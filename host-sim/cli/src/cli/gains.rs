@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use quatrack_sim::gains::{self, Certified, Checked, Design, Failed, GainsError};
+use quatrack_simulation::gains::{self, Certified, Checked, Design, Failed, GainsError};
 use serde::Serialize;
 use serde_json::{Value, json};
 

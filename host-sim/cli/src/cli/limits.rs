@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use quatrack::Limits;
 use quatrack::nalgebra::Vector3;
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_simulation::vehicles;
 
 /// Limits by vehicle or by numbers.
 #[derive(Clone, Debug)]
@@ -30,14 +30,14 @@ impl FromStr for LimitsChoice {
             return Ok(Self::none());
         }
         let name = text.to_owned();
-        if let Ok(vehicle) = Vehicle::by_name(text) {
-            return Ok(Self { name, limits: vehicle.limits().map_err(|error| error.to_string())? });
+        if let Ok(vehicle) = vehicles::by_name(text) {
+            return Ok(Self { name, limits: vehicles::limits(&vehicle).map_err(|error| error.to_string())? });
         }
         let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse()).collect();
         let Ok([min, max, rate]) = numbers.as_deref() else {
             return Err(format!(
                 "neither a vehicle ({}), none, nor THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s",
-                Vehicle::names().join(", ")
+                vehicles::names().join(", ")
             ));
         };
         let limits = Limits::new(*min, *max, Vector3::new(*rate, *rate, *rate)).map_err(|error| error.to_string())?;

@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
 use quatrack::{Equilibrium, FeedForward, gains};
-use quatrack_sim::certify::Region;
-use quatrack_sim::design::actuator_aware::ActuatorAwareWeights;
-use quatrack_sim::figures::{Curve, TrackingFigure};
-use quatrack_sim::flight::manoeuvres::{Manoeuvre, Outcome};
-use quatrack_sim::flight::motor_laws::{AwareTable, CraftLaw, FlightError, default_lag_s};
-use quatrack_sim::flight::rigid_loop::RigidFlight;
-use quatrack_sim::flight::robustness;
+use quatrack_cli::figures::{Curve, TrackingFigure};
+use quatrack_design::certify::Region;
+use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
+use quatrack_simulation::flight::manoeuvres::{Manoeuvre, Outcome};
+use quatrack_simulation::flight::motor_laws::{AwareTable, CraftLaw, FlightError, default_lag_s};
+use quatrack_simulation::flight::rigid_loop::RigidFlight;
+use quatrack_simulation::flight::robustness;
 use serde::Serialize;
 
 use super::vehicle::VehicleChoice;

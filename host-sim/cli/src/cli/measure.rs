@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use quatrack_sim::pil::PilError;
-use quatrack_sim::pil::image::{self, Image};
-use quatrack_sim::pil::measure::{self, Images, Report};
+use quatrack_cli::pil::PilError;
+use quatrack_cli::pil::image::{self, Image};
+use quatrack_cli::pil::measure::{self, Images, Report};
 
 use super::{Failure, output};
 

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use quatrack_sim::pil::client::Client;
-use quatrack_sim::pil::emulated::{self, Transport};
-use quatrack_sim::pil::interrupt::Interrupt;
-use quatrack_sim::pil::line::Line;
-use quatrack_sim::pil::{PilError, image, lock_step};
+use quatrack_cli::pil::client::Client;
+use quatrack_cli::pil::emulated::{self, Transport};
+use quatrack_cli::pil::interrupt::Interrupt;
+use quatrack_cli::pil::line::Line;
+use quatrack_cli::pil::{PilError, image, lock_step};
 
 use super::{Failure, output};
 

@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use quatrack_sim::plan::{Limit, Plan, PlanError, Realised, stored};
-use quatrack_sim::trajectory::bspline::BSpline;
-use quatrack_sim::trajectory::on_board;
-use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_plan::plan::{Limit, Plan, PlanError, Realised, stored};
+use quatrack_plan::trajectory::bspline::BSpline;
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use serde::Serialize;
 
 use super::{Failure, output};
@@ -150,7 +150,7 @@ fn line(text: &mut String, [name, a, b, c]: [&str; 4]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use quatrack_sim::plan::paper;
+    use quatrack_plan::plan::paper;
 
     /// A folder of its own for a test, removed at the end.
     struct Folder(PathBuf);

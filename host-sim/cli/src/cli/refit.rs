@@ -7,17 +7,18 @@ use std::path::PathBuf;
 use clap::builder::RangedU64ValueParser;
 use quatrack::law::EquilibriumGain;
 use quatrack::{Equilibrium, ErrorForm, FeedForward, Limits, Rate};
-use quatrack_sim::design::codegen::rounded;
-use quatrack_sim::design::synthesis::{self, EquilibriumWeights};
-use quatrack_sim::flight::closed_loop::fly_sampled;
-use quatrack_sim::flight::core_loop::{self, CoreLoop};
-use quatrack_sim::flight::deviation::Deviation;
-use quatrack_sim::flight::metrics::Metrics;
-use quatrack_sim::flight::reference::Exact;
-use quatrack_sim::trajectory::Trajectory;
-use quatrack_sim::trajectory::poly4d::{MEMORY_BYTES, PIECES_MAX, StoredTrajectory};
-use quatrack_sim::trajectory::polynomial::{PiecewisePolynomial, csv};
-use quatrack_sim::trajectory::refit::refit;
+use quatrack_design::design::codegen::rounded;
+use quatrack_design::design::synthesis::{self, EquilibriumWeights};
+use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::poly4d::{MEMORY_BYTES, PIECES_MAX, StoredTrajectory};
+use quatrack_plan::trajectory::polynomial::{PiecewisePolynomial, csv};
+use quatrack_plan::trajectory::refit::refit;
+use quatrack_simulation::flight::closed_loop::fly_sampled;
+use quatrack_simulation::flight::core_loop::CoreLoop;
+use quatrack_simulation::flight::deviation::Deviation;
+use quatrack_simulation::flight::metrics::Metrics;
+use quatrack_simulation::flight::reference::Exact;
 use serde::Serialize;
 
 use super::{Failure, output};
@@ -133,7 +134,7 @@ fn compare(
 ) -> Result<Comparison, String> {
     let rate = Rate::from_hz(RATE_HZ).ok_or_else(|| format!("no clock of {RATE_HZ} Hz"))?;
     let iae = |flown: &PiecewisePolynomial, measured_from: &PiecewisePolynomial| {
-        let pieces = core_loop::pieces(flown);
+        let pieces = on_board::pieces(flown);
         let law = Equilibrium { gain, error_form: ErrorForm::HeadingFrame, feed_forward };
         let mut core = CoreLoop::new(&pieces, rate, law, Limits::NONE).map_err(|error| error.to_string())?;
         let flight = fly_sampled(&Exact(measured_from), rate.hz(), |tick, _, x| core.step(tick, x));

@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use quatrack_sim::figures::{Curve, TrackingFigure};
-use quatrack_sim::flight::closed_loop::Flight;
-use quatrack_sim::model::position;
-use quatrack_sim::plan::{self, Plan, PlanError};
-use quatrack_sim::reproduction::beyond::Beyond;
-use quatrack_sim::reproduction::report::Reproduction;
-use quatrack_sim::reproduction::table::{Controller, Course};
-use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_cli::figures::{Curve, TrackingFigure};
+use quatrack_design::model::position;
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::{self, Plan, PlanError};
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_simulation::flight::closed_loop::Flight;
+use quatrack_simulation::reproduction::beyond::Beyond;
+use quatrack_simulation::reproduction::report::Reproduction;
+use quatrack_simulation::reproduction::table::Controller;
 
 use super::{Failure, output};
 

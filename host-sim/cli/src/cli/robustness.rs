@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use quatrack_sim::flight::robustness::{self, CASES, Report, Row};
+use quatrack_simulation::flight::robustness::{self, CASES, Report, Row};
 
 use super::vehicle::VehicleChoice;
 use super::{Failure, output};

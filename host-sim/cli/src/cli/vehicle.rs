@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::str::FromStr;
 
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_simulation::vehicles;
 
 /// A vehicle as it was asked for.
 #[derive(Clone, Debug)]
@@ -15,9 +16,9 @@ impl FromStr for VehicleChoice {
     fn from_str(text: &str) -> Result<Self, String> {
         let path = Path::new(text);
         let found = if path.extension().is_some_and(|end| end == "toml") {
-            Vehicle::from_file(path)
+            vehicles::from_file(path)
         } else {
-            Vehicle::by_name(text)
+            vehicles::by_name(text)
         };
         found.map(Self).map_err(|error| error.to_string())
     }

@@ -8,18 +8,17 @@ use std::process::Command;
 use std::time::Duration;
 
 use quatrack::checksum::crc32c;
+use quatrack_simulation::crazyflie::{
+    CONTROL_BYTES, Case, Course, Recorded, Recording, Sensors, Setpoints, Tune, fly_recorded, platform,
+};
+use quatrack_simulation::vehicles;
 use serde::Serialize;
 
-use super::course::Course;
-use super::firmware::{Sensors, Setpoints, Tune, platform};
-use super::flight::{Case, Recorded, fly_recorded};
-use super::recording::{CONTROL_BYTES, Recording};
-use crate::pil::PilError;
-use crate::pil::emulator::{Emulator, Folder};
-use crate::pil::image::TARGET;
-use crate::pil::interrupt::Interrupt;
-use crate::pil::measure::Count;
-use crate::vehicle::Vehicle;
+use super::PilError;
+use super::emulator::{Emulator, Folder};
+use super::image::TARGET;
+use super::interrupt::Interrupt;
+use super::measure::Count;
 
 /// Longest time for the emulator to count all flights.
 const LIMIT: Duration = Duration::from_secs(120);
@@ -81,7 +80,7 @@ pub fn count(checkout: &Path) -> Result<Counts, PilError> {
     let object = build_object(checkout)?;
     let image = build_image(checkout, &object)?;
     let interrupt = Interrupt::listen()?;
-    let vehicle = Vehicle::by_name("crazyflie-2.1").map_err(|error| PilError::Plan(error.to_string()))?;
+    let vehicle = vehicles::by_name("crazyflie-2.1").map_err(|error| PilError::Plan(error.to_string()))?;
     let mut flights = Vec::new();
     let sensors = Sensors { gyro_noise_rad_s: 0.02, estimate_steps: 1 };
     for (table, number, lag_s) in TABLES {

@@ -2,16 +2,17 @@
 
 use quatrack::link::{Table, TrajectoryId};
 use quatrack::{Command, Limits, Player, Rate, State, Tracker};
+use quatrack_design::model::StateVector;
+use quatrack_plan::plan;
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::stored;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_simulation::flight::closed_loop::{Flight, HeldCommand, fly_sampled};
+use quatrack_simulation::flight::core_loop;
+use quatrack_simulation::flight::reference::Exact;
+use quatrack_simulation::reproduction::table::{Controller, core_law};
 
 use super::PilError;
-use crate::flight::closed_loop::{Flight, HeldCommand, fly_sampled};
-use crate::flight::core_loop;
-use crate::flight::reference::Exact;
-use crate::model::StateVector;
-use crate::plan;
-use crate::plan::stored;
-use crate::reproduction::table::{Controller, Course, core_law};
-use crate::trajectory::polynomial::PiecewisePolynomial;
 
 /// Control steps a second.
 pub const RATE_HZ: u32 = 500;

@@ -5,6 +5,11 @@ use std::fmt;
 
 use quatrack::link::{LawChoice, LimitsSetting, Parameter, ToBoard, TrajectoryCommand};
 use quatrack::{Command, ErrorForm, State, Step};
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::stored;
+use quatrack_simulation::flight::metrics::Metrics;
+use quatrack_simulation::reproduction::report::digits;
+use quatrack_simulation::reproduction::table::Controller;
 use serde::Serialize;
 
 use super::PilError;
@@ -12,10 +17,6 @@ use super::bits::{Fnv1a, words};
 use super::client::Client;
 use super::flights::{COURSES, HostCore, PATIENCE_TICKS, Plans, RATE_HZ, fly, share, table, trajectory_id};
 use super::motors::{self, MotorReport};
-use crate::flight::metrics::Metrics;
-use crate::plan::stored;
-use crate::reproduction::report::digits;
-use crate::reproduction::table::{Controller, Course};
 
 /// What came of all flights.
 #[derive(Clone, Debug, Serialize)]

@@ -10,6 +10,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use quatrack::{Command, State};
+use quatrack_plan::plan::paper::Course;
+use quatrack_simulation::reproduction::table::Controller;
 use serde::Serialize;
 
 use super::emulated::{self, Transport};
@@ -24,7 +26,6 @@ use super::worst::{
     motors::{self, Motors},
 };
 use super::{PilError, bits};
-use crate::reproduction::table::{Controller, Course};
 
 /// Longest time for an emulator to count all flights.
 const LIMIT: Duration = Duration::from_secs(120);

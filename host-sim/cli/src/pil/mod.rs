@@ -4,6 +4,7 @@
 //! lock_step        the paper's flights under the target's commands, compared with the host's
 //!   motors         the same down to the motors, on a rigid craft
 //! measure          instructions a step, flash, RAM
+//! crazyflie        the same of the Crazyflie controller's object
 //!   worst          what makes a step cost most, on the host
 //!   flights        the paper's flights, flown by the core on the host
 //!     bits         what is compared, and its hash
@@ -16,6 +17,7 @@
 
 mod bits;
 pub mod client;
+pub mod crazyflie;
 pub mod emulated;
 pub mod emulator;
 pub mod flights;
@@ -31,8 +33,6 @@ use std::io;
 use std::path::PathBuf;
 
 use thiserror::Error;
-
-pub use crate::plan::stored;
 
 /// Why an image was not flown or counted.
 #[derive(Debug, Error)]

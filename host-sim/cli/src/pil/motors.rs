@@ -14,26 +14,27 @@ use quatrack::{
     ActuatorAware, ActuatorMemory, Airframe, BodyRateLoop, ByBodyRates, Equilibrium, MotorForces, MotorLag, MotorLaw,
     MotorTracker, Player, Quaternion, Rate, RigidState, State, Tracker,
 };
+use quatrack_design::model::position;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::stored;
+use quatrack_simulation::flight::closed_loop::SAMPLE_PERIOD_S;
+use quatrack_simulation::flight::motor_laws::body_rate_bandwidth_rad_s;
+use quatrack_simulation::flight::reference::{Exact, Reference as _};
+use quatrack_simulation::plant::{Craft, Ground, RigidState as PlantState};
+use quatrack_simulation::reproduction::report::digits;
+use quatrack_simulation::vehicles;
 use serde::Serialize;
 
 use super::PilError;
 use super::bits::Fnv1a;
 use super::client::Client;
 use super::flights::{COURSES, PATIENCE_TICKS, Plans, RATE_HZ, share, trajectory_id};
-use crate::flight::closed_loop::SAMPLE_PERIOD_S;
-use crate::flight::motor_laws::body_rate_bandwidth_rad_s;
-use crate::flight::reference::{Exact, Reference as _};
-use crate::model::position;
-use crate::plan::stored;
-use crate::plant::{Craft, Ground, RigidState as PlantState};
-use crate::reproduction::report::digits;
-use crate::reproduction::table::Course;
-use crate::vehicle::Vehicle;
 
 /// The same file that the image is built from.
 #[allow(unreachable_pub, reason = "the image needs it public")]
 mod table {
-    include!("../../../gains/generated/actuator-aware.rs");
+    include!("../../../../gains/generated/actuator-aware.rs");
 }
 
 /// Control steps a sample of the position error.
@@ -129,7 +130,7 @@ impl HostCore {
             MotorFlight::LqrE => MotorLaw::BodyRates(ByBodyRates {
                 tracker: Tracker::new(
                     Equilibrium::new(&paper::LQR_E),
-                    vehicle.limits().map_err(|error| refused(&error))?,
+                    vehicles::limits(&vehicle).map_err(|error| refused(&error))?,
                 ),
                 body_rates: BodyRateLoop::new(&airframe, flight.bandwidth_rad_s(vehicle))
                     .map_err(|error| refused(&error))?,
@@ -165,7 +166,7 @@ pub(super) fn fly_all(
     limit: Option<u32>,
     advance: &dyn Fn(),
 ) -> Result<MotorReport, PilError> {
-    let vehicle = Vehicle::by_name("crazyflie-2.1").map_err(|error| PilError::Answer(error.to_string()))?;
+    let vehicle = vehicles::by_name("crazyflie-2.1").map_err(|error| PilError::Answer(error.to_string()))?;
     let mut report =
         MotorReport { iae: BTreeMap::new(), bit_exact: true, steps: 0, hash: String::new(), difference: None };
     let mut hash = Fnv1a::new();
@@ -185,7 +186,7 @@ pub(super) fn fly_all(
 pub(super) const FLIGHTS: u32 = (COURSES.len() * MotorFlight::ALL.len()) as u32;
 
 fn prepare(client: &mut Client, course: Course, flight: MotorFlight, vehicle: &Vehicle) -> Result<(), PilError> {
-    let limits = vehicle.limits().map_err(|error| PilError::Answer(error.to_string()))?;
+    let limits = vehicles::limits(&vehicle).map_err(|error| PilError::Answer(error.to_string()))?;
     let [thrust_min_m_s2, thrust_max_m_s2] = vehicle.thrust_limits_m_s2().map(|value| value as f32);
     let body_rates_max_rad_s = vehicle.body_rates_max_rad_s().map(|value| value as f32).into();
     let setting = LimitsSetting { thrust_min_m_s2, thrust_max_m_s2, body_rates_max_rad_s };

@@ -11,12 +11,13 @@ use quatrack::{
     AnyLaw, Command, Equilibrium, FeedForward, Limits, Piece, Player, Quaternion, Rate, State, Step, Tracker,
     Trajectory, gains::paper,
 };
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::stored;
+use quatrack_simulation::reproduction::table::Controller;
 
 use super::PilError;
 use super::bits::words;
 use super::flights::{RATE_HZ, table};
-use crate::plan::stored;
-use crate::reproduction::table::{Controller, Course};
 
 /// The name of a gain without a zero.
 pub(super) const ANY_TABLE: &str = "any E table";

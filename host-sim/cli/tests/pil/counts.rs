@@ -1,7 +1,7 @@
 //! Instructions a step: what the control path may cost at its worst.
 
-use quatrack_sim::pil::image::{self, Image};
-use quatrack_sim::pil::measure::{Images, Report, count};
+use quatrack_cli::pil::image::{self, Image};
+use quatrack_cli::pil::measure::{Images, Report, count};
 
 use crate::emulated::pipes_image;
 use crate::support::has_emulator;
@@ -60,7 +60,7 @@ fn every_call_of_the_crazyflies_stabilizer_stays_within_what_its_own_controllers
         return;
     }
     // Every bit is compared on the way.
-    let counts = quatrack_sim::crazyflie::count(&image::checkout().unwrap()).unwrap();
+    let counts = quatrack_cli::pil::crazyflie::count(&image::checkout().unwrap()).unwrap();
     let (change, rows) = counts.rows.split_last().unwrap();
     assert_eq!((rows.len(), change.table), (5 * 4, "a change"));
     // The stabilizer's task has 450 words, of which a task switch takes 51 and the task's own frame 22.

@@ -10,11 +10,11 @@ use quatrack::link::{
 };
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{Mode, StopReason};
-use quatrack_sim::pil::client::Client;
-use quatrack_sim::pil::emulated::{self, Transport};
-use quatrack_sim::pil::image::{self, Image};
-use quatrack_sim::pil::interrupt::Interrupt;
-use quatrack_sim::pil::lock_step::fly_all;
+use quatrack_cli::pil::client::Client;
+use quatrack_cli::pil::emulated::{self, Transport};
+use quatrack_cli::pil::image::{self, Image};
+use quatrack_cli::pil::interrupt::Interrupt;
+use quatrack_cli::pil::lock_step::fly_all;
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::support::{Scratch, emulators, failure, has_emulator};

@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use quatrack::link::{Parameter, ToBoard};
 use quatrack::supervisor::{Fault, Mode};
-use quatrack_sim::pil::client::Client;
-use quatrack_sim::pil::emulator::{Emulator, Folder};
-use quatrack_sim::pil::interrupt::Interrupt;
-use quatrack_sim::pil::line::Line;
+use quatrack_cli::pil::client::Client;
+use quatrack_cli::pil::emulator::{Emulator, Folder};
+use quatrack_cli::pil::interrupt::Interrupt;
+use quatrack_cli::pil::line::Line;
 
 use crate::emulated::pipes_image;
 use crate::support::has_emulator;

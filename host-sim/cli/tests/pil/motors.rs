@@ -7,7 +7,7 @@ use quatrack::link::{
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{Mode, StopReason};
 use quatrack::{Airframe, RigidState, State};
-use quatrack_sim::pil::client::Client;
+use quatrack_cli::pil::client::Client;
 
 use crate::emulated::connected;
 use crate::support::has_emulator;

@@ -6,9 +6,9 @@ use quatrack::link::{
 };
 use quatrack::nalgebra::Vector3;
 use quatrack::{FlatSample, Limits, Player, Rate, Reference, State, Tracker, Trajectory};
-use quatrack_sim::pil::client::Client;
-use quatrack_sim::pil::stored;
-use quatrack_sim::reproduction::table::Course;
+use quatrack_cli::pil::client::Client;
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::stored;
 
 use crate::emulated::connected;
 use crate::support::has_emulator;

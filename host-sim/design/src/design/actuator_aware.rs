@@ -57,7 +57,7 @@ impl ActuatorAwareWeights {
     };
 
     /// Diagonal of Q, in the order of the errors.
-    pub(crate) fn state(&self) -> Vec<f64> {
+    pub fn state(&self) -> Vec<f64> {
         let Self { position, velocity, rotation, body_rates, force, integral, .. } = self;
         [position, velocity, rotation, body_rates]
             .into_iter()

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use nalgebra::SMatrix;
-use quatrack::gains::table::ENTRY_MIN;
 
 use super::DesignError;
 use super::along::GainsAlong;
@@ -11,12 +10,15 @@ use super::synthesis::{
     EquilibriumWeights, FlatWeights, PAPER_MU, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat,
 };
 
+/// The smallest entry of a table but 0: that of the core, `quatrack::gains::table::ENTRY_MIN`.
+pub const ENTRY_MIN: f32 = 1e-9;
+
 /// A gain as the core flies it: every entry rounded to the nearest f32; by rows.
 pub fn rounded<const M: usize, const N: usize>(gain: &SMatrix<f64, M, N>) -> [[f32; N]; M] {
     std::array::from_fn(|row| std::array::from_fn(|column| gain[(row, column)] as f32))
 }
 
-/// Gains over time as the core flies them: rounded, and what is smaller than the core's smallest entry as zero. Entries
+/// Gains over time as the core flies them: rounded, and what is smaller than [`ENTRY_MIN`] as zero. Entries
 /// that couple the axes fade away where the trajectory rests.
 pub fn rounded_along(gains: &GainsAlong) -> Vec<[[f32; 9]; 4]> {
     let kept = |entry: f32| if entry.abs() < ENTRY_MIN { 0.0 } else { entry };

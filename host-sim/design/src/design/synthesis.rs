@@ -190,12 +190,14 @@ fn flat_design(
     })
 }
 
-pub(crate) fn dense_flat_chain() -> (DMatrix<f64>, DMatrix<f64>) {
+/// The flat chain as matrices of any size: A is 10 x 10, B is 10 x 7.
+pub fn dense_flat_chain() -> (DMatrix<f64>, DMatrix<f64>) {
     let (a, b) = flat_chain();
     (DMatrix::from_column_slice(10, 10, a.as_slice()), DMatrix::from_column_slice(10, 7, b.as_slice()))
 }
 
-pub(crate) fn diagonal(weights: &[f64]) -> DMatrix<f64> {
+/// A square matrix with these numbers on its diagonal.
+pub fn diagonal(weights: &[f64]) -> DMatrix<f64> {
     DMatrix::from_fn(weights.len(), weights.len(), |i, j| if i == j { weights[i] } else { 0.0 })
 }
 

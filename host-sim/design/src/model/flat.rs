@@ -6,7 +6,23 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 
 use super::{GRAVITY_M_S2, InputVector, StateVector};
-use crate::trajectory::FlatSample;
+
+/// The flat output and its derivatives at one time, world frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlatSample {
+    /// Position, m.
+    pub position_m: Vector3<f64>,
+    /// Velocity, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// Acceleration without gravity, m/s^2.
+    pub acceleration_m_s2: Vector3<f64>,
+    /// Jerk, m/s^3.
+    pub jerk_m_s3: Vector3<f64>,
+    /// Heading psi of `q = q_tilt(n) q_z(psi)`, rad.
+    pub heading_rad: f64,
+    /// Its time derivative, rad/s.
+    pub heading_rate_rad_s: f64,
+}
 
 /// A point of a reference: what the laws compare the craft with, and what they may feed forward.
 #[derive(Clone, Copy, Debug, PartialEq)]

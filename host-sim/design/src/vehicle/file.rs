@@ -1,4 +1,4 @@
-//! Vehicle files: TOML in, a [`Vehicle`] whose figures are in range out.
+//! What a vehicle file holds, in any format that serde reads; a [`Vehicle`] whose figures are in range out.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
@@ -13,9 +13,14 @@ const SMALLEST: f64 = 1e-9;
 /// Longest name, bytes: fits the names that tables carry.
 const LONGEST_NAME: usize = 64;
 
+/// The figures of a vehicle as a file states them, not yet looked at; `Vehicle::try_from` does that.
+///
+/// Its entries are described in `gains/vehicles` of the repository, where each built-in figure has its source beside it:
+/// `name`; `body` with `mass_kg` and `inertia_kg_m2`, by rows; `motors` with `arm_m`, `thrust_min_n`, `thrust_max_n`,
+/// `torque_per_thrust_m`, `lag_s` and `published_lag_s`; `limits` with `body_rates_rad_s`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct VehicleFile {
+pub struct VehicleFile {
     name: String,
     body: BodyEntry,
     motors: MotorsEntry,
@@ -46,32 +51,29 @@ struct LimitsEntry {
     body_rates_rad_s: [f64; 3],
 }
 
-pub(super) fn read(text: &str) -> Result<Vehicle, VehicleError> {
-    let file: VehicleFile = toml::from_str(text).map_err(|error| syntax(text, &error))?;
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-._".contains(c);
-    if file.name.is_empty() || file.name.len() > LONGEST_NAME || !file.name.chars().all(plain) {
-        let reason = format!("name = {:?}: must be 1 to {LONGEST_NAME} letters, digits or any of - . _", file.name);
-        return Err(VehicleError::Syntax { line: 1, reason });
-    }
-    positive("body.mass_kg", file.body.mass_kg)?;
-    let (inertia_kg_m2, inverse_inertia) = inertia(&file.body.inertia_kg_m2)?;
-    let rates = file.limits.body_rates_rad_s;
-    rates.iter().try_for_each(|rate| positive("limits.body_rates_rad_s", *rate))?;
-    Ok(Vehicle {
-        motors: motors(&file.motors, 0.25 * file.body.mass_kg * GRAVITY_M_S2)?,
-        name: file.name,
-        mass_kg: file.body.mass_kg,
-        inertia_kg_m2,
-        inverse_inertia,
-        body_rates_max_rad_s: Vector3::from(rates),
-    })
-}
+impl TryFrom<VehicleFile> for Vehicle {
+    type Error = VehicleError;
 
-fn syntax(text: &str, error: &toml::de::Error) -> VehicleError {
-    let start = error.span().map_or(0, |span| span.start);
-    let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
-    let words: Vec<&str> = error.message().split_whitespace().collect();
-    VehicleError::Syntax { line, reason: words.join(" ") }
+    /// # Errors
+    /// [`VehicleError`] for a name that no table can carry or a figure out of range.
+    fn try_from(file: VehicleFile) -> Result<Self, VehicleError> {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-._".contains(c);
+        if file.name.is_empty() || file.name.len() > LONGEST_NAME || !file.name.chars().all(plain) {
+            return Err(VehicleError::Name { name: file.name, longest: LONGEST_NAME });
+        }
+        positive("body.mass_kg", file.body.mass_kg)?;
+        let (inertia_kg_m2, inverse_inertia) = inertia(&file.body.inertia_kg_m2)?;
+        let rates = file.limits.body_rates_rad_s;
+        rates.iter().try_for_each(|rate| positive("limits.body_rates_rad_s", *rate))?;
+        Ok(Self {
+            motors: motors(&file.motors, 0.25 * file.body.mass_kg * GRAVITY_M_S2)?,
+            name: file.name,
+            mass_kg: file.body.mass_kg,
+            inertia_kg_m2,
+            inverse_inertia,
+            body_rates_max_rad_s: Vector3::from(rates),
+        })
+    }
 }
 
 /// `Ok` if `holds`; a NaN makes every comparison false and so never passes.

@@ -1,28 +1,18 @@
-//! Vehicles: a name or a TOML file in; mass, inertia, motors and limits out, every figure in range.
+//! Vehicles: figures in; mass, inertia, motors and limits out, every one in range.
 //!
-//! The built-in ones stand in `gains/vehicles`, each figure with its source beside it. Rotors are numbered as in the
-//! Crazyflie's firmware and stand in an X: 1 front right, 2 rear right, 3 rear left, 4 front left; 1 and 3 turn
-//! anticlockwise seen from above, so that the air turns the body clockwise. Body frame: x forwards, y left, z up.
+//! Rotors are numbered as in the Crazyflie's firmware and stand in an X: 1 front right, 2 rear right, 3 rear left, 4 front
+//! left; 1 and 3 turn anticlockwise seen from above, so that the air turns the body clockwise. Body frame: x forwards, y
+//! left, z up.
 
 mod error;
 mod file;
 
-use std::path::Path;
-
 use nalgebra::{Matrix3, Matrix4, Vector3};
-use quatrack::Limits;
-use quatrack::checksum::crc32c;
 
 pub use error::VehicleError;
+pub use file::VehicleFile;
 
 use crate::model::GRAVITY_M_S2;
-
-/// The built-in vehicles: what they are asked for by, and their file.
-const BUILT_IN: [(&str, &str); 3] = [
-    ("crazyflie-2.1", include_str!("../../../gains/vehicles/crazyflie-2.1.toml")),
-    ("crazyflie-2.1-upgrade-kit", include_str!("../../../gains/vehicles/crazyflie-2.1-upgrade-kit.toml")),
-    ("crazyflie-2.1-brushless", include_str!("../../../gains/vehicles/crazyflie-2.1-brushless.toml")),
-];
 
 /// Where the rotors stand, in units of the half arm: x forwards, y left.
 pub const ROTOR_SIDES: [[f64; 2]; 4] = [[1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
@@ -30,7 +20,7 @@ pub const ROTOR_SIDES: [[f64; 2]; 4] = [[1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0], 
 /// Torque about body z of each rotor, in units of thrust times torque per thrust.
 pub const ROTOR_TORQUE_SIGNS: [f64; 4] = [-1.0, 1.0, -1.0, 1.0];
 
-/// A vehicle whose figures are in range.
+/// A vehicle whose figures are in range: made from a [`VehicleFile`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle {
     name: String,
@@ -75,41 +65,6 @@ impl Motors {
 }
 
 impl Vehicle {
-    /// Names of the built-in vehicles.
-    pub fn names() -> [&'static str; 3] {
-        BUILT_IN.map(|(name, _)| name)
-    }
-
-    /// A built-in vehicle, by one of [`Self::names`] or by its own name, which is shorter for the upgrade kit.
-    ///
-    /// # Errors
-    /// [`VehicleError::Unknown`].
-    pub fn by_name(name: &str) -> Result<Self, VehicleError> {
-        let (_, text) = BUILT_IN
-            .iter()
-            .find(|(held, _)| *held == name || held.strip_suffix("-kit") == Some(name))
-            .ok_or_else(|| VehicleError::Unknown { name: name.to_owned(), known: Self::names().join(", ") })?;
-        Self::from_toml(text)
-    }
-
-    /// A vehicle from the text of a file.
-    ///
-    /// # Errors
-    /// [`VehicleError::Syntax`] for what is not TOML of this form; [`VehicleError::Value`] for a figure out of range.
-    pub fn from_toml(text: &str) -> Result<Self, VehicleError> {
-        file::read(text)
-    }
-
-    /// A vehicle from a file.
-    ///
-    /// # Errors
-    /// As [`Self::from_toml`], and [`VehicleError::Unreadable`].
-    pub fn from_file(path: &Path) -> Result<Self, VehicleError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| VehicleError::Unreadable { path: path.to_owned(), reason: error.to_string() })?;
-        Self::from_toml(&text)
-    }
-
     /// Its name.
     pub fn name(&self) -> &str {
         &self.name
@@ -148,31 +103,5 @@ impl Vehicle {
     /// Body rates that a rate loop of this vehicle follows, rad/s.
     pub fn body_rates_max_rad_s(&self) -> &Vector3<f64> {
         &self.body_rates_max_rad_s
-    }
-
-    /// What commands of thrust and body rates are cut to on board.
-    ///
-    /// # Errors
-    /// [`VehicleError::Value`] where a limit vanishes in the rounding to f32.
-    pub fn limits(&self) -> Result<Limits, VehicleError> {
-        let [min, max] = self.thrust_limits_m_s2().map(|value| value as f32);
-        Limits::new(min, max, self.body_rates_max_rad_s.map(|value| value as f32)).map_err(|_| VehicleError::Value {
-            field: "limits.body_rates_rad_s".to_owned(),
-            value: self.body_rates_max_rad_s.min(),
-            must: "large enough for an f32".to_owned(),
-        })
-    }
-
-    /// CRC-32C of its name and figures, each rounded to f32, lowest byte first: mass; inertia xx, xy, xz, yy, yz, zz;
-    /// arm, least and most thrust, torque per thrust, lag; body rates. It tells a table whether it was made for this
-    /// vehicle.
-    pub fn id(&self) -> u32 {
-        let (i, m, rates) = (&self.inertia_kg_m2, &self.motors, &self.body_rates_max_rad_s);
-        let inertia = [i.m11, i.m12, i.m13, i.m22, i.m23, i.m33];
-        let motors = [m.arm_m, m.thrust_min_n, m.thrust_max_n, m.torque_per_thrust_m, m.lag_s];
-        let figures = [self.mass_kg].into_iter().chain(inertia).chain(motors).chain(rates.iter().copied());
-        let mut bytes = self.name.clone().into_bytes();
-        bytes.extend(figures.flat_map(|figure| (figure as f32).to_le_bytes()));
-        crc32c(&bytes)
     }
 }

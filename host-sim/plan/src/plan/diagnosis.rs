@@ -8,11 +8,11 @@
 use std::fmt;
 
 use nalgebra::Vector3;
+use quatrack_design::model::GRAVITY_M_S2;
 
 use super::program::Program;
 use super::socp::{self, Accuracy, Outcome};
 use super::{Corridor, Plan};
-use crate::model::GRAVITY_M_S2;
 use crate::trajectory::Trajectory;
 use crate::trajectory::bspline::BSpline;
 

@@ -1,11 +1,11 @@
 //! Plan files: TOML in, a [`Plan`] whose numbers are all in range out.
 
 use nalgebra::Vector3;
+use quatrack_design::model::GRAVITY_M_S2;
 use serde::Deserialize;
 
 use super::error::{PlanError, WaypointName};
 use super::{Bounds, Corridor, Plan, Waypoint};
-use crate::model::GRAVITY_M_S2;
 use crate::trajectory::bspline::UniformBasis;
 
 /// More spans than any flight here needs; keeps a slip of the finger from filling the memory.

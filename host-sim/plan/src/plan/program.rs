@@ -3,8 +3,9 @@
 //! Variables, in this order: the `n` x coordinates of the control points, m, then y, then z; one `zeta`, m/s^2, for each
 //! span if the body rate is bounded; one slack for each relaxed limit.
 
+use quatrack_design::model::GRAVITY_M_S2;
+
 use super::{Limit, Plan};
-use crate::model::GRAVITY_M_S2;
 use crate::trajectory::bspline::UniformBasis;
 
 /// A sum of variables times coefficients, and a constant.

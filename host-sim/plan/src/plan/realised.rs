@@ -1,11 +1,12 @@
 //! What a curve really does: a curve in, its largest and least quantities at dense samples out.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use quatrack_design::model::GRAVITY_M_S2;
+use quatrack_design::model::flat::FlatSample;
 
 use super::{Limit, Plan};
-use crate::model::GRAVITY_M_S2;
+use crate::trajectory::Trajectory;
 use crate::trajectory::bspline::BSpline;
-use crate::trajectory::{FlatSample, Trajectory};
 
 /// Samples over the flight: 1 ms for the mild one. A maximum between two samples is missed by the square of that.
 const INTERVALS: usize = 30_000;

@@ -11,8 +11,8 @@ use super::paper::Course;
 mod image {
     use quatrack::Piece;
 
-    include!("../../../plans/mild.rs");
-    include!("../../../plans/aggressive.rs");
+    include!("../../../../plans/mild.rs");
+    include!("../../../../plans/aggressive.rs");
 }
 
 /// The pieces of a course as they stand in the board's flash.

@@ -4,8 +4,9 @@
 //! \[10\] of the paper); since a B-spline lies in the convex hull of its control points, a bound on them holds for all t.
 
 use nalgebra::Vector3;
+use quatrack_design::model::flat::FlatSample;
 
-use super::{FlatSample, Trajectory};
+use super::Trajectory;
 
 /// Why control points do not make a spline.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

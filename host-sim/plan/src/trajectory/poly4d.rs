@@ -8,9 +8,11 @@
 //! The firmware's own controllers read it as Z-Y-X yaw, which is the same at hover.
 
 use nalgebra::Vector3;
+use quatrack_design::model::flat::FlatSample;
 
 use super::polynomial::{COEFFICIENTS, Coordinate, Piece, PiecewisePolynomial, PolynomialError};
-use super::{FlatSample, Trajectory};
+
+use super::Trajectory;
 
 /// What a piece takes of the memory, bytes: four polynomials and a duration.
 pub const PIECE_BYTES: usize = (4 * COEFFICIENTS + 1) * size_of::<f32>();

@@ -9,9 +9,11 @@ use std::f64::consts::TAU;
 use std::fmt;
 
 use nalgebra::Vector3;
+use quatrack_design::model::flat::FlatSample;
 
 use super::bspline::BSpline;
-use super::{FlatSample, Trajectory};
+
+use super::Trajectory;
 
 /// Coefficients per coordinate: degree 7, what the on-board pieces carry.
 pub const COEFFICIENTS: usize = 8;

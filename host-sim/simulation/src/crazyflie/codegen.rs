@@ -9,13 +9,14 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use nalgebra::DMatrix;
+use quatrack_design::certify::{Region, RegionBounds, certify_region};
+use quatrack_design::design::actuator_aware::actuator_aware;
+use quatrack_design::vehicle::Vehicle;
 use thiserror::Error;
 
-use crate::certify::{Region, RegionBounds, certify_region};
-use crate::design::actuator_aware::actuator_aware;
 use crate::flight::motor_laws::FlightError;
 use crate::gains::{self, GainsError, Problem};
-use crate::vehicle::Vehicle;
+use crate::vehicles;
 
 /// Control period, s.
 const PERIOD_S: f64 = 0.002;
@@ -28,7 +29,7 @@ const STATED_S: [[f64; 2]; 3] = [[0.004, 0.040], [0.040, 0.080], [0.080, 0.126]]
 
 macro_rules! text {
     ($name:literal) => {
-        ($name, include_str!(concat!("../../../gains/", $name, ".toml")))
+        ($name, include_str!(concat!("../../../../gains/", $name, ".toml")))
     };
 }
 
@@ -220,7 +221,7 @@ pub fn motor_gains() -> Result<String, CodegenError> {
     );
     for ((constant, _), designs) in CRAFTS.iter().zip(Design::of_crafts()?) {
         let [.., last] = &designs;
-        let (name, id) = (last.vehicle.name(), last.vehicle.id());
+        let (name, id) = (last.vehicle.name(), vehicles::id(&last.vehicle));
         // Writing to a string does not fail.
         let _ = write!(source, "\n/// Vehicle id of {name}.\npub(super) const {constant}_ID: u32 = 0x{id:08x};\n");
         let any = (last.lag_s, last.any_lag_margin()?);

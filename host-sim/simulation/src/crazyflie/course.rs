@@ -1,11 +1,10 @@
 //! What the high-level commander flies: analytic figures, its own take-off and landing, uploaded trajectories.
 
 use nalgebra::Vector3;
+use quatrack_plan::plan::{self, Plan, PlanError};
+use quatrack_plan::trajectory::bspline::BSpline;
+use quatrack_plan::trajectory::fifth_order::{Course as _, Eight, FifthOrder};
 use thiserror::Error;
-
-use crate::plan::{self, Plan, PlanError};
-use crate::trajectory::bspline::BSpline;
-use crate::trajectory::fifth_order::{Course as _, Eight, FifthOrder};
 
 /// Position and its derivatives up to the jerk at one time, SI, world frame.
 pub(super) type Motion = [Vector3<f64>; 4];

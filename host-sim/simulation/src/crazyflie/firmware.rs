@@ -11,12 +11,12 @@ use nalgebra::{Vector3, Vector4};
 use quatrack_crazyflie::abi::{self, Mode};
 use quatrack_crazyflie::craft::Platform;
 use quatrack_crazyflie::ffi;
+use quatrack_design::vehicle::Vehicle;
 
 use super::course::Course;
 use super::recording::{Before, Recording};
 use crate::flight::noise::Source;
 use crate::plant::RigidState;
-use crate::vehicle::Vehicle;
 
 /// The firmware's steps a second.
 pub const STEPS_HZ: u32 = 1000;
@@ -216,7 +216,7 @@ impl Firmware {
 }
 
 /// What the firmware was built for.
-pub(super) fn platform(vehicle: &Vehicle) -> Platform {
+pub fn platform(vehicle: &Vehicle) -> Platform {
     let motors = vehicle.motors();
     Platform {
         mass_kg: vehicle.mass_kg() as f32,

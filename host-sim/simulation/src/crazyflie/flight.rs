@@ -5,6 +5,8 @@
 
 use std::collections::VecDeque;
 
+use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::trajectory::fifth_order::FifthOrder;
 use serde::Serialize;
 
 use super::course::Course;
@@ -13,8 +15,6 @@ use super::recording::Recording;
 use crate::flight::motor_loop;
 use crate::flight::noise::{Noise, Source};
 use crate::plant::{Craft, Ground, RigidState};
-use crate::trajectory::fifth_order::FifthOrder;
-use crate::vehicle::Vehicle;
 
 /// Farther than this from its course a craft counts as lost, m.
 const LOST_M: f64 = 5.0;

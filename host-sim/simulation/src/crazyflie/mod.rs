@@ -2,14 +2,13 @@
 //! the rigid plant; tracking errors out.
 //!
 //! ```text
-//! report, count rows of flights; instructions a call on the emulated target
+//! report        rows of flights
 //!   flight      a course, a craft and what is wrong with it -> errors
 //!     firmware  the stabilizer at 1 kHz: commander, gyroscope, controller, power distribution
 //!       course  what the high-level commander evaluates
 //! ```
 
 mod codegen;
-mod count;
 mod course;
 mod firmware;
 mod flight;
@@ -17,9 +16,8 @@ mod recording;
 mod report;
 
 pub use codegen::{CodegenError, Design, Stated, motor_gains};
-pub use count::{Counts, count};
 pub use course::{Course, CourseError, Septics};
-pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
-pub use flight::{Case, Flown, fly, fly_recorded};
-pub use recording::Recording;
+pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune, platform};
+pub use flight::{Case, Flown, Recorded, fly, fly_recorded};
+pub use recording::{CONTROL_BYTES, Recording};
 pub use report::{Report, Row};

@@ -5,7 +5,7 @@
 use quatrack_crazyflie::abi::{Attitude, Control, Modes, SensorData, Setpoint, State, Vector};
 
 /// Bytes of a control on the target.
-pub(super) const CONTROL_BYTES: usize = 20;
+pub const CONTROL_BYTES: usize = 20;
 
 /// Calls, one after the other, and what the controller put out at each.
 #[derive(Clone, Debug, Default)]

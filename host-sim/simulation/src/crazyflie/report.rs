@@ -7,13 +7,13 @@
 use std::fmt;
 
 use nalgebra::Vector3;
+use quatrack_design::vehicle::Vehicle;
 use serde::Serialize;
 
 use super::course::{Course, CourseError};
 use super::firmware::{Sensors, Setpoints, Tune};
 use super::flight::{Case, Flown, fly};
 use crate::flight::robustness;
-use crate::vehicle::Vehicle;
 
 /// Standard deviation of a gyroscope reading, rad/s: 1 degree a second and a bit.
 const GYRO_NOISE_RAD_S: f64 = 0.02;

@@ -1,11 +1,11 @@
 //! The plant (1) under a law: continuous feedback or held commands in, a flight sampled every 10 ms out.
 
 use nalgebra::Vector3;
+use quatrack_design::model::flat::ReferencePoint;
+use quatrack_design::model::{InputVector, StateVector, dynamics, normalised, position};
 
 use super::reference::Reference;
 use crate::integrator::{DormandPrince, Method};
-use crate::model::flat::ReferencePoint;
-use crate::model::{InputVector, StateVector, dynamics, normalised, position};
 
 /// Sampling period of the paper's logs and of (23), s.
 pub const SAMPLE_PERIOD_S: f64 = 0.01;

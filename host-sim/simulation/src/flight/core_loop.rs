@@ -6,11 +6,9 @@
 use nalgebra::{Vector3, Vector4};
 use quatrack::trajectory::TrajectoryError;
 use quatrack::{Command, Controller, FlightLaw, Limits, Memory, Piece, Player, Progress, Quaternion, Rate, State};
+use quatrack_design::model::{InputVector, StateVector, attitude, position, velocity};
 
 use super::closed_loop::HeldCommand;
-use crate::model::{InputVector, StateVector, attitude, position, velocity};
-
-pub use crate::trajectory::on_board::{pieces, trajectory};
 
 fn vector(v: &Vector3<f64>) -> Vector3<f32> {
     v.map(|value| value as f32)

@@ -1,9 +1,9 @@
 //! How far one reference is from another: two references in, the largest differences of what a craft is asked for out.
 
+use quatrack_design::model::{attitude, position, velocity};
 use serde::Serialize;
 
 use super::reference::Reference;
-use crate::model::{attitude, position, velocity};
 
 /// Parts of the time, in the middle of which the two are compared: at the very end, one that is a rounding error shorter
 /// would already rest. Of a peak that lasts a hundred of them, at most 1e-4 is missed.
@@ -40,7 +40,7 @@ impl Deviation {
         for k in 0..PARTS {
             let t_s = reference.duration_s() * (f64::from(k) + 0.5) / f64::from(PARTS);
             let (a, b) = (reference.at(t_s), other.at(t_s));
-            let rates = |input: &crate::model::InputVector| input.fixed_rows::<3>(1).into_owned();
+            let rates = |input: &quatrack_design::model::InputVector| input.fixed_rows::<3>(1).into_owned();
             // The chord between unit quaternions is twice the sine of a quarter of the angle; q and -q are one attitude.
             let (p, q) = (attitude(&a.state), attitude(&b.state));
             let chord = if p.dot(&q) < 0.0 { (p + q).norm() } else { (p - q).norm() };

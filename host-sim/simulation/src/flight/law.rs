@@ -3,9 +3,10 @@
 //! They share no line with the `f32` core; that the two agree is what the parity tests are about.
 
 use nalgebra::{Rotation3, SMatrix, SVector, UnitQuaternion, Vector3, Vector4};
-
-use crate::model::flat::{ReferencePoint, phi, scalar_first, unit};
-use crate::model::{GRAVITY_M_S2, InputVector, StateVector, attitude, hover_input, position, thrust_axis, velocity};
+use quatrack_design::model::flat::{ReferencePoint, phi, scalar_first, unit};
+use quatrack_design::model::{
+    GRAVITY_M_S2, InputVector, StateVector, attitude, hover_input, position, thrust_axis, velocity,
+};
 
 /// Gain of the equilibrium laws: `[T p q r]` from `[r(3) q1 q2 q3 v(3)]`.
 pub type EquilibriumGain = SMatrix<f64, 4, 9>;

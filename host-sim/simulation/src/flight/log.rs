@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use quatrack_design::model::{INPUT_NAMES, STATE_NAMES};
+
 use super::closed_loop::Flight;
-use crate::model::{INPUT_NAMES, STATE_NAMES};
 
 /// The flight as CSV: time, state, reference state (`ref_...`), input, reference input (`ref_...`).
 pub fn to_csv(flight: &Flight) -> String {

@@ -5,14 +5,14 @@
 use std::cell::Cell;
 
 use nalgebra::{UnitQuaternion, Vector3};
+use quatrack_design::model::GRAVITY_M_S2;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::trajectory::fifth_order::{Braking, Course, FifthOrder, Jump, Rest, RestToRest};
 
 use super::motor_laws::{AwareTable, FlightError, fly};
 use super::motor_loop::{PERIOD_S, STEPS_A_SAMPLE};
 use super::rigid_loop::{Conditions, RigidFlight, fly_rigid};
-use crate::model::GRAVITY_M_S2;
 use crate::plant::{Craft, Ground, RigidState, Shove};
-use crate::trajectory::fifth_order::{Braking, Course, FifthOrder, Jump, Rest, RestToRest};
-use crate::vehicle::Vehicle;
 
 /// Height at which manoeuvres in the air begin, m.
 const HEIGHT_M: f64 = 1.0;

@@ -1,9 +1,9 @@
 //! What a flight came to: its samples in, the paper's IAE and the figures a pilot asks for out.
 
+use quatrack_design::model::{attitude, position, thrust_axis};
 use serde::Serialize;
 
 use super::closed_loop::{Flight, SAMPLE_PERIOD_S};
-use crate::model::{attitude, position, thrust_axis};
 
 /// Figures of one flight. A flight that was lost has figures up to there and no IAE.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

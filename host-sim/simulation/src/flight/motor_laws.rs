@@ -11,15 +11,18 @@ use quatrack::motor_tracker::ByBodyRates;
 use quatrack::{
     ActuatorAware, Airframe, BodyRateLoop, Equilibrium, MotorLag, MotorLaw, MotorTracker, ReferenceError, Tracker,
 };
+use quatrack_design::certify::{
+    CertifyError, Controller, Plant, Region, RegionCertificate, Timing, certify, certify_region,
+};
+use quatrack_design::design::DesignError;
+use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
+use quatrack_design::vehicle::{Vehicle, VehicleError};
+use quatrack_plan::trajectory::fifth_order::Course;
 
 use super::motor_loop::{self, MotorLoop, PERIOD_S};
 use super::rigid_loop::{Conditions, RigidFlight, fly_rigid};
-use crate::certify::{CertifyError, Controller, Plant, Region, RegionCertificate, Timing, certify, certify_region};
-use crate::design::DesignError;
-use crate::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use crate::plant::{Craft, RigidState};
-use crate::trajectory::fifth_order::Course;
-use crate::vehicle::{Vehicle, VehicleError};
+use crate::vehicles;
 
 /// A table designed for less does not hold at 126 ms with mass and inertia off and a delay, s.
 const DEFAULT_LAG_MIN_S: f64 = 0.1;
@@ -138,7 +141,7 @@ impl<'a> CraftLaw<'a> {
     pub fn by_body_rates(vehicle: &Vehicle, law: Equilibrium<'a>, lag_s: f64) -> Result<Self, FlightError> {
         let airframe = motor_loop::airframe(vehicle, lag_s)?;
         let law = ByBodyRates {
-            tracker: Tracker::new(law, vehicle.limits()?),
+            tracker: Tracker::new(law, vehicles::limits(vehicle)?),
             body_rates: BodyRateLoop::behind_lag(&airframe),
             lag: MotorLag::new(lag_s as f32, motor_loop::RATE)?,
         };

@@ -7,11 +7,11 @@ use quatrack::airframe::{AirframeError, AirframeFigures};
 use quatrack::{
     ActuatorMemory, Airframe, FifthOrderSample, FlatSample, MotorReference, MotorTracker, Rate, ReferenceError, State,
 };
+use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::trajectory::fifth_order::FifthOrder;
 
 use super::rigid_loop::MotorCommand;
 use crate::plant::RigidState;
-use crate::trajectory::fifth_order::FifthOrder;
-use crate::vehicle::Vehicle;
 
 /// Control rate of these flights: 500 Hz.
 pub const RATE: Rate = Rate::from_hz(500).expect("in range");

@@ -1,7 +1,7 @@
 //! References over time: a trajectory in, the point to be at out; sampled and interpolated as in the paper, or exact.
 
-use crate::model::flat::{ReferencePoint, reference_point};
-use crate::trajectory::Trajectory;
+use quatrack_design::model::flat::{ReferencePoint, reference_point};
+use quatrack_plan::trajectory::Trajectory;
 
 /// A reference over time.
 pub trait Reference {

@@ -2,11 +2,11 @@
 //! sampled every 10 ms out.
 
 use nalgebra::{Vector3, Vector4};
+use quatrack_design::model::{InputVector, StateVector};
 
 use super::closed_loop::{Flight, Lost, SAMPLE_PERIOD_S, Sample};
 use super::noise::{Noise, Source};
 use super::reference::Reference;
-use crate::model::{InputVector, StateVector};
 use crate::plant::{Craft, RigidState};
 
 /// A position error beyond which a flight is lost, m: several times the size of any manoeuvre flown here.

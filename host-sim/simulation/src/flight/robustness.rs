@@ -10,6 +10,12 @@
 
 use quatrack::law::EquilibriumGain;
 use quatrack::{Equilibrium, FeedForward};
+use quatrack_design::certify::Region;
+use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
+use quatrack_design::design::codegen::rounded;
+use quatrack_design::design::synthesis::{EquilibriumWeights, PAPER_MU, lqr_equilibrium, lyapunov_equilibrium};
+use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::trajectory::fifth_order::{Course as _, Eight};
 use serde::Serialize;
 
 use super::motor_laws::{
@@ -18,13 +24,7 @@ use super::motor_laws::{
 use super::motor_loop::{self, STEPS_A_SAMPLE};
 use super::noise::Noise;
 use super::rigid_loop::{Conditions, RigidFlight};
-use crate::certify::Region;
-use crate::design::actuator_aware::ActuatorAwareWeights;
-use crate::design::codegen::rounded;
-use crate::design::synthesis::{EquilibriumWeights, PAPER_MU, lqr_equilibrium, lyapunov_equilibrium};
 use crate::plant::Craft;
-use crate::trajectory::fifth_order::{Course as _, Eight};
-use crate::vehicle::Vehicle;
 
 /// Angular frequency of the eight, rad/s.
 pub const RATE_RAD_S: f64 = 1.485;

@@ -5,12 +5,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use nalgebra::DMatrix;
+use quatrack_design::certify::{Judged, judge};
 use serde_json::{Value, json};
 
 use super::certified::Certified;
 use super::designed::Gains;
 use super::significant::{rounded, without_dust};
-use crate::certify::{Judged, judge};
 
 /// A file to be written or compared.
 #[derive(Debug, Clone, PartialEq)]

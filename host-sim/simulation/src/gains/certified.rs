@@ -1,6 +1,7 @@
 //! A design carried out: design in; gains, certificate and table out, or the figure that fails.
 
 use quatrack::gains::table::{ActuatorTable, GainTable, Hash, Name, ScheduleRows, TableError, TableHead, Vehicle};
+use quatrack_design::certify::{Certificate, Minimum, RegionCertificate, certify_region, motor_lag_limit, require};
 use serde::Serialize;
 
 use super::GainsError;
@@ -8,7 +9,7 @@ use super::design::{Design, Problem};
 use super::designed::{Designed, TableRows};
 use super::statement::{Statement, sha256};
 use super::table::Table;
-use crate::certify::{Certificate, Minimum, RegionCertificate, certify_region, motor_lag_limit, require};
+use crate::vehicles;
 
 /// A design with its gains, and what they promise.
 #[derive(Debug, Clone)]
@@ -104,7 +105,7 @@ impl Design {
         let (linearisation, method) = self.problem.named();
         Essence {
             vehicle: self.vehicle.name().to_owned(),
-            vehicle_id: format!("{:08x}", self.vehicle.id()),
+            vehicle_id: format!("{:08x}", vehicles::id(&self.vehicle)),
             linearisation,
             method,
             parameters: &self.problem,
@@ -121,7 +122,7 @@ impl Design {
             vehicle: self.vehicle.name().to_owned(),
             reason: error.to_string(),
         })?;
-        Ok(Vehicle { name, id: self.vehicle.id() })
+        Ok(Vehicle { name, id: vehicles::id(&self.vehicle) })
     }
 }
 

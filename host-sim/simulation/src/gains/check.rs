@@ -6,6 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
+use quatrack_design::design::codegen;
 use serde_json::Value;
 
 use super::GainsError;
@@ -13,7 +14,6 @@ use super::artifacts::{FIGURES, artifacts, default_folder, document};
 use super::certified::Certified;
 use super::design::Design;
 use super::significant::{SAME_GAIN, is_same_figure};
-use crate::design::codegen;
 
 /// A decimal of an f64 is read to one rounding.
 const READ: f64 = 1e-15;

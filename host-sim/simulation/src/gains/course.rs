@@ -6,15 +6,15 @@
 use std::path::Path;
 
 use quatrack::{Piece, Trajectory};
+use quatrack_plan::plan::paper::Course as PaperCourse;
+use quatrack_plan::plan::stored;
+use quatrack_plan::trajectory::Trajectory as _;
+use quatrack_plan::trajectory::file::{self, TrajectoryFile};
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use serde::{Serialize, Serializer};
 
 use super::GainsError;
-use crate::plan::paper::Course as PaperCourse;
-use crate::plan::stored;
-use crate::trajectory::Trajectory as _;
-use crate::trajectory::file::{self, TrajectoryFile};
-use crate::trajectory::on_board;
-use crate::trajectory::polynomial::PiecewisePolynomial;
 
 /// At the end it rests: speed, acceleration and jerk are below this, m/s, m/s^2, m/s^3. In f32 coefficients rest is a
 /// difference of numbers of some size.

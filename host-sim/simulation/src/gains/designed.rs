@@ -3,6 +3,22 @@
 use nalgebra::{DMatrix, SMatrix};
 use num_complex::Complex64;
 use quatrack::gains::table::{Rows, TableKind};
+use quatrack_design::certify::{Certificate, CertifyError, Controller, Plant, Timing, certify, certify_along};
+use quatrack_design::design::actuator_aware::{ERRORS, actuator_aware, hover_pair_with_integral};
+use quatrack_design::design::along::{GainsAlong, gains_along};
+use quatrack_design::design::codegen::{rounded, rounded_along};
+use quatrack_design::design::discretise::{Held, zero_order_hold};
+use quatrack_design::design::integral::{integral_pair, sampled_integral_problem, sampled_lqi};
+use quatrack_design::design::sampled::{
+    SampledCost, SampledDesign, Sampling, equilibrium_pair, sampled_cost, sampled_equilibrium, sampled_flat, shaped,
+};
+use quatrack_design::design::synthesis::{
+    EquilibriumDesign, EquilibriumWeights, FlatDesign, FlatWeights, dense_flat_chain, diagonal, lqr_equilibrium,
+    lqr_flat, lyapunov_equilibrium, lyapunov_flat,
+};
+use quatrack_design::model::flat::reference_point;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::trajectory::Trajectory as _;
 
 use super::GainsError;
 use super::design::{Design, Method, Problem};
@@ -10,22 +26,6 @@ use super::names::{
     EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, INTEGRAL_STATES, MOTOR_INPUTS, MOTOR_STATES,
     Signal,
 };
-use crate::certify::{Certificate, CertifyError, Controller, Plant, Timing, certify, certify_along};
-use crate::design::actuator_aware::{ERRORS, actuator_aware, hover_pair_with_integral};
-use crate::design::along::{GainsAlong, gains_along};
-use crate::design::codegen::{rounded, rounded_along};
-use crate::design::discretise::{Held, zero_order_hold};
-use crate::design::integral::{integral_pair, sampled_integral_problem, sampled_lqi};
-use crate::design::sampled::{
-    SampledCost, SampledDesign, Sampling, equilibrium_pair, sampled_cost, sampled_equilibrium, sampled_flat, shaped,
-};
-use crate::design::synthesis::{
-    EquilibriumDesign, EquilibriumWeights, FlatDesign, FlatWeights, dense_flat_chain, diagonal, lqr_equilibrium,
-    lqr_flat, lyapunov_equilibrium, lyapunov_flat,
-};
-use crate::model::flat::reference_point;
-use crate::trajectory::Trajectory as _;
-use crate::vehicle::Vehicle;
 
 /// A gain with all that it came from; of gains over time model, P and poles are those of the hover at their end.
 #[derive(Debug, Clone)]

@@ -1,10 +1,9 @@
 //! Why a design gives no table, in one line each: which key, its value, what to do.
 
 use quatrack::gains::table::{NameError, TableError};
+use quatrack_design::certify::{CertifyError, MarginTooSmall};
+use quatrack_design::design::DesignError;
 use thiserror::Error;
-
-use crate::certify::{CertifyError, MarginTooSmall};
-use crate::design::DesignError;
 
 /// A design that cannot be read, computed, certified or written.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -84,7 +83,7 @@ pub enum GainsError {
         /// The largest spectral radius.
         spectral_radius: f64,
         /// Where.
-        worst: crate::certify::Variation,
+        worst: quatrack_design::certify::Variation,
     },
     /// The core would refuse the table.
     #[error("the table would be refused on board: {0}")]

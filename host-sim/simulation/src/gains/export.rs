@@ -6,6 +6,9 @@
 use std::fmt::Write as _;
 
 use nalgebra::DMatrix;
+use quatrack_design::analysis::staircase;
+use quatrack_design::model::linear::linearise;
+use quatrack_design::model::{hover_input, hover_state};
 use serde_json::{Map, Value, json};
 
 use super::GainsError;
@@ -13,9 +16,6 @@ use super::artifacts::by_rows;
 use super::design::{Design, Problem};
 use super::designed::{Designed, Gains, Poles, SampledProblem};
 use super::names::{MODEL_STATES, Signal};
-use crate::analysis::staircase;
-use crate::model::linear::linearise;
-use crate::model::{hover_input, hover_state};
 
 /// A matrix with what its rows and columns stand for.
 #[derive(Debug, Clone, PartialEq)]
@@ -163,7 +163,7 @@ fn hover_staircase(inputs: &[Signal]) -> Result<Vec<Matrix>, GainsError> {
     let (a, b) = linearise(&hover_state(), &hover_input());
     let a = DMatrix::from_column_slice(10, 10, a.as_slice());
     let b = DMatrix::from_column_slice(10, 4, b.as_slice());
-    let stairs = staircase(&a, &b).map_err(crate::design::DesignError::from)?;
+    let stairs = staircase(&a, &b).map_err(quatrack_design::design::DesignError::from)?;
     const STAIRS: [&str; 10] = ["s1", "s2", "s3", "s4", "s5", "s6", "s7", "s8", "s9", "s10"];
     let steps = STAIRS.map(|name| Signal { name, unit: "mixed" }).to_vec();
     let states = MODEL_STATES.to_vec();

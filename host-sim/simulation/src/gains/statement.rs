@@ -6,12 +6,12 @@
 //! on the edge of a digit any more.
 
 use quatrack::gains::table::{self, Hash, Margins};
+use quatrack_design::certify::{Certificate, StabilityLimit};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use super::design::Design;
 use super::designed::Designed;
-use crate::certify::{Certificate, StabilityLimit};
 
 /// What is taken off a figure, as a share of it, before it is rounded down.
 const GUARD: f64 = 1e-6;

@@ -1,9 +1,8 @@
 //! A rigid body: force and torque in, accelerations out.
 
 use nalgebra::{Matrix3, Vector3};
-
-use crate::model::GRAVITY_M_S2;
-use crate::vehicle::Vehicle;
+use quatrack_design::model::GRAVITY_M_S2;
+use quatrack_design::vehicle::Vehicle;
 
 /// Mass and inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! A whole craft: commanded thrusts held for a time in, the state after it out.
 
 use nalgebra::{Quaternion, Vector4};
+use quatrack_design::vehicle::Vehicle;
 
 use super::state::RigidVector;
 use super::{Load, MotorBank, RigidBody, RigidState};
 use crate::integrator::Method;
-use crate::vehicle::Vehicle;
 
 /// Longest step of the integration, s. At the body rates and lags of small craft its error is below 1e-9 m a second.
 const STEP_MAX_S: f64 = 0.002;

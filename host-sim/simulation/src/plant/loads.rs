@@ -1,9 +1,9 @@
 //! What pushes a craft besides its motors: time and state in, force and torque out.
 
 use nalgebra::Vector3;
+use quatrack_design::vehicle::{ROTOR_SIDES, Vehicle};
 
 use super::RigidState;
-use crate::vehicle::{ROTOR_SIDES, Vehicle};
 
 /// A force and a torque about the centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,9 +1,9 @@
 //! Motors: commanded thrusts in; thrusts that follow with a lag, and the force and torque of all, out.
 
 use nalgebra::{Vector3, Vector4};
+use quatrack_design::vehicle::{ROTOR_SIDES, ROTOR_TORQUE_SIGNS, Vehicle};
 
 use super::Wrench;
-use crate::vehicle::{ROTOR_SIDES, ROTOR_TORQUE_SIGNS, Vehicle};
 
 /// One motor with its rotor, whose axis is the body's z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]

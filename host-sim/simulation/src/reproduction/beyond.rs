@@ -9,21 +9,22 @@ use quatrack::gains::paper;
 use quatrack::gains::table::KNOTS_MAX;
 use quatrack::law::{EquilibriumGain, FlatOutputGain, GainSchedule, IntegralGain, Knot};
 use quatrack::{AlongTrajectory, Equilibrium, FeedForward, FlatOutput, FlightLaw, IntegralAction, Limits, Piece, Rate};
+use quatrack_design::design::DesignError;
+use quatrack_design::design::along::gains_along;
+use quatrack_design::design::codegen::{rounded, rounded_along};
+use quatrack_design::design::integral::{IntegralWeights, sampled_lqi};
+use quatrack_design::design::sampled::{Sampling, sampled_equilibrium, sampled_flat, shaped};
+use quatrack_design::design::synthesis::{EquilibriumWeights, FlatWeights};
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::trajectory::Trajectory as _;
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use serde::Serialize;
 
-use super::table::Course;
-use crate::design::DesignError;
-use crate::design::along::gains_along;
-use crate::design::codegen::{rounded, rounded_along};
-use crate::design::integral::{IntegralWeights, sampled_lqi};
-use crate::design::sampled::{Sampling, sampled_equilibrium, sampled_flat, shaped};
-use crate::design::synthesis::{EquilibriumWeights, FlatWeights};
 use crate::flight::closed_loop::fly_sampled;
-use crate::flight::core_loop::{self, CoreLoop};
+use crate::flight::core_loop::CoreLoop;
 use crate::flight::metrics::Metrics;
 use crate::flight::reference::{Exact, Reference as _};
-use crate::trajectory::Trajectory as _;
-use crate::trajectory::polynomial::PiecewisePolynomial;
 
 /// Rates at which the core is flown, and for which the sampled designs are made, Hz. At the slowest one a hold is longer than
 /// the paper's LQR-E bears.
@@ -143,7 +144,7 @@ impl Beyond {
 }
 
 fn fly_course(trajectory: &PiecewisePolynomial) -> Result<ByMethod, DesignError> {
-    let pieces = core_loop::pieces(trajectory);
+    let pieces = on_board::pieces(trajectory);
     let mut methods = ByMethod::new();
     for rate_hz in RATES_HZ {
         let designs = Designs::new(trajectory, &pieces, rate_hz)?;

@@ -6,13 +6,13 @@
 //!    to `dq1/dt`, `dq2/dt` and with them to the body rates.
 
 use nalgebra::{Quaternion, SVector, Vector3, Vector4};
-
-use crate::flight::law::{EquilibriumGain, FlatOutputGain};
-use crate::model::flat::{ReferencePoint, Thrust, reference_point};
-use crate::model::{
+use quatrack_design::model::flat::{ReferencePoint, Thrust, reference_point};
+use quatrack_design::model::{
     ATTITUDE, GRAVITY_M_S2, InputVector, StateVector, attitude, hover_input, position, thrust_axis, velocity,
 };
-use crate::trajectory::Trajectory;
+use quatrack_plan::trajectory::Trajectory;
+
+use crate::flight::law::{EquilibriumGain, FlatOutputGain};
 
 /// The reference with slip A.
 pub fn reference(trajectory: &dyn Trajectory, t_s: f64) -> ReferencePoint {

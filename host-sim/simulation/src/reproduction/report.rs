@@ -5,15 +5,16 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::thread;
 
+use quatrack_design::design::DesignError;
+use quatrack_design::design::synthesis::PAPER_MU;
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use serde::Serialize;
 
 use super::beyond::Beyond;
-use super::table::{CORE_RATES_HZ, CRASH_MU, Controller, Course, Gains, Outcome, fly_cell, fly_crash};
-use crate::design::DesignError;
-use crate::design::synthesis::PAPER_MU;
+use super::table::{CORE_RATES_HZ, CRASH_MU, Controller, Gains, Outcome, fly_cell, fly_crash};
 use crate::flight::metrics::Metrics;
-use crate::trajectory::Trajectory;
-use crate::trajectory::polynomial::PiecewisePolynomial;
 
 /// All flights of Table I, and the two at the decay rate that crashes.
 pub struct Reproduction {

@@ -6,23 +6,24 @@ use std::fmt;
 
 use quatrack::law::{EquilibriumGain as CoreEquilibriumGain, FlatOutputGain as CoreFlatOutputGain};
 use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Rate, gains::paper};
+use quatrack_design::design::DesignError;
+use quatrack_design::design::synthesis::{
+    EquilibriumWeights, FlatWeights, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat,
+};
+use quatrack_design::model::flat::reference_point;
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use serde::Serialize;
 
 use super::published;
-use crate::design::DesignError;
-use crate::design::synthesis::{
-    EquilibriumWeights, FlatWeights, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat,
-};
 use crate::flight::closed_loop::{Flight, SAMPLE_PERIOD_S, Solver, fly_continuous, fly_sampled};
-use crate::flight::core_loop::{self, CoreLoop};
+use crate::flight::core_loop::CoreLoop;
 use crate::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
 use crate::flight::metrics::Metrics;
 use crate::flight::reference::{Exact, Sampled};
 use crate::integrator::DormandPrince;
-use crate::model::flat::reference_point;
-use crate::trajectory::polynomial::PiecewisePolynomial;
 
-pub use crate::plan::paper::Course;
+use quatrack_plan::plan::paper::Course;
 
 /// Rates at which the core is flown, Hz.
 pub const CORE_RATES_HZ: [u32; 3] = [100, 500, 1000];
@@ -66,13 +67,11 @@ impl fmt::Display for Controller {
     }
 }
 
-impl Course {
-    /// IAE as printed in the paper's Table I, m s, in the order of [`Controller::ALL`].
-    pub fn printed(self) -> [&'static str; 4] {
-        match self {
-            Self::Mild => ["4.68", "0.22", "0.31", "0.018"],
-            Self::Aggressive => ["5.69", "2.14", "0.83", "0.11"],
-        }
+/// IAE as printed in the paper's Table I, m s, in the order of [`Controller::ALL`].
+pub fn printed(course: Course) -> [&'static str; 4] {
+    match course {
+        Course::Mild => ["4.68", "0.22", "0.31", "0.018"],
+        Course::Aggressive => ["5.69", "2.14", "0.83", "0.11"],
     }
 }
 
@@ -183,7 +182,7 @@ pub fn fly_cell(course: Course, trajectory: &PiecewisePolynomial, controller: Co
         })
         .collect();
     let cell = Cell {
-        paper: course.printed()[index],
+        paper: printed(course)[index],
         as_published: Metrics::of(&published_flight).iae_m_s,
         exact: Metrics::of(&exact).iae_m_s,
         core_f32,
@@ -232,7 +231,7 @@ pub fn core_law(controller: Controller) -> AnyLaw<'static> {
 
 /// Nothing where the core refuses the trajectory or the rate, which it does for neither of the paper's.
 fn fly_core(trajectory: &PiecewisePolynomial, controller: Controller, rate_hz: u32) -> Option<Flight> {
-    let pieces = core_loop::pieces(trajectory);
+    let pieces = on_board::pieces(trajectory);
     let mut core = CoreLoop::new(&pieces, Rate::from_hz(rate_hz)?, core_law(controller), Limits::NONE).ok()?;
     Some(fly_sampled(&Exact(trajectory), rate_hz, |tick, _, x| core.step(tick, x)))
 }

@@ -6,10 +6,10 @@ use std::path::Path;
 
 use quatrack::gains::table::{AcceptError, GainTable, ScheduleTable, TableHead, TableKind};
 use quatrack::{FlightLaw, Rate, Trajectory};
-use quatrack_sim::flight::core_loop;
-use quatrack_sim::flight::reference::{Exact, Reference};
-use quatrack_sim::gains::{Course, Design};
-use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_simulation::flight::reference::{Exact, Reference};
+use quatrack_simulation::gains::{Course, Design};
 
 use super::{Args, Flown, Precision, fly_law, load};
 use crate::cli::limits::LimitsChoice;
@@ -29,7 +29,7 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Flown,
         let rate = rate.unwrap_or(head.rate);
         let accepted = table.accept_for(&head.vehicle, rate).map_err(|error| not_accepted(path, &error))?;
         let trajectory = stored(&args.trajectory).unwrap_or(trajectory);
-        let pieces = core_loop::pieces(&trajectory);
+        let pieces = on_board::pieces(&trajectory);
         if !Trajectory::new(&pieces).is_ok_and(|flown| accepted.is_for(&flown)) {
             let reason = format!("its gains are for another trajectory than --trajectory {}", args.trajectory);
             return Err(refused(path, &reason));

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use quatrack_sim::gains::{self, Signal, Table};
+use quatrack_simulation::gains::{self, Signal, Table};
 use serde_json::{Value, json};
 
 use super::super::{Failure, output};

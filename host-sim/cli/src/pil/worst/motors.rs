@@ -10,17 +10,17 @@ use quatrack::{
     ActuatorAware, ActuatorMemory, Airframe, MotorLaw, MotorReference, MotorTracker, Piece, Player, Rate, RigidState,
     State, Trajectory,
 };
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::stored;
 
 use super::{HASH, hashed, turn};
 use crate::pil::PilError;
 use crate::pil::flights::RATE_HZ;
-use crate::plan::stored;
-use crate::reproduction::table::Course;
 
 /// The same file that the image is built from.
 #[allow(unreachable_pub, reason = "the image needs it public")]
 mod table {
-    include!("../../../../gains/generated/actuator-aware.rs");
+    include!("../../../../../gains/generated/actuator-aware.rs");
 }
 
 /// The name of a gain that does not decouple.

@@ -1,10 +1,11 @@
 //! A design down to the motors: its entries in; lag, weights and region out.
 
+use quatrack_design::certify::RegionBounds;
+use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
+
 use super::entry::{check, misplaced, missing};
 use super::problem::Problem;
 use super::weights::weight;
-use crate::certify::RegionBounds;
-use crate::design::actuator_aware::ActuatorAwareWeights;
 use crate::gains::GainsError;
 use crate::gains::file::{DesignFile, Linearisation, Weights};
 

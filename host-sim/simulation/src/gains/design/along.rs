@@ -4,13 +4,13 @@ use std::path::Path;
 
 use quatrack::Rate;
 use quatrack::gains::table::KNOTS_MAX;
+use quatrack_plan::trajectory::Trajectory as _;
 
 use super::entry::{misplaced, missing};
 use super::problem::Problem;
 use super::weights::equilibrium_weights;
 use crate::gains::file::{DesignFile, Linearisation, Weights};
 use crate::gains::{Course, GainsError};
-use crate::trajectory::Trajectory as _;
 
 /// As many knots as a table holds.
 pub(super) fn along(file: &DesignFile, weights: &Weights, folder: &Path, rate: Rate) -> Result<Problem, GainsError> {

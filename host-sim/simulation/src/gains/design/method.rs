@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use quatrack::Rate;
+use quatrack_design::design::integral::IntegralWeights;
 
 use super::actuator_aware::{actuator_aware, not_of_motors};
 use super::along::along;
 use super::entry::{check, misplaced, missing, positive};
 use super::problem::{Method, Problem};
 use super::weights::{equilibrium_weights, flat_weights};
-use crate::design::integral::IntegralWeights;
 use crate::gains::GainsError;
 use crate::gains::file::{DesignFile, Linearisation, MethodName};
 

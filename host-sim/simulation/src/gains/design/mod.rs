@@ -15,11 +15,13 @@ use quatrack::{Limits, Rate};
 
 pub use problem::{Method, Problem};
 
+use entry::{check, positive};
+use quatrack_design::certify::Minimum;
+use quatrack_design::vehicle::Vehicle;
+
 use super::GainsError;
 use super::file::{self, LimitsEntry, MinimumEntry};
-use crate::certify::Minimum;
-use crate::vehicle::Vehicle;
-use entry::{check, positive};
+use crate::vehicles;
 
 /// A design that has been read and checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,9 +86,12 @@ impl Design {
 
 fn vehicle(written: &str, folder: &Path) -> Result<Vehicle, GainsError> {
     let refused = |reason: String| GainsError::Vehicle { vehicle: written.to_owned(), reason };
-    let vehicle =
-        if written.ends_with(".toml") { Vehicle::from_file(&folder.join(written)) } else { Vehicle::by_name(written) }
-            .map_err(|error| refused(error.to_string()))?;
+    let vehicle = if written.ends_with(".toml") {
+        vehicles::from_file(&folder.join(written))
+    } else {
+        vehicles::by_name(written)
+    }
+    .map_err(|error| refused(error.to_string()))?;
     Name::new(vehicle.name()).map_err(|error| refused(format!("its {error}")))?;
     Ok(vehicle)
 }
@@ -94,11 +99,11 @@ fn vehicle(written: &str, folder: &Path) -> Result<Vehicle, GainsError> {
 /// The vehicle's limits, or tighter ones.
 fn limits(entry: &LimitsEntry, vehicle: &Vehicle, written: &str) -> Result<Limits, GainsError> {
     let refused = |reason: String| GainsError::Vehicle { vehicle: written.to_owned(), reason };
-    let whole = vehicle.limits().map_err(|error| refused(error.to_string()))?;
+    let whole = vehicles::limits(&vehicle).map_err(|error| refused(error.to_string()))?;
     let (least, most) = (f64::from(whole.thrust_min_m_s2()), f64::from(whole.thrust_max_m_s2()));
     let min = entry.thrust_min_m_s2.unwrap_or(least);
     let max = entry.thrust_max_m_s2.unwrap_or(most);
-    let hover = crate::model::GRAVITY_M_S2;
+    let hover = quatrack_design::model::GRAVITY_M_S2;
     check((least..hover).contains(&min), "limits.thrust_min_m_s2", min, format!("from {least} to below g = {hover}"))?;
     check(max > hover && max <= most, "limits.thrust_max_m_s2", max, format!("above g = {hover}, up to {most}"))?;
     let held = whole.body_rates_max_rad_s().map(f64::from);

@@ -1,11 +1,11 @@
 //! What a design asks for: a linearisation, a method that is defined for it, and the method's numbers.
 
+use quatrack_design::certify::RegionBounds;
+use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
+use quatrack_design::design::integral::IntegralWeights;
+use quatrack_design::design::synthesis::{EquilibriumWeights, FlatWeights};
 use serde::Serialize;
 
-use crate::certify::RegionBounds;
-use crate::design::actuator_aware::ActuatorAwareWeights;
-use crate::design::integral::IntegralWeights;
-use crate::design::synthesis::{EquilibriumWeights, FlatWeights};
 use crate::gains::Course;
 
 /// A linearisation with a method that is defined for it.

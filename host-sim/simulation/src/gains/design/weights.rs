@@ -1,7 +1,8 @@
 //! Weights: a design's `[weights]` in; the diagonals of a linearisation out, each key where it belongs.
 
+use quatrack_design::design::synthesis::{EquilibriumWeights, FlatWeights};
+
 use super::entry::{misplaced, missing, non_negative, positive};
-use crate::design::synthesis::{EquilibriumWeights, FlatWeights};
 use crate::gains::GainsError;
 use crate::gains::file::{Linearisation, Weights};
 

@@ -4,14 +4,14 @@ use std::path::Path;
 
 use quatrack::Rate;
 use quatrack::gains::table::{ActuatorTable, TableKind};
-use quatrack_sim::flight::motor_laws::{CraftLaw, fly as fly_motors};
-use quatrack_sim::flight::motor_loop::{RATE, STEPS_A_SAMPLE, state_on};
-use quatrack_sim::flight::reference::Exact;
-use quatrack_sim::flight::rigid_loop::Conditions;
-use quatrack_sim::plant::Craft;
-use quatrack_sim::trajectory::fifth_order::Course as _;
-use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_plan::trajectory::fifth_order::Course as _;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_simulation::flight::motor_laws::{CraftLaw, fly as fly_motors};
+use quatrack_simulation::flight::motor_loop::{RATE, STEPS_A_SAMPLE, state_on};
+use quatrack_simulation::flight::reference::Exact;
+use quatrack_simulation::flight::rigid_loop::Conditions;
+use quatrack_simulation::plant::Craft;
+use quatrack_simulation::vehicles;
 
 use super::super::{Args, Flown};
 use super::{not_accepted, refused};
@@ -32,10 +32,10 @@ pub(super) fn fly(
     if head.rate != RATE {
         return Err(refused(path, &format!("for {} Hz; the rigid plant is flown at {} Hz", head.rate.hz(), RATE.hz())));
     }
-    let vehicle = Vehicle::names()
+    let vehicle = vehicles::names()
         .iter()
-        .filter_map(|name| Vehicle::by_name(name).ok())
-        .find(|vehicle| vehicle.id() == head.vehicle.id)
+        .filter_map(|name| vehicles::by_name(name).ok())
+        .find(|vehicle| vehicles::id(vehicle) == head.vehicle.id)
         .ok_or_else(|| refused(path, &format!("no built-in vehicle is its {}", head.vehicle)))?;
     let accepted =
         table.accept_for(&head.vehicle, rate.unwrap_or(head.rate)).map_err(|error| not_accepted(path, &error))?;
