@@ -5,8 +5,8 @@
 //! at 0.88, 1.24 and 1.46 of their weight. Both figures are parameters here, so that the laws are compared and not the craft.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use quatrack_sim::control_law::{Estimate, Input, Setpoint};
-use quatrack_sim::rivals::{Actuation, Mellinger, MellingerConfig};
+use quatrack_simulation::control_law::{Estimate, Input, Setpoint};
+use quatrack_simulation::rivals::{Actuation, Mellinger, MellingerConfig};
 use serde_json::Value;
 
 /// Written by `drone_controllers_mellinger.py` beside it.

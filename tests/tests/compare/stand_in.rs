@@ -1,13 +1,14 @@
 //! Rivals on plants with the mass, inertia, lag and drag that RotorPy 3.0.0 and drone-models 0.1.0 publish.
 
 use nalgebra::{Vector3, Vector4};
-use quatrack_sim::control_law::ControlLaw;
-use quatrack_sim::plant::{Craft, Load, RigidState, Wrench};
-use quatrack_sim::rivals::{Actuation, CascadedPid, CascadedPidConfig, Lee, LeeConfig, Mellinger, MellingerConfig};
-use quatrack_sim::scenario::course::Flown;
-use quatrack_sim::scenario::flight::{Bench, Setpoints, World};
-use quatrack_sim::scenario::sensors::Sensors;
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_simulation::control_law::ControlLaw;
+use quatrack_simulation::plant::{Craft, Load, RigidState, Wrench};
+use quatrack_simulation::rivals::{Actuation, CascadedPid, CascadedPidConfig, Lee, LeeConfig, Mellinger, MellingerConfig};
+use quatrack_simulation::scenario::course::Flown;
+use quatrack_simulation::scenario::flight::{Bench, Setpoints, World};
+use quatrack_simulation::scenario::sensors::Sensors;
+use quatrack_simulation::vehicles;
+use quatrack_design::vehicle::Vehicle;
 
 struct Drag(Vector3<f64>);
 
@@ -62,10 +63,10 @@ const PLANTS: [Plant; 5] = [
 ];
 
 fn vehicle(plant: &Plant) -> Vehicle {
-    let base = Vehicle::by_name(plant.base).unwrap();
+    let base = vehicles::by_name(plant.base).unwrap();
     let m = base.motors();
     let [x, y, z] = plant.inertia;
-    Vehicle::from_toml(&format!(
+    vehicles::from_toml(&format!(
         "name = \"{}\"\n[body]\nmass_kg = {}\ninertia_kg_m2 = [[{x:?}, 0.0, 0.0], [0.0, {y:?}, 0.0], [0.0, 0.0, {z:?}]]\n[motors]\narm_m = {}\nthrust_min_n = 0.0\nthrust_max_n = {}\ntorque_per_thrust_m = {}\nlag_s = {}\npublished_lag_s = [{}, {}]\n[limits]\nbody_rates_rad_s = [20.0, 20.0, 10.0]\n",
         base.name(), plant.mass_kg, plant.half_arm * std::f64::consts::SQRT_2, m.thrust_max_n, m.torque_per_thrust_m, plant.lag_s, plant.lag_s, plant.lag_s
     )).unwrap()
@@ -77,7 +78,7 @@ fn table() {
     for air in [false, true] {
         for plant in &PLANTS {
             let vehicle = vehicle(plant);
-            let base = Vehicle::by_name(plant.base).unwrap();
+            let base = vehicles::by_name(plant.base).unwrap();
             // The firmware's idea of the arm.
             let actuation = Actuation::of(&base);
             let mut craft = Craft::new(&vehicle);

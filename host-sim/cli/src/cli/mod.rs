@@ -1,0 +1,96 @@
+//! The command line: one module a command, each with its `Args` and a `run`.
+
+mod analyze;
+mod compare;
+mod crazyflie;
+mod export;
+mod fly;
+mod gains;
+mod limits;
+mod manoeuvres;
+mod measure;
+mod output;
+mod pil;
+mod plan;
+mod refit;
+mod reproduce;
+mod robustness;
+mod vehicle;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+/// Why a command stops: one line for the user and the exit code.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    exit_code: u8,
+    line: String,
+}
+
+impl Failure {
+    /// The input cannot be used: exit code 2.
+    pub(crate) fn input(reason: impl std::fmt::Display) -> Self {
+        Self { exit_code: 2, line: reason.to_string() }
+    }
+
+    /// The question was answered with no: exit code 1.
+    pub(crate) fn verdict(reason: impl std::fmt::Display) -> Self {
+        Self { exit_code: 1, line: reason.to_string() }
+    }
+}
+
+/// Trajectory tracking with a quaternion-based quadcopter model: design, plan, fly, and reproduce the paper.
+#[derive(Parser)]
+#[command(name = "quatrack", version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Analyze(analyze::Args),
+    Compare(compare::Args),
+    Crazyflie(crazyflie::Args),
+    Export(export::Args),
+    Fly(fly::Args),
+    Gains(gains::Args),
+    Manoeuvres(manoeuvres::Args),
+    Measure(measure::Args),
+    Pil(pil::Args),
+    Plan(plan::Args),
+    Refit(refit::Args),
+    Reproduce(reproduce::Args),
+    Robustness(robustness::Args),
+}
+
+/// Reads the arguments, runs the command, prints what went wrong in one line.
+pub(crate) fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => return output::argument_error(&error),
+    };
+    let outcome: Result<(), Failure> = match &arguments.command {
+        Command::Analyze(args) => analyze::run(args),
+        Command::Compare(args) => compare::run(args),
+        Command::Crazyflie(args) => crazyflie::run(args),
+        Command::Export(args) => export::run(args),
+        Command::Fly(args) => fly::run(args),
+        Command::Gains(args) => gains::run(args),
+        Command::Manoeuvres(args) => manoeuvres::run(args),
+        Command::Measure(args) => measure::run(args),
+        Command::Pil(args) => pil::run(args),
+        Command::Plan(args) => plan::run(args),
+        Command::Refit(args) => refit::run(args),
+        Command::Reproduce(args) => reproduce::run(args),
+        Command::Robustness(args) => robustness::run(args),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("quatrack: {}", failure.line);
+            ExitCode::from(failure.exit_code)
+        }
+    }
+}
