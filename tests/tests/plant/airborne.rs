@@ -1,13 +1,14 @@
 //! What the air does: energy, terminal velocity, the direction of the moment, wind.
 
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
-use quatrack_sim::plant::{Airflow, Craft, Dryden, Environment, Gust, Plant, RigidState, Truth, Wind};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_simulation::plant::{Airflow, Craft, Dryden, Environment, Gust, Plant, RigidState, Truth, Wind};
+use quatrack_simulation::vehicles;
 
 const G: f64 = 9.81;
 
 fn vehicle() -> Vehicle {
-    Vehicle::by_name("crazyflie-2.1").expect("built in")
+    vehicles::by_name("crazyflie-2.1").expect("built in")
 }
 
 /// arXiv 2512.14450's, of 45 g.

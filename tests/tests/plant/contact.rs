@@ -1,12 +1,12 @@
 //! Walls and the ground.
 
 use nalgebra::{Unit, UnitQuaternion, Vector3, Vector4};
-use quatrack_sim::plant::{Environment, Plant, RigidState, Truth, Wall};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_simulation::plant::{Environment, Plant, RigidState, Truth, Wall};
+use quatrack_simulation::vehicles;
 
 #[test]
 fn a_craft_that_leans_on_a_wall_is_held_by_it() {
-    let vehicle = Vehicle::by_name("crazyflie-2.1").expect("built in");
+    let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     let wall = Wall { point_m: Vector3::new(0.1, 0.0, 0.0), normal: Unit::new_normalize(-Vector3::x()), friction: 0.5 };
     let environment = Environment { walls: vec![wall], guard_reach_m: 0.03, ..Environment::VACUUM };
     let mut start = RigidState::at_rest(Vector3::z(), vehicle.hover_thrust_n());
@@ -26,7 +26,7 @@ fn a_craft_that_leans_on_a_wall_is_held_by_it() {
 
 #[test]
 fn friction_holds_what_is_pressed_against_a_wall() {
-    let vehicle = Vehicle::by_name("crazyflie-2.1").expect("built in");
+    let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     let wall = Wall { point_m: Vector3::new(0.0, 0.0, 2.0), normal: Unit::new_normalize(-Vector3::z()), friction: 0.5 };
     // A ceiling; 1.4 weights of thrust press with 0.4 weights, which hold up to 0.2 g across.
     let environment = Environment { walls: vec![wall], ..Environment::VACUUM };
@@ -43,7 +43,7 @@ fn friction_holds_what_is_pressed_against_a_wall() {
 
 #[test]
 fn near_the_floor_the_same_thrust_lifts_more() {
-    let vehicle = Vehicle::by_name("crazyflie-2.1").expect("built in");
+    let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     let environment = Environment { ground_effect_radius_m: Some(0.0225), ..Environment::VACUUM };
     let climb = |height_m: f64| {
         let start = RigidState::at_rest(Vector3::new(0.0, 0.0, height_m), vehicle.hover_thrust_n());

@@ -2,11 +2,12 @@
 //! is off.
 
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
-use quatrack_sim::plant::{Battery, Craft, Environment, ForceMap, Plant, Propeller, RigidState, Supply, Truth};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_simulation::plant::{Battery, Craft, Environment, ForceMap, Plant, Propeller, RigidState, Supply, Truth};
+use quatrack_simulation::vehicles;
 
 fn vehicle() -> Vehicle {
-    Vehicle::by_name("crazyflie-2.1-brushless").expect("built in")
+    vehicles::by_name("crazyflie-2.1-brushless").expect("built in")
 }
 
 /// arXiv 2603.05944's thrust and arXiv 2512.14450's inertia.

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3, Vector4};
-use quatrack_sim::plant::{
+use quatrack_simulation::plant::{
     Airflow, Craft, LinearWind, Motor, MotorBank, Propeller, RigidBody, RigidState, RotorDrag, SpeedResponse,
 };
 use serde_json::Value;

@@ -1,11 +1,11 @@
 //! Figures without sense: key, value, range and remedy in one line.
 
 use nalgebra::Vector3;
-use quatrack_sim::plant::{Dryden, Environment, Plant, RigidState, Truth, Wind};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_simulation::plant::{Dryden, Environment, Plant, RigidState, Truth, Wind};
+use quatrack_simulation::vehicles;
 
 fn refused(environment: &Environment, change: impl FnOnce(&mut Truth)) -> String {
-    let vehicle = Vehicle::by_name("crazyflie-2.1").expect("built in");
+    let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     let mut truth = Truth::as_designed(&vehicle);
     change(&mut truth);
     let start = RigidState::at_rest(Vector3::zeros(), 0.0);
