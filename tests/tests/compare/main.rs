@@ -1,4 +1,5 @@
 //! Rivals beside other tools' figures, scenarios, and the table in which laws are compared.
 
 mod drone_controllers;
-mod stand_in;
+mod plants;
+mod scenario;

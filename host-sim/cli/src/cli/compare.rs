@@ -46,7 +46,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut flights = Vec::with_capacity(laws.len());
     for law in laws {
         let mut flying = law.start(&scenario.vehicle, &scenario.told).map_err(Failure::input)?;
-        flights.push((law.name().to_owned(), scenario.fly(flying.as_mut(), &flown)));
+        flights.push((law.name().to_owned(), scenario.fly(flying.as_mut(), &flown).map_err(Failure::input)?));
     }
     let table = Table::of(&flights);
     output::print(&format!("{scenario}\n\n{table}"))?;

@@ -2,6 +2,11 @@
 
 use std::path::PathBuf;
 
+use quatrack::ReferenceError;
+use quatrack::airframe::AirframeError;
+
+use crate::plant::PlantError;
+
 /// Why there is no scenario.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ScenarioError {
@@ -47,4 +52,26 @@ pub enum ScenarioError {
         /// Why not, with the remedy.
         reason: String,
     },
+    /// A figure of the plant that is out of range.
+    #[error("{origin}: {error}")]
+    Plant {
+        /// Whose it is.
+        origin: String,
+        /// Which, and the remedy.
+        error: PlantError,
+    },
+}
+
+/// Why a flight does not start.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StartError {
+    /// The craft's figures.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+    /// The core takes no such vehicle.
+    #[error("the core refuses the vehicle: {0}")]
+    Airframe(#[from] AirframeError),
+    /// The start asks for what no thrust does.
+    #[error("the course cannot be flown from its start: {0}")]
+    Start(#[from] ReferenceError),
 }

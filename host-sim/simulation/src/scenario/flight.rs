@@ -1,6 +1,6 @@
 //! The flight of a law: a craft, what is wrong with what is known of it, a course and a law in; where it went out.
 
-use nalgebra::{UnitQuaternion, Vector3, Vector4};
+use nalgebra::{UnitQuaternion, Vector3};
 use serde::Deserialize;
 
 use super::course::Flown;
@@ -8,7 +8,7 @@ use super::sensors::Sensors;
 use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ, Setpoint};
 use crate::flight::closed_loop::Lost;
 use crate::flight::rigid_loop::{RigidFlight, RigidSample};
-use crate::plant::RigidState;
+use crate::plant::{Plant, RigidState};
 
 /// Farther than this from its course a craft counts as lost, m.
 const LOST_M: f64 = 5.0;
@@ -29,18 +29,6 @@ pub enum Setpoints {
     Exact,
 }
 
-/// What a law flies: the true craft in its surroundings.
-pub trait World {
-    /// Where it is.
-    fn state(&self) -> &RigidState;
-    /// What an accelerometer at the centre of mass feels, body frame, m/s^2.
-    fn specific_force_m_s2(&mut self) -> Vector3<f64>;
-    /// Voltage of the battery, V.
-    fn battery_v(&self) -> f64;
-    /// Gives commands, N, and flies on for a time, s.
-    fn advance(&mut self, commands_n: &Vector4<f64>, duration_s: f64);
-}
-
 /// What is flown, how the law is told of it, and what is between the craft and the law.
 pub struct Bench<'a> {
     /// What is flown.
@@ -53,13 +41,13 @@ pub struct Bench<'a> {
 
 impl Bench<'_> {
     /// Flies a law from where a craft is; rows every 10 ms of what is measured.
-    pub fn fly(mut self, world: &mut dyn World, law: &mut dyn ControlLaw) -> RigidFlight {
+    pub fn fly(mut self, plant: &mut Plant, law: &mut dyn ControlLaw) -> RigidFlight {
         let mut flight = RigidFlight { samples: Vec::new(), saturated_steps: 0, lost: None };
         let steps = (self.flown.course.duration_s() / STEP_S).round() as u32;
         let law_steps = STEPS_HZ / law.rate_hz().clamp(1, STEPS_HZ);
-        let (mut setpoint, mut commands_n) = (self.setpoint(0.0), world.state().thrusts_n);
+        let (mut setpoint, mut commands_n) = (self.setpoint(0.0), plant.state().thrusts_n);
         for step in 0..=steps {
-            let (time_s, state) = (f64::from(step) * STEP_S, *world.state());
+            let (time_s, state) = (f64::from(step) * STEP_S, *plant.state());
             let target_m = self.flown.course.at(time_s).position[0];
             let error_m = (state.position_m - target_m).norm();
             // Written so that NaN fails it.
@@ -70,9 +58,9 @@ impl Bench<'_> {
             if step.is_multiple_of(SAMPLE_STEPS) || self.setpoints == Setpoints::Exact {
                 setpoint = self.setpoint(time_s);
             }
-            let estimate = self.sensors.estimate(&state, &world.specific_force_m_s2());
+            let estimate = self.sensors.estimate(&state, &plant.motion().specific_force_m_s2);
             if step.is_multiple_of(law_steps) {
-                match law.step(&Input { time_s, estimate, setpoint, battery_v: world.battery_v() }) {
+                match law.step(&Input { time_s, estimate, setpoint, battery_v: plant.voltage_v() }) {
                     Ok(asked_n) if asked_n.iter().all(|force| force.is_finite()) => commands_n = asked_n,
                     Ok(_) => flight.lost = Some(Lost { time_s, reason: "a force that is not finite".to_owned() }),
                     Err(reason) => flight.lost = Some(Lost { time_s, reason }),
@@ -84,7 +72,7 @@ impl Bench<'_> {
             if step.is_multiple_of(SAMPLE_STEPS) && time_s > self.flown.measured_from_s - 0.5 * STEP_S {
                 flight.samples.push(RigidSample { time_s, state, commands_n, target_m });
             }
-            world.advance(&commands_n, STEP_S);
+            plant.advance(&commands_n, STEP_S);
         }
         flight
     }

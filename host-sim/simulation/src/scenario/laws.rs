@@ -16,6 +16,8 @@ pub enum Law {
     /// The Crazyflie controller's default table.
     #[default]
     Quatrack,
+    /// The actuator-aware table without a word of the air.
+    ActuatorAware,
     /// The paper's, each behind the body-rate loop of the core.
     LqrE,
     /// Likewise.
@@ -73,8 +75,9 @@ pub enum LawError {
 
 impl Law {
     /// All of them, ours first.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Quatrack,
+        Self::ActuatorAware,
         Self::LqrE,
         Self::LyapE,
         Self::LqrF,
@@ -88,6 +91,7 @@ impl Law {
     pub fn name(self) -> &'static str {
         match self {
             Self::Quatrack => "quatrack",
+            Self::ActuatorAware => "actuator-aware",
             Self::LqrE => "lqr-e",
             Self::LyapE => "lyap-e",
             Self::LqrF => "lqr-f",
@@ -110,7 +114,8 @@ impl Law {
             })
         };
         Ok(match self {
-            Self::Quatrack => table(0)?,
+            // Today's default table is the actuator-aware one.
+            Self::Quatrack | Self::ActuatorAware => table(0)?,
             Self::LyapE => table(1)?,
             Self::LqrE => table(2)?,
             Self::LyapF => table(3)?,

@@ -1,7 +1,20 @@
 //! A scenario: a craft, its air, what is wrong with what is known of it, a course and a law, in one file that every command
 //! flies.
+//!
+//! ```text
+//! compare            laws beside each other
+//!   checked, checks  a file -> a scenario whose every value has been looked at, or one line that says why not
+//!     whole          the scenario; its flights
+//!       flight       a plant, sensors and a law at 1 kHz
+//!         sensors    noise and biases
+//!         course     hover, ramp, and what is measured
+//!       laws         laws by name
+//!         object_law the Crazyflie controller as a law
+//!   file             the keys in TOML
+//! ```
 
 mod checked;
+mod checks;
 pub mod compare;
 pub mod course;
 mod error;
@@ -10,7 +23,8 @@ pub mod flight;
 mod laws;
 mod object_law;
 pub mod sensors;
+mod whole;
 
-pub use checked::{AirFigures, CourseChoice, FilterFigures, Scenario, TrueFigures};
-pub use error::ScenarioError;
+pub use error::{ScenarioError, StartError};
 pub use laws::{Law, LawError, ToldFigures};
+pub use whole::{CourseChoice, FilterFigures, Scenario};

@@ -4,8 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::flight::truth;
 use crate::control_law::Estimate;
-use crate::flight::noise::Source;
-use crate::plant::RigidState;
+use crate::plant::{RigidState, Source, Stream};
 
 /// Standard deviations of each component at every step of the flight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,7 +27,8 @@ pub struct Sensors {
     noise: SensorNoise,
     gyro_bias_rad_s: Vector3<f64>,
     accelerometer_bias_m_s2: Vector3<f64>,
-    source: Source,
+    /// Gyroscope, accelerometer, position, velocity, attitude: what one of them draws leaves the others as they are.
+    streams: [Stream; 5],
 }
 
 impl Sensors {
@@ -39,7 +39,10 @@ impl Sensors {
         accelerometer_bias_m_s2: Vector3<f64>,
         seed: u64,
     ) -> Self {
-        Self { noise, gyro_bias_rad_s, accelerometer_bias_m_s2, source: Source::new(seed) }
+        let sources =
+            [Source::Gyroscope, Source::Accelerometer, Source::Position, Source::Velocity, Source::Attitude];
+        let streams = sources.map(|source| Stream::new(seed, source));
+        Self { noise, gyro_bias_rad_s, accelerometer_bias_m_s2, streams }
     }
 
     /// Exact ones.
@@ -49,17 +52,20 @@ impl Sensors {
 
     /// What is measured and estimated of a state.
     pub(super) fn estimate(&mut self, state: &RigidState, specific_force_m_s2: &Vector3<f64>) -> Estimate {
-        let truth = truth(state, specific_force_m_s2);
-        let noise = self.noise;
-        let mut white = |deviation: f64| Vector3::from_fn(|_, _| deviation * self.source.normal());
+        let (truth, noise) = (truth(state, specific_force_m_s2), self.noise);
+        let [gyro, accelerometer, position, velocity, attitude] = &mut self.streams;
         Estimate {
-            position_m: truth.position_m + white(noise.position_m),
-            velocity_m_s: truth.velocity_m_s + white(noise.velocity_m_s),
-            attitude: truth.attitude * UnitQuaternion::from_scaled_axis(white(noise.attitude_rad)),
-            body_rates_rad_s: truth.body_rates_rad_s + self.gyro_bias_rad_s + white(noise.gyro_rad_s),
+            position_m: truth.position_m + white(position, noise.position_m),
+            velocity_m_s: truth.velocity_m_s + white(velocity, noise.velocity_m_s),
+            attitude: truth.attitude * UnitQuaternion::from_scaled_axis(white(attitude, noise.attitude_rad)),
+            body_rates_rad_s: truth.body_rates_rad_s + self.gyro_bias_rad_s + white(gyro, noise.gyro_rad_s),
             specific_force_m_s2: truth.specific_force_m_s2
                 + self.accelerometer_bias_m_s2
-                + white(noise.accelerometer_m_s2),
+                + white(accelerometer, noise.accelerometer_m_s2),
         }
     }
+}
+
+fn white(stream: &mut Stream, deviation: f64) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| deviation * stream.normal())
 }
