@@ -41,10 +41,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let flown = scenario.flown(None);
     let mut own = OwnLaw { mass_kg: scenario.told.mass_kg, actuation: Actuation::of(&scenario.vehicle) };
     let mut lee = Law::Lee.start(&scenario.vehicle, &scenario.told)?;
-    let flights = [
-        ("own".to_owned(), scenario.fly(&mut own, &flown)?),
-        ("lee".to_owned(), scenario.fly(lee.as_mut(), &flown)?),
-    ];
+    let flights =
+        [("own".to_owned(), scenario.fly(&mut own, &flown)?), ("lee".to_owned(), scenario.fly(lee.as_mut(), &flown)?)];
     println!("{scenario}\n\n{}", Table::of(&flights));
     Ok(())
 }

@@ -61,7 +61,10 @@ fn scenario(text: &str) -> Result<Scenario, String> {
 fn every_key_of_a_file_is_in_the_scenario() {
     let read = scenario(WHOLE).unwrap();
     assert_eq!((read.course, read.duration_s), (CourseChoice::Eight(2.1), Some(3.0)));
-    assert_eq!((read.law, read.setpoints, read.estimator, read.seed), (Law::Lee, Setpoints::Exact, Estimator::Exact, 7));
+    assert_eq!(
+        (read.law, read.setpoints, read.estimator, read.seed),
+        (Law::Lee, Setpoints::Exact, Estimator::Exact, 7)
+    );
     assert_eq!(read.environment.air.drag_per_s, [0.447, 0.435, 0.45]);
     assert_eq!(read.environment.wind.mean_m_s, Vector3::x());
     assert_eq!(read.environment.wind.turbulence.map(|turbulence| turbulence.rms_m_s.x), Some(0.5));
@@ -124,12 +127,12 @@ fn what_has_no_sense_is_refused_in_one_line_with_key_value_and_range() {
 
 #[test]
 fn a_flight_is_the_same_to_the_bit_for_the_same_seed_and_another_for_another() {
-    let scenario = |seed: u64| Scenario { seed, ..self::scenario(WHOLE).unwrap() };
+    let seeded = |seed: u64| Scenario { seed, ..scenario(WHOLE).unwrap() };
     let fly = |scenario: Scenario| {
         let mut law = scenario.law.start(&scenario.vehicle, &scenario.told).unwrap();
         scenario.fly(law.as_mut(), &scenario.flown(None)).unwrap()
     };
-    let [first, again, other] = [7, 7, 8].map(|seed| fly(scenario(seed)));
+    let [first, again, other] = [7, 7, 8].map(|seed| fly(seeded(seed)));
     let last = |flight: &quatrack_simulation::flight::rigid_loop::RigidFlight| flight.samples.last().unwrap().state;
     assert_eq!(last(&first), last(&again));
     assert_ne!(last(&first), last(&other));

@@ -106,7 +106,8 @@ impl Mellinger {
             - config.velocity.component_mul(&velocity_error)
             - config.position_integral.component_mul(&self.position_integral_m_s);
 
-        let axes = attitude_along(&wanted_n, setpoint.heading_rad).ok_or("Mellinger: the wanted force has no attitude")?;
+        let axes =
+            attitude_along(&wanted_n, setpoint.heading_rad).ok_or("Mellinger: the wanted force has no attitude")?;
         let attitude = estimate.attitude.to_rotation_matrix();
         let rotation = rotation_error(attitude.matrix(), &Matrix3::from_columns(&axes));
         let rates = estimate.body_rates_rad_s - setpoint.body_rates_rad_s;

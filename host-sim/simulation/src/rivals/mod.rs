@@ -58,7 +58,8 @@ impl Actuation {
         let (torque, a) = (wanted.torque_n_m, self.half_arm_m);
         let asked = Vector4::from_fn(|i, _| {
             let [x, y] = ROTOR_SIDES[i];
-            let turning = (torque.x * y - torque.y * x) / a + torque.z * ROTOR_TORQUE_SIGNS[i] / self.torque_per_thrust_m;
+            let turning =
+                (torque.x * y - torque.y * x) / a + torque.z * ROTOR_TORQUE_SIGNS[i] / self.torque_per_thrust_m;
             0.25 * (wanted.force_n + turning)
         });
         let excess = (asked.max() - self.thrust_max_n).max(0.0);
@@ -152,9 +153,9 @@ mod testing {
 
     use super::Actuation;
     use crate::control_law::{Estimate, Input, Setpoint};
+    use crate::vehicles;
     use quatrack_design::model::GRAVITY_M_S2;
     use quatrack_plan::trajectory::fifth_order::FifthOrder;
-    use crate::vehicles;
 
     pub(super) fn actuation() -> Actuation {
         Actuation::of(&vehicles::by_name("crazyflie-2.1").unwrap())

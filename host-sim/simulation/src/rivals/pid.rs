@@ -6,7 +6,7 @@
 
 use nalgebra::{Vector2, Vector3, Vector4};
 
-use super::{Actuation, ForceTorque, FULL};
+use super::{Actuation, FULL, ForceTorque};
 use crate::control_law::{ControlLaw, Estimate, Input, Setpoint};
 use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
@@ -133,11 +133,7 @@ impl CascadedPidConfig {
             thrust_min_n: 20_000.0 * force,
             thrust_max_n: FULL * force,
             attitude: [angle, angle, pid([6.0, 1.0, 0.35], 360.0 * degree, f64::INFINITY)],
-            rates: [
-                turn(rate, 33.3, torque.x),
-                turn(rate, 33.3, torque.y),
-                turn([120.0, 16.7, 0.0], 166.7, torque.z),
-            ],
+            rates: [turn(rate, 33.3, torque.x), turn(rate, 33.3, torque.y), turn([120.0, 16.7, 0.0], 166.7, torque.z)],
         }
     }
 }

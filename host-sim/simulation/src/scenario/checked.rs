@@ -11,9 +11,7 @@ use super::error::ScenarioError;
 use super::file::{Air, Estimator, ScenarioFile};
 use super::laws::ToldFigures;
 use super::sensors::SensorNoise;
-use super::whole::{
-    CourseChoice, EIGHT_MEASURED_S, FilterFigures, HOVER_MEASURED_S, STEP_MEASURED_S, Scenario,
-};
+use super::whole::{CourseChoice, EIGHT_MEASURED_S, FilterFigures, HOVER_MEASURED_S, STEP_MEASURED_S, Scenario};
 use crate::plant::{self, Dryden, Environment, RigidState, Truth, Wind};
 use crate::vehicles;
 
@@ -81,11 +79,7 @@ fn vehicle(name: &str, origin: &str, folder: &Path) -> Result<Vehicle, ScenarioE
     } else {
         vehicles::by_name(name)
     };
-    found.map_err(|error| ScenarioError::Named {
-        origin: origin.to_owned(),
-        key: "vehicle",
-        reason: error.to_string(),
-    })
+    found.map_err(|error| ScenarioError::Named { origin: origin.to_owned(), key: "vehicle", reason: error.to_string() })
 }
 
 fn course(
@@ -95,7 +89,9 @@ fn course(
 ) -> Result<(CourseChoice, Option<f64>), ScenarioError> {
     let name = file.course.as_deref().unwrap_or("eight");
     let foreign = |key, value: Option<f64>, of: &str| match value {
-        Some(value) if name != of => Err(checks.refuse(key, value, format!("left out: it belongs to course = \"{of}\""))),
+        Some(value) if name != of => {
+            Err(checks.refuse(key, value, format!("left out: it belongs to course = \"{of}\"")))
+        }
         _ => Ok(()),
     };
     foreign("speed_m_s", file.speed_m_s, "eight")?;
@@ -224,7 +220,11 @@ fn filter(file: &ScenarioFile, checks: &Checks<'_>) -> Result<FilterFigures, Sce
     let rate = |key, value: Option<f64>| {
         let hz = checks.one(key, value, 100.0, [1.0, 1000.0], "times a second")?;
         // The flight has 1000 steps a second; a rate must be a whole number of them.
-        if (1000.0 / hz).fract() == 0.0 { Ok(hz) } else { Err(checks.refuse(key, hz, "a divisor of 1000 Hz".to_owned())) }
+        if (1000.0 / hz).fract() == 0.0 {
+            Ok(hz)
+        } else {
+            Err(checks.refuse(key, hz, "a divisor of 1000 Hz".to_owned()))
+        }
     };
     Ok(FilterFigures {
         prediction_hz: rate("filter.prediction_hz", filter.prediction_hz)?,

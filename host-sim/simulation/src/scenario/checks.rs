@@ -42,4 +42,3 @@ impl Checks<'_> {
         Ok(values)
     }
 }
-

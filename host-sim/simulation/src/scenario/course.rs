@@ -25,10 +25,7 @@ impl Flown {
     pub fn hover(duration_s: f64) -> Self {
         let position_m = Vector3::new(0.0, 0.0, HEIGHT_M);
         let whole_s = HOVER_S + duration_s;
-        Self {
-            course: Box::new(Rest { position_m, heading_rad: 0.0, duration_s: whole_s }),
-            measured_from_s: HOVER_S,
-        }
+        Self { course: Box::new(Rest { position_m, heading_rad: 0.0, duration_s: whole_s }), measured_from_s: HOVER_S }
     }
 
     /// A hover whose place jumps forwards.
@@ -73,8 +70,7 @@ impl Course for RampedEight {
         let [(sin, _), (sin_twice, _)] = [1.0, 2.0].map(|factor| sine_and_cosine(&phase.map(|c| factor * c)));
         // Coefficients of Taylor's series to derivatives.
         let factorial = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0];
-        let mut position =
-            [0, 1, 2, 3, 4, 5].map(|k| Vector3::new(sin[k], 0.5 * sin_twice[k], 0.0) * factorial[k]);
+        let mut position = [0, 1, 2, 3, 4, 5].map(|k| Vector3::new(sin[k], 0.5 * sin_twice[k], 0.0) * factorial[k]);
         position[0].z = HEIGHT_M;
         FifthOrder { position, heading: [0.0; 4] }
     }

@@ -120,13 +120,9 @@ impl Law {
             Self::LqrE => table(2)?,
             Self::LyapF => table(3)?,
             Self::LqrF => table(4)?,
-            Self::Mellinger => {
-                Box::new(Mellinger::new(MellingerConfig::firmware(told.mass_kg, &actuation), actuation))
-            }
+            Self::Mellinger => Box::new(Mellinger::new(MellingerConfig::firmware(told.mass_kg, &actuation), actuation)),
             Self::Lee => Box::new(Lee::new(LeeConfig::firmware(told.mass_kg), actuation)),
-            Self::Pid => {
-                Box::new(CascadedPid::new(CascadedPidConfig::firmware(vehicle, told.mass_kg), actuation))
-            }
+            Self::Pid => Box::new(CascadedPid::new(CascadedPidConfig::firmware(vehicle, told.mass_kg), actuation)),
         })
     }
 }

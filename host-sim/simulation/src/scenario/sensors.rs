@@ -39,8 +39,7 @@ impl Sensors {
         accelerometer_bias_m_s2: Vector3<f64>,
         seed: u64,
     ) -> Self {
-        let sources =
-            [Source::Gyroscope, Source::Accelerometer, Source::Position, Source::Velocity, Source::Attitude];
+        let sources = [Source::Gyroscope, Source::Accelerometer, Source::Position, Source::Velocity, Source::Attitude];
         let streams = sources.map(|source| Stream::new(seed, source));
         Self { noise, gyro_bias_rad_s, accelerometer_bias_m_s2, streams }
     }

@@ -109,7 +109,9 @@ impl Scenario {
     /// What is flown, with the part that is measured. A trajectory is not planned here; see [`CourseChoice::Trajectory`].
     pub fn flown(&self, trajectory: Option<PiecewisePolynomial>) -> Flown {
         match (&self.course, trajectory) {
-            (CourseChoice::Eight(speed_m_s), _) => Flown::eight(*speed_m_s, self.duration_s.unwrap_or(EIGHT_MEASURED_S)),
+            (CourseChoice::Eight(speed_m_s), _) => {
+                Flown::eight(*speed_m_s, self.duration_s.unwrap_or(EIGHT_MEASURED_S))
+            }
             (CourseChoice::Step(step_m), _) => Flown::step(*step_m, self.duration_s.unwrap_or(STEP_MEASURED_S)),
             (CourseChoice::Trajectory(_), Some(trajectory)) => Flown::trajectory(trajectory, self.duration_s),
             (CourseChoice::Hover | CourseChoice::Trajectory(_), _) => {
