@@ -190,19 +190,23 @@ mod tests {
     #[test]
     fn integrals_end_where_the_firmware_ends_them() {
         // 10 m too low for a second is an integral of 10 m s, ended at 0.4: 0.05 * 0.4 = 0.02 N. Ahead by 1 m for 3 s: 2 m s.
-        let mut law = law();
+        let config = MellingerConfig::firmware(MASS_KG, &actuation());
+        let unbounded = MellingerConfig { torque_max_n_m: Vector3::repeat(1.0), ..config };
+        let mut law = Mellinger::new(unbounded, actuation());
         let mut input = hover();
         input.estimate.position_m = Vector3::new(1.0, 0.0, -10.0);
         for _ in 0..1500 {
             law.force_torque(&input).unwrap();
         }
         input.estimate.position_m = Vector3::zeros();
-        input.estimate.attitude = attitude(0.0, 0.0);
         let output = law.force_torque(&input).unwrap();
         assert!((output.force_n - MASS_KG * GRAVITY_M_S2 - 0.02).abs() < 1e-12, "{}", output.force_n);
         let pitch = (-0.05 * 2.0_f64).atan2(MASS_KG * GRAVITY_M_S2 + 0.02);
-        let config = MellingerConfig::firmware(MASS_KG, &actuation());
-        assert!((output.torque_n_m.y - config.rotation.y * pitch.sin()).abs() < 1e-12, "{}", output.torque_n_m.y);
+        let torque = config.rotation.y * pitch.sin();
+        assert!((output.torque_n_m.y - torque).abs() < 1e-12, "{} {torque}", output.torque_n_m.y);
+        // That is more torque than the firmware's law asks for.
+        law.config = config;
+        assert_eq!(law.force_torque(&input).unwrap().torque_n_m.y, -config.torque_max_n_m.y);
     }
 
     #[test]
