@@ -27,7 +27,7 @@ impl ForceMap {
 
     /// Share of that at a command from 0 to 1.
     pub fn share(&self, command: f64) -> f64 {
-        command.max(0.0).min(1.0).powf(self.command_power)
+        command.clamp(0.0, 1.0).powf(self.command_power)
     }
 }
 
@@ -59,7 +59,7 @@ impl Battery {
 
     /// Open-circuit voltage at a charge from 0 to 1, V.
     pub fn open_circuit_v(&self, charge: f64) -> f64 {
-        let place = charge.max(0.0).min(1.0) * (CURVE_POINTS - 1) as f64;
+        let place = charge.clamp(0.0, 1.0) * (CURVE_POINTS - 1) as f64;
         let below = (place as usize).min(CURVE_POINTS - 2);
         let [low, high] = [self.open_circuit_v[below], self.open_circuit_v[below + 1]];
         low + (high - low) * (place - below as f64)
