@@ -32,7 +32,7 @@ impl Dryden {
     /// slower than the wind at that height in which the standard has such turbulence: `sigma_w = 0.1 W_20`,
     /// `sigma_u = sigma_w / (0.177 + 0.000823 h)^0.4`, `W(h) = W_20 ln(h / 0.15 ft) / ln(20 / 0.15)`.
     pub fn at_low_altitude(rms_m_s: Vector3<f64>, altitude_m: f64, mean_wind_m_s: f64) -> Self {
-        let h = (altitude_m * FT_PER_M).max(LOWEST_FT).min(HIGHEST_FT);
+        let h = (altitude_m * FT_PER_M).clamp(LOWEST_FT, HIGHEST_FT);
         let shape = 0.177 + 0.000_823 * h;
         let along_m = h / shape.powf(1.2) / FT_PER_M;
         let at_20_ft_m_s = 10.0 * (rms_m_s.x * shape.powf(0.4)).max(rms_m_s.z);

@@ -6,7 +6,7 @@ use quatrack_design::vehicle::Vehicle;
 use super::Wall;
 use super::propeller::Propeller;
 use super::refused::{Checked, PlantError, positive, within};
-use super::supply::{ForceMap, Supply};
+use super::supply::{Battery, ForceMap, Supply};
 use super::wind::Wind;
 
 /// Drag and what comes with it, by the vehicle's own mass.
@@ -30,6 +30,19 @@ impl Air {
     /// No air at all.
     pub const VACUUM: Self =
         Self { drag_per_s: [0.0; 3], moment_n_m_per_m_s: [0.0; 2], lift_per_m: 0.0, wind_max_m_s: Self::WIND_MAX_M_S };
+
+    /// What is known of the vehicle: forces as they were identified, whatever the mass then. What is not known is 0.
+    pub fn of(vehicle: &Vehicle) -> Option<Self> {
+        let known = vehicle.flown().air.as_ref()?;
+        let mass_ratio = known.mass_kg / vehicle.mass_kg();
+        let [x, y] = known.drag_per_s;
+        Some(Self {
+            drag_per_s: [x, y, known.drag_z_per_s.unwrap_or(0.0)].map(|drag| drag * mass_ratio),
+            moment_n_m_per_m_s: known.moment_n_m_per_m_s,
+            lift_per_m: known.lift_per_m.unwrap_or(0.0) * mass_ratio,
+            wind_max_m_s: Self::WIND_MAX_M_S,
+        })
+    }
 }
 
 /// What surrounds a craft.
@@ -158,6 +171,32 @@ impl Truth {
             supply: Supply::Constant(0.0),
             propeller: None,
         }
+    }
+
+    /// All that is known of the vehicle in flight: lags, delay, force by command and a battery that is full at first, momentum
+    /// of the rotors. What is not known is as designed.
+    pub fn as_flown(vehicle: &Vehicle) -> Self {
+        let (flown, mut truth) = (vehicle.flown(), Self::as_designed(vehicle));
+        if let Some(motors) = &flown.motors {
+            (truth.rise_lag_s, truth.fall_lag_s) = (motors.rise_lag_s, motors.fall_lag_s);
+            truth.delay_s = motors.delay_s;
+        }
+        truth.force_map = flown.force.as_ref().map(|force| ForceMap {
+            full_n: force.full_n,
+            command_power: force.command_power,
+            voltage_power: force.voltage_power,
+            reference_v: force.reference_v,
+        });
+        truth.supply = match (&flown.battery, &flown.force) {
+            (Some(battery), _) => Supply::Battery { battery: Battery::of(battery, vehicle), charge: 1.0 },
+            (None, Some(force)) => Supply::Constant(force.reference_v),
+            (None, None) => Supply::Constant(0.0),
+        };
+        truth.propeller = flown
+            .propeller
+            .as_ref()
+            .and_then(|propeller| Some(Propeller::quadratic(propeller.thrust_n_s2?, propeller.inertia_kg_m2?)));
+        truth
     }
 
     /// Looks at every figure.

@@ -8,7 +8,7 @@ use super::delay::DelayLine;
 use super::environment::{Environment, Truth};
 use super::ground_effect::GroundEffect;
 use super::refused::PlantError;
-use super::supply::Supply;
+use super::supply::{ForceMap, Supply};
 use super::wind::Blowing;
 use super::{Airflow, Contact, Craft, Ground, Load, Motion, RigidBody, RigidState, RotorDrag};
 
@@ -34,6 +34,8 @@ pub struct Plant {
     line: DelayLine,
     supply: Supply,
     converter: Converter,
+    /// The commands that acted last, for which powers have been taken; none before the first.
+    acting: Option<Acting>,
     time_s: f64,
     state: RigidState,
     wind_m_s: Vector3<f64>,
@@ -44,23 +46,35 @@ pub struct Plant {
 struct Converter {
     /// Of the commands, N.
     limits_n: [f64; 2],
-    map: Option<super::ForceMap>,
+    map: Option<ForceMap>,
     strength: [f64; 4],
     factor: f64,
     factor_per_s: f64,
 }
 
+/// Commands that act, N; as the map has them, of a sound motor at full voltage, 1 or N.
+#[derive(Clone, Copy, Debug)]
+struct Acting {
+    commands_n: Vector4<f64>,
+    mapped: Vector4<f64>,
+}
+
 impl Converter {
-    /// Thrust over command in the map's terms, at a time and a voltage.
-    fn goals_n(&self, commands_n: &Vector4<f64>, time_s: f64, voltage_v: f64) -> Vector4<f64> {
+    /// Before the first command acts there is none.
+    fn acting(&self, commands_n: &Vector4<f64>) -> Acting {
         let [least_n, most_n] = self.limits_n;
+        let mapped = commands_n.map(|command_n| {
+            let command_n = command_n.max(least_n).min(most_n);
+            self.map.map_or(command_n, |map| map.share(command_n / most_n))
+        });
+        Acting { commands_n: *commands_n, mapped }
+    }
+
+    /// Thrusts that the motors go to at a time and a voltage, N.
+    fn goals_n(&self, mapped: &Vector4<f64>, time_s: f64, voltage_v: f64) -> Vector4<f64> {
         let factor = (self.factor + self.factor_per_s * time_s).max(0.0);
-        let full_n = self.map.map_or(0.0, |map| map.most_n(voltage_v));
-        Vector4::from_fn(|i, _| {
-            let command_n = commands_n[i].max(least_n).min(most_n);
-            let thrust_n = self.map.map_or(command_n, |map| full_n * map.share(command_n / most_n));
-            factor * self.strength[i] * thrust_n
-        })
+        let all = factor * self.map.map_or(1.0, |map| map.most_n(voltage_v));
+        Vector4::from_fn(|i, _| all * self.strength[i] * mapped[i])
     }
 }
 
@@ -83,7 +97,8 @@ impl Plant {
             craft: craft(vehicle, environment, truth),
             wind_m_s: wind.at(0.0),
             wind,
-            line: DelayLine::new(truth.delay_s, Vector4::from_element(f64::NAN)),
+            line: DelayLine::new(truth.delay_s),
+            acting: None,
             supply: truth.supply,
             converter: Converter {
                 limits_n: [vehicle.motors().thrust_min_n, vehicle.motors().thrust_max_n],
@@ -115,20 +130,23 @@ impl Plant {
         self.line.give(self.time_s, commands_n);
         let end_s = self.time_s + duration_s;
         while self.time_s < end_s - 1e-9 {
-            let (acting_n, until_s) = self.line.at(self.time_s);
+            let (commands_n, until_s) = self.line.at(self.time_s);
+            if self.acting.map(|acting| acting.commands_n) != commands_n {
+                self.acting = commands_n.map(|commands_n| self.converter.acting(&commands_n));
+            }
             let part_s = until_s.min(end_s) - self.time_s;
             let steps = (part_s / STEP_MAX_S - 1e-9).ceil().max(1.0);
             let from_s = self.time_s;
             for k in 1..=steps as u32 {
-                self.step(&acting_n, from_s + part_s * f64::from(k) / steps);
+                self.step(from_s + part_s * f64::from(k) / steps);
             }
         }
         self.time_s = end_s;
     }
 
-    fn step(&mut self, acting_n: &Vector4<f64>, to_s: f64) {
+    fn step(&mut self, to_s: f64) {
         let step_s = to_s - self.time_s;
-        let goals_n = self.goals_n(acting_n);
+        let goals_n = self.goals_n(self.acting);
         let from_m_s = self.wind_m_s;
         self.wind_m_s = self.wind.at(to_s);
         let wind = LinearWind { from_s: self.time_s, from_m_s, slope_m_s2: (self.wind_m_s - from_m_s) / step_s };
@@ -138,11 +156,10 @@ impl Plant {
     }
 
     /// Before the first command acts, the thrusts stay.
-    fn goals_n(&self, acting_n: &Vector4<f64>) -> Vector4<f64> {
-        if acting_n[0].is_nan() {
-            return self.state.thrusts_n;
-        }
-        self.converter.goals_n(acting_n, self.time_s, self.voltage_v())
+    fn goals_n(&self, acting: Option<Acting>) -> Vector4<f64> {
+        acting.map_or(self.state.thrusts_n, |acting| {
+            self.converter.goals_n(&acting.mapped, self.time_s, self.voltage_v())
+        })
     }
 
     /// Where it is.
@@ -180,15 +197,13 @@ impl Plant {
 
     /// Least and most thrust that each motor can be commanded to now, N.
     pub fn thrust_limits_n(&self) -> [Vector4<f64>; 2] {
-        self.converter
-            .limits_n
-            .map(|limit_n| self.converter.goals_n(&Vector4::repeat(limit_n), self.time_s, self.voltage_v()))
+        self.converter.limits_n.map(|limit_n| self.goals_n(Some(self.converter.acting(&Vector4::repeat(limit_n)))))
     }
 
     /// What is felt at the centre of mass under the commands that act now.
     pub fn motion(&mut self) -> Motion {
-        let (acting_n, _) = self.line.at(self.time_s);
-        let goals_n = self.goals_n(&acting_n);
+        let (commands_n, _) = self.line.at(self.time_s);
+        let goals_n = self.goals_n(commands_n.map(|commands_n| self.converter.acting(&commands_n)));
         let wind = LinearWind { from_s: self.time_s, from_m_s: self.wind_m_s, slope_m_s2: Vector3::zeros() };
         self.craft.motion(&self.state, &goals_n, &wind, self.time_s)
     }

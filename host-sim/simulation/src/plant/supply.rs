@@ -1,5 +1,7 @@
 //! From a command to the force that a motor gives for it: a map by powers of command and voltage, and the battery behind it.
 
+use quatrack_design::vehicle::{BatteryFigures, Vehicle};
+
 /// Ten equal shares of the charge lie between the voltages of a battery's curve.
 pub const CURVE_POINTS: usize = 11;
 
@@ -25,7 +27,7 @@ impl ForceMap {
 
     /// Share of that at a command from 0 to 1.
     pub fn share(&self, command: f64) -> f64 {
-        command.max(0.0).min(1.0).powf(self.command_power)
+        command.clamp(0.0, 1.0).powf(self.command_power)
     }
 }
 
@@ -44,9 +46,20 @@ pub struct Battery {
 }
 
 impl Battery {
+    /// The vehicle's, which takes its charge in the time that it hovers.
+    pub fn of(figures: &BatteryFigures, vehicle: &Vehicle) -> Self {
+        let (capacity_a_s, hover_n) = (3600.0 * figures.capacity_a_h, vehicle.hover_thrust_n());
+        Self {
+            capacity_a_s,
+            open_circuit_v: figures.open_circuit_v,
+            resistance_ohm: figures.resistance_ohm,
+            current_a_per_n15: capacity_a_s / figures.hover_s / (4.0 * hover_n * hover_n.sqrt()),
+        }
+    }
+
     /// Open-circuit voltage at a charge from 0 to 1, V.
     pub fn open_circuit_v(&self, charge: f64) -> f64 {
-        let place = charge.max(0.0).min(1.0) * (CURVE_POINTS - 1) as f64;
+        let place = charge.clamp(0.0, 1.0) * (CURVE_POINTS - 1) as f64;
         let below = (place as usize).min(CURVE_POINTS - 2);
         let [low, high] = [self.open_circuit_v[below], self.open_circuit_v[below + 1]];
         low + (high - low) * (place - below as f64)

@@ -27,7 +27,7 @@ impl Gust {
     pub fn at(&self, time_s: f64) -> Vector3<f64> {
         let since_s = time_s - self.from_s;
         let until_s = 2.0 * self.rise_s + self.stay_s - since_s;
-        let share = (since_s.min(until_s) / self.rise_s).max(0.0).min(1.0);
+        let share = (since_s.min(until_s) / self.rise_s).clamp(0.0, 1.0);
         self.peak_m_s * (0.5 - 0.5 * (std::f64::consts::PI * share).cos())
     }
 }

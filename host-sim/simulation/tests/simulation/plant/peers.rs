@@ -1,5 +1,5 @@
 //! Our parts with others' figures: accelerations at random states against RotorPy 3.0.0 and crazyflow 0.4.0, which
-//! `fixtures/plants/make.sh` writes.
+//! `tests/fixtures/plants/make.sh` writes.
 
 use std::path::Path;
 
@@ -51,7 +51,7 @@ fn craft(plant: &Value) -> Craft {
 
 /// Largest difference of each kind over the rows of a package: m/s^2, rad/s^2, and of the speeds rad/s^2.
 fn worst(package: &str, file: &str) -> ([f64; 3], usize) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/plants").join(file);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/plants").join(file);
     let made: Value = serde_json::from_str(&std::fs::read_to_string(path).expect("a fixture")).expect("JSON");
     assert_eq!(made["package"], package);
     let (mut worst, mut count) = ([0.0_f64; 3], 0);

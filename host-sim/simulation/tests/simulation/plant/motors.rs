@@ -168,3 +168,25 @@ fn an_accelerometer_feels_the_thrust_and_not_gravity() {
     assert!((motion.specific_force_m_s2 - Vector3::new(0.0, 0.0, 9.81)).norm() < 1e-12);
     assert!(motion.acceleration_m_s2.norm() < 1e-12);
 }
+
+#[test]
+fn the_built_in_figures_are_those_of_the_flights() {
+    // 45 g at 0.447 1/s, as a force on 39.3 g.
+    let air = quatrack_simulation::plant::Air::of(&vehicle()).expect("known");
+    assert!((air.drag_per_s[0] * 0.0393 - 0.447 * 0.045).abs() < 1e-12 && air.moment_n_m_per_m_s == [7.0e-4, 9.1e-4]);
+    let truth = Truth::as_flown(&vehicle());
+    assert_eq!((truth.rise_lag_s, truth.fall_lag_s, truth.supply), (0.030, 0.047, Supply::Constant(3.7)));
+    // J_r over J_z of arXiv 2512.14450.
+    let decks = vehicles::by_name("crazyflie-2.1-brushless-guards-decks").expect("built in");
+    let inertia = Truth::as_flown(&decks).propeller.expect("known").inertia_kg_m2;
+    assert!((inertia / decks.inertia_kg_m2().m33 - 1.0e-3).abs() < 1e-12);
+    // The brushed one hovers at 80 to 90 % of its command and 3.3 to 3.5 V (arXiv 2603.09908).
+    let brushed = vehicles::by_name("crazyflie-2.1").expect("built in");
+    let truth = Truth::as_flown(&brushed);
+    let Supply::Battery { battery, .. } = truth.supply else { panic!("a battery") };
+    let half = Supply::Battery { battery, charge: 0.5 };
+    let hover = Vector4::repeat(0.027 * 9.81 / 4.0);
+    let voltage_v = half.voltage_v(&hover);
+    let command = (hover[0] / truth.force_map.expect("known").most_n(voltage_v)).sqrt();
+    assert!((3.3..3.5).contains(&voltage_v) && (0.8..0.9).contains(&command), "{voltage_v} V, {command}");
+}
