@@ -1,0 +1,323 @@
+//! Tables of the Crazyflie controller: those in its image, and those that come over the app channel, in flight.
+
+use std::path::Path;
+use std::sync::atomic::Ordering::Relaxed;
+
+use nalgebra::{DMatrix, Vector3};
+use quatrack::Limits;
+use quatrack::gains::table::{ActuatorTable, Certificate, Hash, Margins, Name, TableHead, Vehicle as TableVehicle};
+use quatrack_crazyflie::abi::{Attitude, Mode, Modes, Setpoint};
+use quatrack_crazyflie::craft::{Craft as Flown, KNOWN, RATE};
+use quatrack_crazyflie::ffi;
+use quatrack_crazyflie::tables::{Gains, Refusal, Table, limits_within};
+use quatrack_crazyflie::upload::{PACKET_BYTES, Packet, Status};
+use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
+use quatrack_design::design::discretise::zero_order_hold;
+use quatrack_simulation::crazyflie::{Course, Design, Firmware, Sensors, Setpoints, Stated, Tune, motor_gains};
+use quatrack_simulation::plant::{Craft, RigidState};
+use quatrack_simulation::vehicles;
+
+const QUIET: Sensors = Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 };
+const LAG_S: f32 = 0.0635;
+
+#[test]
+fn the_source_of_the_gains_is_what_the_designs_give() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crazyflie/src/builtin/motor_gains.rs");
+    assert_eq!(std::fs::read_to_string(path).unwrap(), motor_gains().unwrap());
+}
+
+/// The lag that a table for motor forces reckons with, s, and its gain.
+fn flown(table: &Table) -> (f32, &quatrack::law::ActuatorAwareGain) {
+    let Gains::ActuatorAware(motors) = &table.gains else { panic!("no table for motor forces") };
+    (motors.airframe.figures().motor_lag_s, &motors.gain)
+}
+
+#[test]
+fn a_stated_lag_is_flown_with_the_committed_design_that_is_certified_for_it() {
+    for (index, (known, designs)) in KNOWN.iter().zip(Design::of_crafts().unwrap()).enumerate() {
+        let (name, craft) = (known.vehicle.name.as_str(), Flown::with(known.airframe, known.vehicle, index));
+        let tables = designs.map(|design| {
+            let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../gains/generated/{}.bin", design.name));
+            ActuatorTable::from_bytes(&std::fs::read(path).unwrap()).unwrap()
+        });
+        let stated = |lag_s: f32| Table::choose(0, &craft.with_motor_lag(lag_s), None);
+        for (lag_s, index) in
+            [(0.004, 0), (0.02, 0), (0.04, 0), (0.041, 1), (0.0635, 1), (0.08, 1), (0.1, 2), (0.126, 2)]
+        {
+            let table = stated(lag_s).unwrap();
+            assert_eq!(flown(&table), (lag_s, tables[index].gain()), "{name} at {lag_s} s");
+        }
+        for lag_s in [0.0039, 0.127, 1.0] {
+            assert_eq!(stated(lag_s).err(), Some(Refusal::MotorLag), "{name} at {lag_s} s");
+        }
+        let unstated = stated(0.0).unwrap();
+        assert_eq!(flown(&unstated), (tables[2].lag().lag_s(), tables[2].gain()), "{name}");
+    }
+}
+
+#[test]
+fn what_flies_with_a_stated_lag_is_stable_with_that_off_by_a_quarter_and_everything_else_off() {
+    for design in Design::of_crafts().unwrap().as_flattened() {
+        let lag_s = design.stated.lag_s;
+        for stated in [Stated::all_at_once(lag_s), Stated::lag_alone(lag_s)] {
+            // The integral's pole is near 0.9979 all over; a chain that is about to swing shows above it.
+            let radius = stated.spectral_radius(&design.vehicle, &design.gain_in_parts).unwrap();
+            assert!(radius < 0.9991, "{}, {stated:?}: {radius}", design.name);
+        }
+    }
+}
+
+#[test]
+fn the_crafts_are_those_of_the_vehicle_files() {
+    for (known, name) in KNOWN.iter().zip(["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"]) {
+        let vehicle = vehicles::by_name(name).unwrap();
+        let figures = known.airframe.figures();
+        assert_eq!((known.vehicle.name.as_str(), known.vehicle.id), (vehicle.name(), vehicles::id(&vehicle)), "{name}");
+        assert_eq!(figures.mass_kg, vehicle.mass_kg() as f32, "{name}");
+        let motors = vehicle.motors();
+        for (found, wanted) in [
+            (figures.lever_arm_m, motors.half_arm_m()),
+            (figures.torque_per_thrust_m, motors.torque_per_thrust_m),
+            (figures.force_max_n, motors.thrust_max_n),
+        ] {
+            assert!((f64::from(found) / wanted - 1.0).abs() < 1e-3, "{name}: {found}, not {wanted}");
+        }
+    }
+}
+
+/// Spectral radius of hover behind the body-rate loop of bandwidth `1 / (2 lag)`, along x and turned about y: the gains of
+/// position, attitude (of q2) and velocity.
+fn lateral_radius([kx, kq, kv]: [f64; 3], lag_s: f64) -> f64 {
+    const G: f64 = 9.81;
+    let mut a = DMatrix::zeros(5, 5);
+    (a[(0, 1)], a[(1, 2)], a[(2, 3)], a[(3, 4)], a[(4, 4)]) = (1.0, G, 1.0, 1.0, -1.0 / lag_s);
+    let mut b = DMatrix::zeros(5, 1);
+    b[(4, 0)] = 1.0 / lag_s;
+    let held = zero_order_hold(&a, &b, 0.002).unwrap();
+    let gain = DMatrix::from_row_slice(1, 5, &[kx, kv, 0.5 * kq, 1.0, 0.0]) * (0.5 / lag_s);
+    let poles = (held.a - held.b * gain).complex_eigenvalues();
+    poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_longest_lags_of_the_papers_tables_are_where_hover_becomes_unstable() {
+    for (gains, lag_s) in [([31.6228, 45.7951, 25.4484], 0.0218), ([3.2619777, 12.0, 2.4464831], 0.0687)] {
+        assert!(lateral_radius(gains, lag_s) < 1.0 && lateral_radius(gains, 1.01 * lag_s) > 1.0, "{lag_s} s");
+    }
+}
+
+/// A table for a known lag, certified for half of it more.
+fn known_lag_table(vehicle: TableVehicle) -> Vec<u8> {
+    table_within(vehicle, Limits::new(1.8, 16.5, Vector3::new(20.0, 20.0, 10.0)).unwrap())
+}
+
+/// The same with limits of its own.
+fn table_within(vehicle: TableVehicle, limits: Limits) -> Vec<u8> {
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
+    let design = actuator_aware(&craft, f64::from(LAG_S), &ActuatorAwareWeights::STANDARD, 0.002).unwrap();
+    let rows = std::array::from_fn(|i| std::array::from_fn(|j| design.gain[(i, j)] as f32));
+    let margins = Margins { gain_factor: 1.5, phase_rad: 0.4 };
+    let head = TableHead {
+        name: Name::literal("known-lag"),
+        vehicle,
+        rate: RATE,
+        limits,
+        design_hash: Hash([1; 32]),
+        certificate: Certificate {
+            hash: Hash([2; 32]),
+            one_channel: margins,
+            all_channels: margins,
+            delay_max_s: 0.01,
+            motor_lag_max_s: 1.5 * LAG_S,
+            f32_distance: 1e-7,
+        },
+    };
+    let mut buffer = [0; 1024];
+    ActuatorTable::new(head, LAG_S, &rows).unwrap().to_bytes(&mut buffer).unwrap().to_vec()
+}
+
+fn exchange(bytes: &[u8]) -> (u8, u16) {
+    let mut packet = Packet { length: bytes.len() as u8, bytes: [0; PACKET_BYTES] };
+    packet.bytes[..bytes.len()].copy_from_slice(bytes);
+    let mut answer = packet;
+    ffi::quatrackPacket(&packet, &mut answer);
+    assert_eq!((answer.length, answer.bytes[0]), (4, bytes[0]));
+    (answer.bytes[1], u16::from_le_bytes([answer.bytes[2], answer.bytes[3]]))
+}
+
+/// Sends a table as a script on the ground does; the status of its last packet.
+fn send(table: &[u8]) -> u8 {
+    let length = (table.len() as u16).to_le_bytes();
+    let begin = [&[1][..], &length, &table[table.len() - 4..]].concat();
+    assert_eq!(exchange(&begin), (Status::Taken as u8, 0));
+    for (index, bytes) in table.chunks(27).enumerate() {
+        let offset = (27 * index) as u16;
+        let chunk = [&[2][..], &offset.to_le_bytes(), bytes].concat();
+        assert_eq!(exchange(&chunk), (Status::Taken as u8, offset + bytes.len() as u16));
+    }
+    exchange(&[3]).0
+}
+
+/// Resets the sum that a table has to be sent with.
+fn with_checksum(mut table: Vec<u8>) -> Vec<u8> {
+    let end = table.len() - 4;
+    let checksum = quatrack::checksum::crc32c(&table[..end]).to_le_bytes();
+    table[end..].copy_from_slice(&checksum);
+    table
+}
+
+#[test]
+fn a_table_is_sent_in_flight_and_taken_over_without_a_bump() {
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
+    let mut firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: 0.0 }, QUIET);
+    let mut plant = Craft::new(&craft);
+    plant.motors = plant.motors.with_lag(LAG_S.into(), LAG_S.into());
+    let course = Course::FigureEight(1.485);
+    let mut state = RigidState::at_rest(Vector3::z(), craft.hover_thrust_n());
+    let (mut after, mut largest_m) = (0.0, 0.0_f64);
+    for step in 0..18_000_u32 {
+        let t_s = f64::from(step) * 1e-3;
+        if step == 8000 {
+            assert_eq!(send(&known_lag_table(KNOWN[0].vehicle)), Status::Taken as u8);
+            ffi::quatrack.parameters.table.store(5, Relaxed);
+            ffi::quatrack.parameters.motor_lag_s.set(LAG_S);
+            ffi::quatrackService();
+        }
+        firmware.command(&course, t_s, Setpoints::HighLevel);
+        let commands_n = firmware.step(&state, None);
+        let error_m = (state.position_m - course.position_m(t_s).unwrap()).norm();
+        if step >= 8000 {
+            largest_m = largest_m.max(error_m);
+        }
+        if step >= 14_000 {
+            after += error_m * 1e-3;
+        }
+        state = plant.hold(&state, &commands_n, t_s, 1e-3);
+    }
+    assert_eq!(ffi::quatrack.log.table.load(Relaxed), 5);
+    // The default table, made for twice the lag, strays 4.6 mm; forces and integral that suited it take as much again to
+    // be forgotten. Then the known lag strays less than 0.1 mm.
+    assert!(largest_m < 0.012, "{largest_m} m");
+    assert!(after < 0.0004, "{after} m s");
+}
+
+#[test]
+fn what_is_damaged_uncertified_or_for_another_craft_is_refused_and_changes_nothing() {
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
+    let _firmware = Firmware::start(&craft, &Tune { table: 5, motor_lag_s: LAG_S.into() }, QUIET);
+    let good = known_lag_table(KNOWN[0].vehicle);
+
+    assert_eq!(exchange(&[3]).0, Status::NotBegun as u8);
+    assert_eq!(exchange(&[9]).0, Status::Unknown as u8);
+    let mut damaged = good.clone();
+    damaged[200] ^= 1;
+    assert_eq!(send(&damaged), Status::Checksum as u8);
+    // The hash of the certificate, at the end of the head but for its seven figures.
+    let mut uncertified = good.clone();
+    let hash_at = 8 + 3 + 2 * 24 + 8 + 20 + 32;
+    uncertified[hash_at..hash_at + 32].fill(0);
+    assert_eq!(send(&with_checksum(uncertified)), Status::Table as u8);
+    assert_eq!(send(&known_lag_table(KNOWN[2].vehicle)), Status::Vehicle as u8);
+    ffi::quatrackService();
+    assert_eq!(ffi::quatrack.log.table.load(Relaxed), 0, "none has been taken");
+
+    assert_eq!(send(&good), Status::Taken as u8);
+    ffi::quatrackService();
+    assert_eq!(ffi::quatrack.log.table.load(Relaxed), 5);
+    // With the motors' lag back to what is published of the craft, 126 ms, its certificate does not reach.
+    ffi::quatrack.parameters.motor_lag_s.set(0.0);
+    let refused = ffi::quatrack.log.refused_tables.load(Relaxed);
+    ffi::quatrackService();
+    assert_eq!(ffi::quatrack.log.refused_tables.load(Relaxed), refused + 1);
+}
+
+#[test]
+fn a_lag_is_stated_in_flight_and_one_that_nothing_is_certified_for_changes_nothing() {
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
+    let _firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: 0.0 }, QUIET);
+    let state = |lag_s: f32| {
+        ffi::quatrack.parameters.motor_lag_s.set(lag_s);
+        ffi::quatrackService();
+        let log = &ffi::quatrack.log;
+        (log.refused_tables.load(Relaxed), ffi::quatrack.gains.entries[0].get(), log.table.load(Relaxed))
+    };
+    let (refused, unstated, _) = state(0.0);
+    let (_, short, _) = state(0.02);
+    assert!(short != unstated, "{short}");
+    assert_eq!(state(0.2), (refused + 1, short, 0), "refused, the one before stays");
+    assert_eq!(ffi::quatrack.log.refusal.load(Relaxed), Refusal::MotorLag as u16);
+    assert_eq!(state(0.126), (refused + 1, unstated, 0), "the same design, told its own lag");
+}
+
+#[test]
+fn limits_are_the_tighter_of_the_owners_and_the_tables() {
+    let craft = KNOWN[0].airframe;
+    // Four motors of 0.01282 to 0.12 N on 29 g: 1.768 to 16.55 m/s^2.
+    let owner = Vector3::new(20.0, 20.0, 10.0);
+    let physical = limits_within(&craft, owner, &Limits::NONE);
+    assert_eq!(physical.body_rates_max_rad_s(), owner);
+    let wide = Limits::new(0.0, 50.0, Vector3::new(99.0, 99.0, 99.0)).unwrap();
+    assert_eq!(limits_within(&craft, owner, &wide), physical, "a table widens nothing");
+    let tight = Limits::new(5.0, 15.0, Vector3::new(3.0, 30.0, 2.0)).unwrap();
+    assert_eq!(limits_within(&craft, owner, &tight), Limits::new(5.0, 15.0, Vector3::new(3.0, 20.0, 2.0)).unwrap());
+    let beyond = Limits::new(20.0, 30.0, Vector3::new(3.0, 3.0, 3.0)).unwrap();
+    let left = limits_within(&craft, owner, &beyond);
+    assert_eq!(
+        (left.thrust_min_m_s2(), left.thrust_max_m_s2()),
+        (physical.thrust_min_m_s2(), physical.thrust_max_m_s2())
+    );
+}
+
+#[test]
+fn a_sent_table_is_flown_within_its_own_limits() {
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
+    let mut firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: LAG_S.into() }, QUIET);
+    let plant = Craft::new(&craft);
+    // Manual flight at 200 degrees a second of roll, which is 3.5 rad/s.
+    let off = Mode::DISABLED;
+    let mode =
+        Modes { x: off, y: off, z: off, roll: Mode::VELOCITY, pitch: Mode::VELOCITY, yaw: Mode::VELOCITY, quat: off };
+    let attitude_rate = Attitude { roll: 200.0, ..Attitude::default() };
+    let thrust = 65_535.0 * 0.029 * 9.81 / 0.48;
+    let setpoint = Setpoint { attitude_rate, thrust, mode, ..Setpoint::OFF };
+    let roll_rate_after = |firmware: &mut Firmware| {
+        let mut state = RigidState::at_rest(Vector3::z(), craft.hover_thrust_n());
+        for step in 0..1000 {
+            let commands_n = firmware.step(&state, Some(&setpoint));
+            state = plant.hold(&state, &commands_n, f64::from(step) * 1e-3, 1e-3);
+        }
+        state.body_rates_rad_s.x
+    };
+    let own = roll_rate_after(&mut firmware);
+    assert!((own - 3.49).abs() < 0.1, "{own}");
+    let limits = Limits::new(1.8, 16.5, Vector3::new(1.5, 1.5, 1.5)).unwrap();
+    assert_eq!(send(&table_within(KNOWN[0].vehicle, limits)), Status::Taken as u8);
+    ffi::quatrack.parameters.table.store(5, Relaxed);
+    ffi::quatrackService();
+    let limited = roll_rate_after(&mut firmware);
+    assert!((limited - 1.5).abs() < 0.1, "{limited}");
+    // Back to a table that says nothing of itself.
+    ffi::quatrack.parameters.table.store(0, Relaxed);
+    ffi::quatrackService();
+    let own = roll_rate_after(&mut firmware);
+    assert!((own - 3.49).abs() < 0.1, "{own}");
+}
+
+#[test]
+fn scales_stay_within_the_certificates_margin() {
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
+    let _firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: 0.0 }, QUIET);
+    let gains = || [0, 4, 10, 16].map(|index: usize| ffi::quatrack.gains.entries[index].get());
+    let (plain, most) = (gains(), ffi::quatrack.gains.scale_max.get());
+    assert!(plain.iter().all(|gain| *gain != 0.0) && most > 1.0, "{plain:?} {most}");
+    for (position, yaw, factors) in [(1.2, 0.8, [1.2, 1.2, 1.2, 0.8]), (99.0, f32::NAN, [most, most, most, 1.0 / most])]
+    {
+        ffi::quatrack.parameters.position_scale.set(position);
+        ffi::quatrack.parameters.yaw_scale.set(yaw);
+        ffi::quatrackService();
+        for ((found, plain), factor) in gains().iter().zip(plain).zip(factors) {
+            // Two products and a sum in f32.
+            assert!((found / (plain * factor) - 1.0).abs() < 4e-7, "{found}, not {}", plain * factor);
+        }
+    }
+}
