@@ -8,7 +8,7 @@ use quatrack_design::vehicle::Vehicle;
 use super::checks::Checks;
 use super::course::{HOVER_S, RAMP_S};
 use super::error::ScenarioError;
-use super::file::{Air, Estimator, ScenarioFile};
+use super::file::{Air, ScenarioFile};
 use super::laws::ToldFigures;
 use super::sensors::SensorNoise;
 use super::whole::{CourseChoice, EIGHT_MEASURED_S, FilterFigures, HOVER_MEASURED_S, STEP_MEASURED_S, Scenario};
@@ -37,10 +37,6 @@ impl Scenario {
             (None, default) => default,
             (Some(value), _) => Some(checks.one("duration_s", Some(value), 0.0, [0.1, 600.0], "in s")?),
         };
-        if file.estimator == Some(Estimator::Kalman) {
-            let must = "\"exact\": no filter flies in a scenario yet".to_owned();
-            return Err(checks.refuse("estimator", "\"kalman\"", must));
-        }
         let errors = &file.errors;
         let bias = |key, value, most: f64, unit| checks.each(key, value, [-most, most], unit).map(Vector3::from);
         let scenario = Self {

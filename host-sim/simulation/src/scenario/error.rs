@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use quatrack::ReferenceError;
 use quatrack::airframe::AirframeError;
+use quatrack::estimator::EstimatorError;
 
 use crate::plant::PlantError;
 
@@ -71,6 +72,9 @@ pub enum StartError {
     /// The core takes no such vehicle.
     #[error("the core refuses the vehicle: {0}")]
     Airframe(#[from] AirframeError),
+    /// The filter's figures or start.
+    #[error("the filter does not start: {0}")]
+    Filter(#[from] EstimatorError),
     /// The start asks for what no thrust does.
     #[error("the course cannot be flown from its start: {0}")]
     Start(#[from] ReferenceError),

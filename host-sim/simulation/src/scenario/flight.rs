@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use serde::Deserialize;
 
 use super::course::Flown;
-use super::sensors::Sensors;
+use super::filtered::Estimation;
 use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ, Setpoint};
 use crate::flight::closed_loop::Lost;
 use crate::flight::rigid_loop::{RigidFlight, RigidSample};
@@ -35,8 +35,8 @@ pub struct Bench<'a> {
     pub flown: &'a Flown,
     /// How the law is told of it.
     pub setpoints: Setpoints,
-    /// What is measured.
-    pub sensors: Sensors,
+    /// Where its estimate comes from.
+    pub estimation: Estimation,
 }
 
 impl Bench<'_> {
@@ -58,7 +58,13 @@ impl Bench<'_> {
             if step.is_multiple_of(SAMPLE_STEPS) || self.setpoints == Setpoints::Exact {
                 setpoint = self.setpoint(time_s);
             }
-            let estimate = self.sensors.estimate(&state, &plant.motion().specific_force_m_s2);
+            let estimate = match self.estimation.estimate(&state, &plant.motion().specific_force_m_s2) {
+                Ok(estimate) => estimate,
+                Err(error) => {
+                    flight.lost = Some(Lost { time_s, reason: format!("no estimate: {error}") });
+                    break;
+                }
+            };
             if step.is_multiple_of(law_steps) {
                 match law.step(&Input { time_s, estimate, setpoint, battery_v: plant.voltage_v() }) {
                     Ok(asked_n) if asked_n.iter().all(|force| force.is_finite()) => commands_n = asked_n,

@@ -6,7 +6,8 @@
 //!   checked, checks  a file -> a scenario whose every value has been looked at, or one line that says why not
 //!     whole          the scenario; its flights
 //!       flight       a plant, sensors and a law at 1 kHz
-//!         sensors    noise and biases
+//!         filtered   the estimate of a Kalman filter
+//!           sensors  noise and biases
 //!         course     hover, ramp, and what is measured
 //!       laws         laws by name
 //!         object_law the Crazyflie controller as a law
@@ -19,6 +20,7 @@ pub mod compare;
 pub mod course;
 mod error;
 pub mod file;
+pub mod filtered;
 pub mod flight;
 mod laws;
 mod object_law;

@@ -9,7 +9,8 @@ use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 
 use super::course::Flown;
 use super::error::StartError;
-use super::file::Estimator;
+use super::file::Estimator as EstimateFrom;
+use super::filtered::{Estimation, Filtered};
 use super::flight::{Bench, Setpoints};
 use super::laws::{Law, ToldFigures};
 use super::sensors::{SensorNoise, Sensors};
@@ -63,7 +64,7 @@ pub struct Scenario {
     /// How a law is told of the course.
     pub setpoints: Setpoints,
     /// Where its estimate comes from.
-    pub estimator: Estimator,
+    pub estimator: EstimateFrom,
     /// Where noise and gusts begin.
     pub seed: u64,
     /// What the craft is surrounded by.
@@ -102,7 +103,13 @@ impl Scenario {
             RigidState::at_rest(point.position[0], 0.25 * self.truth.mass_kg * GRAVITY_M_S2)
         };
         let sensors = Sensors::new(self.noise, self.gyro_bias_rad_s, self.accelerometer_bias_m_s2, self.seed);
-        let bench = Bench { flown, setpoints: self.setpoints, sensors };
+        let estimation = match self.estimator {
+            EstimateFrom::Exact => Estimation::Exact(sensors),
+            EstimateFrom::Kalman => {
+                Estimation::Filtered(Filtered::start(&self.filter, sensors, self.noise.position_m, &start)?.into())
+            }
+        };
+        let bench = Bench { flown, setpoints: self.setpoints, estimation };
         Ok(bench.fly(&mut self.plant(&start)?, law))
     }
 
@@ -164,6 +171,11 @@ impl fmt::Display for Scenario {
         }
         let setpoints = if self.setpoints == Setpoints::Exact { "exact setpoints" } else { "setpoints at 100 Hz" };
         let noise = if self.noise == SensorNoise::default() { "without noise" } else { "with noise" };
-        write!(f, ", {setpoints}, {noise}")
+        write!(f, ", {setpoints}, {noise}")?;
+        if self.estimator == EstimateFrom::Kalman {
+            let FilterFigures { prediction_hz, drag_per_s, .. } = self.filter;
+            write!(f, ", Kalman filter at {prediction_hz} Hz with drag {drag_per_s} 1/s")?;
+        }
+        Ok(())
     }
 }
