@@ -11,8 +11,9 @@ use super::whole::FilterFigures;
 use crate::control_law::{Estimate, STEPS_HZ};
 use crate::plant::RigidState;
 
-/// Least deviation of a measured position that the filter is told, m: that of the firmware for a motion capture system.
-const POSITION_DEVIATION_MIN_M: f64 = 1e-3;
+/// Least deviation of a measured position that the filter is told, m: what the firmware takes every position from outside for
+/// (`extPosStdDev` in `crtp_localization_service.c`), however good it is.
+const POSITION_DEVIATION_MIN_M: f64 = 1e-2;
 /// How well the start is known: the craft hovers there.
 const AT_START: DeviationsAtStart =
     DeviationsAtStart { position_m: 0.01, velocity_m_s: 0.01, tilt_rad: 0.01, heading_rad: 0.01 };

@@ -40,7 +40,7 @@ fn numbers<const N: usize>(value: &Value) -> [f64; N] {
 
 impl Craft {
     fn new((package, name, vehicle): (&str, &str, &str)) -> Self {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("fixtures/plants/{package}.json"));
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/fixtures/plants/{package}.json"));
         let made: Value = serde_json::from_str(&std::fs::read_to_string(path).expect("a fixture")).expect("JSON");
         let plants = made["plants"].as_array().expect("plants");
         let published = plants.iter().find(|plant| plant["name"] == name).expect("the craft").clone();
@@ -159,16 +159,19 @@ fn on_published_plants_the_rivals_fly_as_the_firmware_does() {
     }
 }
 
+/// The firmware's controllers through its own filter: as it ships, and told the craft's drag.
 #[test]
-fn through_a_filter_that_knows_of_no_drag_they_are_as_far_off_as_with_the_firmware_s() {
+fn through_a_filter_they_are_as_far_off_as_with_the_firmware_s() {
     let (craft, eight) = (Craft::new(CRAFT[2]), Flown::eight(2.1, 12.0));
     let drag_per_s = 0.01351483 / craft.mass_kg();
     for (drag_per_s, firmware) in [(0.0, [1.94, 1.70]), (drag_per_s, [0.75, 0.54])] {
-        let [lee, mellinger, _] = craft.laws().map(|mut law| {
-            let flight = craft.fly_filtered(law.as_mut(), &eight, drag_per_s);
-            println!("{:?}", flight.lost);
-            flight.iae_m_s().unwrap_or(f64::NAN)
-        });
-        println!("drag {drag_per_s:.3}: {lee:.4} {mellinger:.4}, the firmware's {firmware:?}");
+        let [lee, mellinger, _] = craft
+            .laws()
+            .map(|mut law| craft.fly_filtered(law.as_mut(), &eight, drag_per_s).iae_m_s().expect("not lost"));
+        println!("drag {drag_per_s:.3}: {lee:.4} {mellinger:.4}");
+        for (found, same) in [lee, mellinger].into_iter().zip(firmware) {
+            // The same filter, equations and noise, but not the same numbers drawn: 3 to 6 % are left.
+            assert!((found / same - 1.0).abs() < 0.08, "drag {drag_per_s}: {found} {same}");
+        }
     }
 }

@@ -10,7 +10,7 @@ use quatrack_simulation::rivals::{Actuation, Mellinger, MellingerConfig};
 use serde_json::Value;
 
 /// Written by `drone_controllers_mellinger.py` beside it.
-const FIXTURE: &str = include_str!("fixtures/drone_controllers_mellinger.json");
+const FIXTURE: &str = include_str!("../../fixtures/mellinger/drone_controllers_mellinger.json");
 
 fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
