@@ -10,9 +10,7 @@
 //! refusal in words behind.
 //! The table is the file of docs/gain-tables.md; nothing of it is used before all of it has come and been checked.
 
-use quatrack::gains::table::{
-    CONSTANT_TABLE_BYTES_MAX, GainTable, LoadError, TABLE_BYTES_MAX, TableKind, Vehicle,
-};
+use quatrack::gains::table::{CONSTANT_TABLE_BYTES_MAX, GainTable, LoadError, TABLE_BYTES_MAX, TableKind, Vehicle};
 use quatrack::link::{BlobKind, BlobReceiver, Chunk, UploadBegin, UploadError};
 
 use crate::craft::RATE;

@@ -313,6 +313,7 @@ impl Flight {
         self.steps = self.steps.wrapping_add(1);
         let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
         let tick = if self.is_lock_step() { state_tick } else { now };
+        self.motors.look_at(rates);
         self.answer.result = if self.supervisor.mode().motors_allowed() {
             let state = self.arrived.as_ref().map(|arrived| &arrived.state.state);
             self.motors.step(&mut self.laws, &mut self.playback, tick, state, rates)

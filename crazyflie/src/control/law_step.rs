@@ -44,7 +44,11 @@ impl LawStep<'_> {
     /// Steps the law of a table.
     #[inline(always)]
     pub(super) fn step(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<(), Unflown> {
-        if table.gain.gives_forces() { self.to_motors(table, memory, outcome) } else { self.by_rates(table, memory, outcome) }
+        if table.gain.gives_forces() {
+            self.to_motors(table, memory, outcome)
+        } else {
+            self.by_rates(table, memory, outcome)
+        }
     }
 
     /// On the way from one table to another, both side by side.
@@ -74,8 +78,7 @@ impl LawStep<'_> {
     fn output(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<LawOutput, Unflown> {
         let controller = table.controller(self.settings.limits, self.settings.feed_forward)?;
         if table.gain.gives_forces() {
-            let reference =
-                &MotorReference::from_flat_at(self.sample, self.heading, table.actuation.airframe())?;
+            let reference = &MotorReference::from_flat_at(self.sample, self.heading, table.actuation.airframe())?;
             outcome.target = reference.state().attitude;
             Ok(controller.step(memory, self.measured(), Target::with_forces(reference))?)
         } else {

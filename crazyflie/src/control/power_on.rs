@@ -12,9 +12,7 @@ use crate::tables::{Table, TableId};
 pub(crate) const CONTROLLER: Controller = {
     let ([known, ..], [[design, ..], ..], [(lag_s, _), ..]) = (KNOWN, builtin::ACTUATOR_AWARE, builtin::ANY_LAG);
     let Some(craft) = Craft::with(known.airframe, known.vehicle, 0) else { panic!("no craft") };
-    let Ok(table) = Table::to_motors(TableId::ActuatorAware, design.gain, lag_s, &craft, 1.0) else {
-        panic!("no lag")
-    };
+    let Ok(table) = Table::to_motors(TableId::ActuatorAware, design.gain, lag_s, &craft, 1.0) else { panic!("no lag") };
     let bounds = Bounds { leash: Leash { length_m: 1.0 }, speed_m_s: 1.0, acceleration_m_s2: 1.0 };
     let settings = Settings { bounds, limits: Limits::NONE, feed_forward: FeedForward::With };
     Controller::new(craft, table, settings)

@@ -50,6 +50,9 @@ impl ToMotors {
     #[inline(always)]
     pub(super) fn accept(&mut self, _body_rates_rad_s: Option<Vector3<f32>>) {}
 
+    #[inline(always)]
+    pub(super) fn look_at(&mut self, _rates: BodyRates) {}
+
     /// A step down to its command.
     #[inline(always)]
     pub(super) fn step(

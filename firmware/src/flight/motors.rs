@@ -72,6 +72,12 @@ impl ToMotors {
         self.sent_rad_s = body_rates_rad_s;
     }
 
+    /// Looks at whether there are body rates, or should be: forces then answer the state, or why there are none.
+    #[inline]
+    pub(super) fn look_at(&mut self, rates: BodyRates) {
+        self.answers_by_forces = self.sent_rad_s.is_some() || rates != BodyRates::NoGyroscope;
+    }
+
     /// A step, down to the motors if there are body rates or should be. The gyroscope's count before those that came with the
     /// state.
     #[inline]
@@ -83,7 +89,6 @@ impl ToMotors {
         state: Option<&State>,
         rates: BodyRates,
     ) -> Result<Output, NoCommand> {
-        self.answers_by_forces = self.sent_rad_s.is_some() || rates != BodyRates::NoGyroscope;
         let Some(state) = state else { return Err(NoCommand::NoReference) };
         let rates = match rates {
             BodyRates::Measured(rates) => Some(rates),
