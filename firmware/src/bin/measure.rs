@@ -236,7 +236,9 @@ mod image {
                     let controller = Controller::new(worst(table).built_in()?, last.check().ok()?);
                     let reference = stored.reference(step * TICKS_PER_STEP).ok()?;
                     let state = State { attitude: sign(recorded.attitude), ..recorded };
-                    of_tick = self.tick(step, state, &controller.step(&state, &reference).ok()?)?;
+                    let memory = &mut Memory::at_rest();
+                    let output = controller.step(memory, Measured::new(&state), Target::new(&reference)).ok()?;
+                    of_tick = self.tick(step, state, output.command()?)?;
                 }
                 self.write(of_reference, &calls, of_tick)?;
             }

@@ -123,7 +123,7 @@ impl Rows {
 
 /// What a table of gains along a trajectory is written from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct RowsAlong<'a> {
+pub struct ScheduleRows<'a> {
     /// [`crate::Trajectory::checksum`] of the trajectory that they are for.
     pub trajectory: u32,
     /// Control steps from one knot to the next, at the rate in the head.

@@ -1,7 +1,7 @@
 //! A table of any kind: bytes in, a sound and certified table out, and back.
 
 use super::gains::{Content, Gains, bytes_behind_head, require_knots};
-use super::{AcceptError, AcceptedTable, Rows, RowsAlong, TableError, TableHead, TableKind, Vehicle, wire};
+use super::{AcceptError, AcceptedTable, Rows, ScheduleRows, TableError, TableHead, TableKind, Vehicle, wire};
 use crate::clock::Rate;
 use crate::gains::ConstantGain;
 use crate::law::{GainSchedule, Knot};
@@ -40,8 +40,8 @@ impl<'b> GainTable<'b> {
     ///
     /// # Errors
     /// [`TableError`], as [`Self::from_bytes`] would find in it; [`TableError::Length`] where the buffer is too short.
-    pub fn along(buffer: &'b mut [u8], head: &TableHead, rows: &RowsAlong<'_>) -> Result<Self, TableError> {
-        let RowsAlong { trajectory, steps_per_knot, gains } = *rows;
+    pub fn along(buffer: &'b mut [u8], head: &TableHead, rows: &ScheduleRows<'_>) -> Result<Self, TableError> {
+        let ScheduleRows { trajectory, steps_per_knot, gains } = *rows;
         let knots = u16::try_from(gains.len()).unwrap_or(u16::MAX);
         require_knots(knots)?;
         let fields = along_fields(knots, steps_per_knot, trajectory);
