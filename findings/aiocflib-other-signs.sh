@@ -10,7 +10,7 @@ set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 python3 -m venv "$dir/venv"
-"$dir/venv/bin/pip" -q --disable-pip-version-check install aiocflib==5.0.2 cflib==0.1.34
+"$dir/venv/bin/pip" -q --disable-pip-version-check install --no-compile aiocflib==5.0.2 cflib==0.1.34
 cd "$dir"
 venv/bin/python - <<'EOF'
 import asyncio

@@ -9,7 +9,7 @@ set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 python3 -m venv "$dir/venv"
-"$dir/venv/bin/pip" -q --disable-pip-version-check install cflib==0.1.34
+"$dir/venv/bin/pip" -q --disable-pip-version-check install --no-compile cflib==0.1.34
 cd "$dir"
 venv/bin/python - <<'EOF'
 import math

@@ -11,7 +11,7 @@ set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 python3 -m venv "$dir/venv"
-"$dir/venv/bin/pip" -q --disable-pip-version-check install drone-models==0.1.0 numpy==2.4.6 scipy==1.17.1
+"$dir/venv/bin/pip" -q --disable-pip-version-check install --no-compile drone-models==0.1.0 numpy==2.4.6 scipy==1.17.1
 cd "$dir"
 venv/bin/python - <<'EOF'
 from importlib.metadata import version
