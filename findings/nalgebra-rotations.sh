@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Guess: nalgebra's unit quaternions convert, interpolate and compare as rotations do.
-# What happens: from_matrix of a half turn about y gives the identity, with no error (from_matrix_unchecked paths give the half
-# turn). euler_angles near a pitch of 90 degrees gives a roll and a yaw whose rotation is up to 178 degrees from the one that was given. nlerp
-# from q to -q of a near attitude goes the long way round, where slerp takes the short one. q == -q is true.
+# What happens: from_matrix of a half turn about y gives the identity, with no error; from_rotation_matrix gives the half turn.
+# euler_angles at a pitch of 90 degrees gives a roll and a yaw whose rotation is up to 130 degrees from the one that was given. Half of the
+# way to a yaw of 11.5 degrees whose quaternion is stored with the other sign, nlerp is turned by 174 degrees and slerp by 5.7. And q == -q is true,
+# so that no test of equality sees the difference.
 # Why it matters: a host simulation logs angles, initialises attitudes from matrices and blends setpoints with these calls. A half turn
 # that becomes level is a craft that is upside down and is told that it is not.
 set -euo pipefail
@@ -52,9 +53,13 @@ fn main() {
 
     let from = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.0);
     let to = UnitQuaternion::new_unchecked(-UnitQuaternion::from_euler_angles(0.0, 0.0, 0.2).into_inner());
-    println!("a third of the way to a yaw of 11.5 degrees, stored as -q: nlerp {:.1} degrees, slerp {:.1}",
-        degrees(&from.nlerp(&to, 1.0 / 3.0)), degrees(&from.slerp(&to, 1.0 / 3.0)));
+    println!("half of the way to a yaw of 11.5 degrees, stored as -q: nlerp {:.1} degrees, slerp {:.1}",
+        degrees(&from.nlerp(&to, 0.5)), degrees(&from.slerp(&to, 0.5)));
     println!("q == -q: {}", to == UnitQuaternion::from_euler_angles(0.0, 0.0, 0.2));
 }
 EOF
 CARGO_TARGET_DIR="$dir/target" cargo run -q --manifest-path "$dir/Cargo.toml" | tee "$dir/out"
+grep -q 'from_matrix gives an angle of 0.0 degrees, from_rotation_matrix 180.0' "$dir/out"
+grep -Eq 'off by up to 1[0-9]{2}\.' "$dir/out"
+grep -q 'nlerp 174.3 degrees, slerp 5.7' "$dir/out"
+grep -q 'q == -q: true' "$dir/out"
