@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use quatrack::Trajectory;
-use quatrack::gains::table::{GainTable, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable};
+use quatrack::gains::table::{GainTable, ScheduleRows, TABLE_BYTES_MAX};
 use quatrack_plan::trajectory::file::{self, TrajectoryFile};
 use quatrack_plan::trajectory::on_board;
 
