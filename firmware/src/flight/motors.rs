@@ -5,8 +5,8 @@ use quatrack::gains::table::AcceptedTable;
 use quatrack::link::{NoCommand, Table};
 use quatrack::nalgebra::Vector3;
 use quatrack::{
-    Actuation, ActuatorAware, Controller, Measured, Memory, MotorForces, Output, Settings, State, StepError, Target,
-    Tick,
+    Actuation, ActuatorAware, BodyRateLoop, Controller, Measured, Memory, MotorForces, Output, Settings, State,
+    StepError, Target, Tick,
 };
 
 use crate::craft::BodyRates;
