@@ -128,17 +128,17 @@ fn the_sum_is_that_of_the_steps_before_and_stays_in_the_world_frame() {
     let plain = Controller::new(Equilibrium::new(gain.equilibrium()), Limits::NONE);
     let state = displaced(0.5, -0.25, 0.125);
     let mut memory = Memory::at_rest();
-    for (step, heading_rad) in (1_u8..).zip([0.0, 1.0, -2.5, 3.0]) {
+    for (count, heading_rad) in (1_u8..).zip([0.0, 1.0, -2.5, 3.0]) {
         let reference = hover(heading_rad);
         let with = step_on(&controller, &mut memory, &state, Target::new(&reference)).unwrap();
-        if step == 1 {
+        if count == 1 {
             let without = step(&plain, &state, &reference).unwrap();
             assert_eq!(with, without, "nothing has been summed before the first step");
         }
         let sum = memory.integral_m_s();
-        let expected = Vector3::new(0.5, -0.25, 0.125) * (0.01 * f32::from(step));
+        let expected = Vector3::new(0.5, -0.25, 0.125) * (0.01 * f32::from(count));
         // The period, 0.01 s, and each sum are rounded.
-        assert!((sum - expected).amax() < 4.0 * f32::EPSILON, "after {step} steps: {sum}");
+        assert!((sum - expected).amax() < 4.0 * f32::EPSILON, "after {count} steps: {sum}");
     }
 }
 
