@@ -6,6 +6,7 @@ pub(crate) mod motors;
 #[cfg(feature = "motors")]
 pub(crate) mod motors;
 
+#[cfg(feature = "motors")]
 use quatrack::body_rate::BandwidthError;
 use quatrack::command::LimitsError;
 use quatrack::gains::table::AcceptedTable;
@@ -188,16 +189,18 @@ impl Flight {
     }
 
     /// Bandwidth of the body-rate loop, rad/s.
+    #[cfg(feature = "motors")]
     pub fn bandwidth_rad_s(&self) -> [f32; 3] {
-        self.laws.bandwidth_rad_s()
+        self.laws.actuations.bandwidth_rad_s()
     }
 
     /// Sets it.
     ///
     /// # Errors
-    /// As [`Laws::set_bandwidth`]; what was set stays.
+    /// As [`quatrack::BodyRateLoop::new`]; what was set stays.
+    #[cfg(feature = "motors")]
     pub fn set_bandwidth(&mut self, bandwidth_rad_s: [f32; 3]) -> Result<(), BandwidthError> {
-        self.laws.set_bandwidth(bandwidth_rad_s)
+        self.laws.actuations.set_bandwidth(bandwidth_rad_s)
     }
 
     /// The limits in force.

@@ -5,18 +5,18 @@
 //! borrow it for longer than a step: its controller is made anew for each. What is loaded stays until the power goes, or the
 //! rate of the steps changes.
 
-use quatrack::body_rate::BandwidthError;
 use quatrack::gains::paper;
 use quatrack::gains::table::{AcceptError, AcceptedTable};
 use quatrack::link::{GainStore, LawChoice, Table};
+#[cfg(feature = "motors")]
+use quatrack::{Airframe, MotorStep};
 use quatrack::{
-    Actuation, Airframe, BodyRateLoop, Controller, Equilibrium, Handover, Limits, Measured, Memory, MotorStep, Output,
-    Rate, Settings, StepError, Target,
+    Controller, Equilibrium, Handover, Limits, Measured, Memory, Output, Rate, Settings, StepError, Target,
 };
 
-use crate::flight::motors::{BUILT_IN_TO_MOTORS, step};
+use crate::flight::motors::{Actuations, BUILT_IN_TO_MOTORS, loaded, step};
 use crate::rates::TICK_RATE;
-use crate::vehicle::{ACTUATION, AIRFRAME, STEP_RATE, VEHICLE};
+use crate::vehicle::{STEP_RATE, VEHICLE};
 
 /// Steps from one law to another in flight: a tenth of a second at 500 Hz.
 pub const FADE_STEPS: u16 = 50;
@@ -43,10 +43,8 @@ pub struct Laws {
     is_alone: bool,
     before: LawChoice,
     handover: Handover,
-    /// The board's way to its motors, and that of each slot's table, which may reckon with another motor lag.
-    actuation: Actuation,
-    of_slots: [Actuation; 2],
-    bandwidth_rad_s: [f32; 3],
+    /// What carries commands to the motors.
+    pub actuations: Actuations,
     store: &'static mut GainStore,
 }
 
@@ -66,9 +64,7 @@ impl Laws {
             is_alone: true,
             before: DEFAULT,
             handover: Handover::OVER,
-            actuation: ACTUATION,
-            of_slots: [ACTUATION; 2],
-            bandwidth_rad_s: [0.5 / AIRFRAME.figures().motor_lag_s; 3],
+            actuations: Actuations::new(),
             store,
         }
     }
@@ -109,25 +105,6 @@ impl Laws {
         self.settle();
     }
 
-    /// Bandwidth of the body-rate loop, rad/s.
-    pub const fn bandwidth_rad_s(&self) -> [f32; 3] {
-        self.bandwidth_rad_s
-    }
-
-    /// Sets it.
-    ///
-    /// # Errors
-    /// As [`BodyRateLoop::new`]; what was set stays.
-    #[cold]
-    pub fn set_bandwidth(&mut self, bandwidth_rad_s: [f32; 3]) -> Result<(), BandwidthError> {
-        let body_rates = BodyRateLoop::new(&AIRFRAME, bandwidth_rad_s)?;
-        self.bandwidth_rad_s = bandwidth_rad_s;
-        for actuation in self.of_slots.iter_mut().chain([&mut self.actuation]) {
-            *actuation = actuation.with_body_rates(body_rates);
-        }
-        Ok(())
-    }
-
     /// Chooses a law, over so many steps. The one in force again changes nothing.
     ///
     /// # Errors
@@ -153,8 +130,7 @@ impl Laws {
             return Err(Refused::Busy);
         }
         self.store.activate(table).map_err(Refused::Accept)?;
-        let [in_use, _] = self.of_slots;
-        self.of_slots = [table.actuation(&self.actuation), in_use];
+        self.actuations.load(table);
         match self.choice.table {
             Table::Loaded(0) => self.change(self.choice, LawChoice { table: Table::Loaded(1), ..self.choice }, steps),
             _ => Ok(()),
@@ -181,26 +157,40 @@ impl Laws {
         if steps > 0 && !self.handover.is_over() {
             return Err(Refused::Busy);
         }
-        let mut memory = self.memory;
-        let handover = match (self.controller_of(&before), self.controller_of(&choice)) {
-            (Some(old), Some(new)) => Handover::begin(steps, old.law(), new.law(), &mut memory),
-            _ => Handover::OVER,
-        };
+        let handover = self.begin_handover(&choice, &before, steps);
         let built_in = self.built_in(&choice);
         if let Some(controller) = built_in {
             self.controller = controller;
         }
-        (self.choice, self.before, self.memory, self.handover) = (choice, before, memory, handover);
+        (self.choice, self.before, self.handover) = (choice, before, handover);
         self.is_alone = built_in.is_some() && self.handover.is_over();
         Ok(())
     }
 
+    #[cfg(not(feature = "motors"))]
+    fn begin_handover(&mut self, _choice: &LawChoice, _before: &LawChoice, steps: u16) -> Handover {
+        Handover::of_commands(steps)
+    }
+
+    #[cfg(feature = "motors")]
+    fn begin_handover(&mut self, choice: &LawChoice, before: &LawChoice, steps: u16) -> Handover {
+        let mut memory = self.memory;
+        let (Some(old), Some(new)) = (self.controller_of(before), self.controller_of(choice)) else {
+            return Handover::OVER;
+        };
+        let handover = Handover::begin(steps, old.law(), new.law(), &mut memory);
+        self.memory = memory;
+        handover
+    }
+
     /// Whether a law that is stepped gives motor forces, and is to be given targets with them.
+    #[cfg(feature = "motors")]
     #[inline]
     pub fn follows_forces(&self) -> bool {
         self.controller.law().follows_forces() || (!self.is_alone && self.is_any_to_motors())
     }
 
+    #[cfg(feature = "motors")]
     #[cold]
     #[inline(never)]
     fn is_any_to_motors(&self) -> bool {
@@ -210,16 +200,9 @@ impl Laws {
     }
 
     /// The craft as the law in force reckons with it, for targets with motor forces.
-    pub fn airframe(&self) -> &Airframe {
-        match self.choice.table {
-            Table::Loaded(slot) => self.actuation_of(slot).airframe(),
-            _ => self.actuation.airframe(),
-        }
-    }
-
-    fn actuation_of(&self, slot: u8) -> &Actuation {
-        let [in_use, before] = &self.of_slots;
-        if slot == 0 { in_use } else { before }
+    #[cfg(feature = "motors")]
+    pub fn airframe(&self) -> Option<&Airframe> {
+        Some(self.actuations.of(self.choice.table)?.airframe())
     }
 
     /// The output of a step.
@@ -239,9 +222,11 @@ impl Laws {
     ///
     /// # Errors
     /// As [`Controller::carry`].
+    #[cfg(feature = "motors")]
     #[inline(never)]
     pub fn carry(&mut self, output: &Output, measured: Measured<'_>) -> Result<MotorStep, StepError> {
-        self.controller.with_actuation(&self.actuation).carry(&mut self.memory, output, measured)
+        let actuation = self.actuations.of(self.choice.table).ok_or(StepError::NoActuation)?;
+        self.controller.with_actuation(actuation).carry(&mut self.memory, output, measured)
     }
 
     /// A step of a loaded table, or on the way from one law to another.
@@ -252,12 +237,12 @@ impl Laws {
         // What is chosen is on board; were it not, there would be no command.
         let Some(new) = self.controller_of(&self.choice) else { return Err(StepError::Singular) };
         let output = if handover.is_over() {
-            step(&new, &mut memory, measured, target)
+            step_apart(&new, &mut memory, measured, target)
         } else {
             let old = self.controller_of(&self.before).unwrap_or(new);
-            let to = |memory: &mut Memory| step(&new, memory, measured, target);
-            let from = |memory: &mut Memory| step(&old, memory, measured, target);
-            handover.step_with(&mut memory, new.actuation(), measured, to, from)
+            let to = |memory: &mut Memory| step_apart(&new, memory, measured, target);
+            let from = |memory: &mut Memory| step_apart(&old, memory, measured, target);
+            handover.step_with(&mut memory, self.actuations.of(self.choice.table), measured, to, from)
         };
         (self.memory, self.handover) = (memory, handover);
         self.is_alone = self.handover.is_over() && !matches!(self.choice.table, Table::Loaded(_));
@@ -266,17 +251,15 @@ impl Laws {
 
     #[inline(never)]
     fn controller_of(&self, choice: &LawChoice) -> Option<Controller<'_>> {
-        let Table::Loaded(slot) = choice.table else {
-            return self.built_in(choice).map(|controller| controller.with_actuation(&self.actuation));
-        };
+        let Table::Loaded(slot) = choice.table else { return self.built_in(choice) };
         let settings = Settings {
             limits: self.limits,
-            actuation: Some(self.actuation_of(slot)),
+            actuation: self.actuations.of(choice.table),
             feed_forward: choice.feed_forward,
             error_form: choice.error_form,
             player_rate: TICK_RATE,
         };
-        self.store.table(slot)?.controller(&settings).ok()
+        loaded(&self.store.table(slot)?, &settings)
     }
 
     /// The controller of a table in flash, if it is made for the rate of the steps.
@@ -288,4 +271,15 @@ impl Laws {
         };
         Some(Controller::new(law, self.limits))
     }
+}
+
+/// A step where one call more does not count.
+#[inline(never)]
+fn step_apart(
+    controller: &Controller<'_>,
+    memory: &mut Memory,
+    measured: Measured<'_>,
+    target: Target<'_>,
+) -> Result<Output, StepError> {
+    step(controller, memory, measured, target)
 }

@@ -2,10 +2,12 @@
 
 mod motors;
 
+#[cfg(feature = "motors")]
+use quatrack::Progress;
 use quatrack::link::{TRAJECTORY_PIECES, TrajectoryStore};
 use quatrack::nalgebra::Vector3;
 use quatrack::trajectory::Bookmark;
-use quatrack::{FlatSample, Player, Progress, Reference, ReferenceError, Tick};
+use quatrack::{FlatSample, Player, Reference, ReferenceError, Tick};
 
 use crate::rates::TICK_RATE;
 
@@ -20,7 +22,8 @@ pub struct Playback {
     /// The tick of the clock at which the trajectory would have begun, had it never been paused.
     base: Option<Tick>,
     moving: bool,
-    /// Checksum of the trajectory.
+    /// Checksum of the trajectory, for gains along it.
+    #[cfg(feature = "motors")]
     checksum: u32,
     /// Too large for the stack on which everything begins.
     store: &'static mut Store,
@@ -39,7 +42,15 @@ enum Source {
 impl Playback {
     /// Nothing to follow, nothing uploaded.
     pub const fn new(store: &'static mut Store) -> Self {
-        Self { source: Source::Nothing, elapsed: 0, base: None, moving: false, checksum: 0, store }
+        Self {
+            source: Source::Nothing,
+            elapsed: 0,
+            base: None,
+            moving: false,
+            #[cfg(feature = "motors")]
+            checksum: 0,
+            store,
+        }
     }
 
     /// Follows what came with a state.
@@ -50,15 +61,21 @@ impl Playback {
     /// Plays a trajectory in flash from its start, which is the next step.
     pub fn start(&mut self, player: Player<'static>) {
         self.begin(Source::Flash(player));
-        self.checksum = player.trajectory().checksum();
+        #[cfg(feature = "motors")]
+        {
+            self.checksum = player.trajectory().checksum();
+        }
     }
 
     /// Plays the uploaded trajectory from its start, which is the next step; whether there is one.
     pub fn start_uploaded(&mut self) -> bool {
         let Some(trajectory) = self.store.active().trajectory() else { return false };
-        let (bookmark, checksum) = (Player::new(trajectory, TICK_RATE).bookmark(), trajectory.checksum());
+        let bookmark = Player::new(trajectory, TICK_RATE).bookmark();
+        #[cfg(feature = "motors")]
+        {
+            self.checksum = trajectory.checksum();
+        }
         self.begin(Source::Uploaded(bookmark));
-        self.checksum = checksum;
         true
     }
 
@@ -122,6 +139,7 @@ impl Playback {
     }
 
     /// Where on which trajectory the last reference was, if it was on one.
+    #[cfg(feature = "motors")]
     #[inline]
     pub fn progress(&self) -> Option<Progress> {
         self.is_trajectory().then_some(Progress { trajectory: self.checksum, tick: self.elapsed })

@@ -64,8 +64,12 @@ impl<'a> Controller<'a> {
     /// # Errors
     /// [`StepError`] where the state is no state, the law has no answer, or lacks what it takes. There is then no output, and
     /// the memory is as it was: the caller stops or levels, and never holds the last output.
-    #[inline]
+    #[inline(always)]
     pub fn step(&self, memory: &mut Memory, measured: Measured<'_>, target: Target<'_>) -> Result<Output, StepError> {
+        // Looked at by itself, before all others: it is to cost nothing.
+        if let Law::Equilibrium(_) = &self.law {
+            return registers::equilibrium(self, measured.state, target.reference);
+        }
         match &self.law {
             Law::Equilibrium(_) => registers::equilibrium(self, measured.state, target.reference),
             Law::FlatOutput(_) => registers::flat_output(self, measured.state, target.reference),

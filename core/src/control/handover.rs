@@ -41,6 +41,12 @@ impl Handover {
         Self { steps, done: 0, memory: before }
     }
 
+    /// The way in so many steps between laws that remember nothing.
+    #[inline]
+    pub const fn of_commands(steps: u16) -> Self {
+        Self { steps, ..Self::OVER }
+    }
+
     /// Whether the way is over: from then on the new controller is stepped alone.
     #[inline]
     pub const fn is_over(&self) -> bool {
@@ -94,6 +100,7 @@ impl Handover {
     }
 
     /// What lies between two outputs at this step of the way; nothing where one of them cannot be carried to the motors.
+    #[inline]
     fn mixed(
         &mut self,
         memory: &mut Memory,
@@ -106,13 +113,26 @@ impl Handover {
         if let (Output::Command(from), Output::Command(to)) = (from, to) {
             return Some(Output::Command(between_commands(from, to, share)));
         }
-        let actuation = actuation?;
-        let mut to_motors = |output| carry(Some(actuation), &mut self.memory, output, measured).ok();
-        let (from, to) = (to_motors(from)?, to_motors(to)?);
-        let step = between_forces(&from, &to, share);
-        memory.forces_n = actuation.lag.next(&before_n, &step.forces_n);
+        let step = between_carried(actuation?, measured, (from, to), before_n, share)?;
+        memory.forces_n = actuation?.lag.next(&before_n, &step.forces_n);
         Some(Output::Forces(step))
     }
+}
+
+/// Both carried to the motors, from where these are.
+#[inline(never)]
+fn between_carried(
+    actuation: &Actuation,
+    measured: Measured<'_>,
+    (from, to): (&Output, &Output),
+    before_n: MotorForces,
+    share: f32,
+) -> Option<MotorStep> {
+    let to_motors = |output| {
+        let memory = &mut Memory { forces_n: before_n, ..Memory::at_rest() };
+        carry(Some(actuation), memory, output, measured).ok()
+    };
+    Some(between_forces(&to_motors(from)?, &to_motors(to)?, share))
 }
 
 /// `share` of the way from one number to another; `share` below 1 and a multiple of 1/65535, which no rounding takes beyond

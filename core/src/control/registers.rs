@@ -46,7 +46,7 @@ macro_rules! in_registers {
 }
 
 /// A step of the equilibrium law.
-#[inline]
+#[inline(always)]
 pub(super) fn equilibrium(
     controller: &Controller<'_>,
     state: &State,
@@ -56,7 +56,7 @@ pub(super) fn equilibrium(
 }
 
 /// A step of the flat output law.
-#[inline]
+#[inline(always)]
 pub(super) fn flat_output(
     controller: &Controller<'_>,
     state: &State,

@@ -23,6 +23,14 @@ pub struct Settings<'a> {
     pub player_rate: Rate,
 }
 
+impl Settings<'_> {
+    /// Limits and the rate of the player alone: no motors, no feed-forward, errors in the heading frame.
+    pub const fn new(limits: Limits, player_rate: Rate) -> Self {
+        let (feed_forward, error_form) = (FeedForward::Without, ErrorForm::HeadingFrame);
+        Self { limits, actuation: None, feed_forward, error_form, player_rate }
+    }
+}
+
 /// Why a table becomes no controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -1,9 +1,13 @@
 //! A flight that ends at its commands, for an image without the feature `motors`: what the paper's laws take by themselves
 //! is weighed and counted with it.
 
-use quatrack::link::NoCommand;
+use quatrack::gains::table::{AcceptedTable, TableKind};
+use quatrack::link::{NoCommand, Table};
 use quatrack::nalgebra::Vector3;
-use quatrack::{ActuatorAware, Controller, Law, Measured, Memory, MotorForces, Output, State, StepError, Target, Tick};
+use quatrack::{
+    Actuation, ActuatorAware, Controller, Law, Measured, Memory, MotorForces, Output, Settings, State, StepError,
+    Target, Tick,
+};
 
 use crate::craft::BodyRates;
 use crate::drivers::battery::CellVoltage;
@@ -13,6 +17,23 @@ use crate::vehicle::STOPPED;
 
 /// There is none.
 pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> = None;
+
+/// None.
+pub struct Actuations;
+
+#[expect(clippy::unused_self, reason = "the same to call as with motors")]
+impl Actuations {
+    pub(crate) const fn new() -> Self {
+        Self
+    }
+
+    pub(crate) fn load(&mut self, _table: &AcceptedTable<'_>) {}
+
+    #[inline(always)]
+    pub(crate) const fn of(&self, _table: Table) -> Option<&Actuation> {
+        None
+    }
+}
 
 /// Nothing.
 pub struct ToMotors;
@@ -25,10 +46,20 @@ pub(crate) fn step(
     measured: Measured<'_>,
     target: Target<'_>,
 ) -> Result<Output, StepError> {
-    match controller.law() {
-        Law::Equilibrium(_) | Law::FlatOutput(_) => controller.step(memory, measured, target),
-        _ => Err(StepError::NoActuation),
+    // Each by itself: the compiler then knows that it is no other.
+    if let Law::Equilibrium(_) = controller.law() {
+        controller.step(memory, measured, target)
+    } else if let Law::FlatOutput(_) = controller.law() {
+        controller.step(memory, measured, target)
+    } else {
+        Err(StepError::NoActuation)
     }
+}
+
+/// The controller of a loaded table for one of these laws.
+pub(crate) fn loaded<'t>(table: &AcceptedTable<'t>, settings: &Settings<'t>) -> Option<Controller<'t>> {
+    let (TableKind::Equilibrium | TableKind::FlatOutput) = table.kind() else { return None };
+    table.controller(settings).ok()
 }
 
 #[expect(clippy::unused_self, reason = "the same to call as with motors")]

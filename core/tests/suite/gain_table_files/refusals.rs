@@ -73,8 +73,8 @@ fn a_payload_of_another_kind_or_size_is_refused() {
     assert_eq!(refusal("lqr-e", 8, &[2]), mislabelled);
     let without_integrals = TableError::Dimensions { kind: TableKind::Integral, rows: 4, columns: 9 };
     assert_eq!(refusal("lqr-e", 8, &[3]), without_integrals);
-    let along = TableError::OtherKind { kind: TableKind::AlongTrajectory };
-    assert_eq!(refusal("lqr-e", 8, &[4]), along, "loaded by another reader");
+    // Behind the head of one along a trajectory comes the number of its knots, here half of an entry that is 0.
+    assert_eq!(refusal("lqr-e", 8, &[4]), TableError::Knots { found: 0 });
     let without_motors = TableError::Dimensions { kind: TableKind::ActuatorAware, rows: 4, columns: 9 };
     assert_eq!(refusal("lqr-e", 8, &[5]), without_motors);
     // Sound frames around payloads of other lengths: none, half a head, gains of the other kind.
