@@ -8,15 +8,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 7] = [
-    "core",
-    "crazyflie",
-    "firmware",
-    "host-sim/design",
-    "host-sim/plan",
-    "host-sim/simulation",
-    "host-sim/cli",
-];
+const CRATES: [&str; 7] =
+    ["core", "crazyflie", "firmware", "host-sim/design", "host-sim/plan", "host-sim/simulation", "host-sim/cli"];
 
 /// Each module that is drawn, with its line, counted from the top.
 fn drawn(lib: &str) -> BTreeMap<String, usize> {
@@ -93,8 +86,12 @@ fn imports_only_go_down() {
 
 #[test]
 fn a_drawing_is_read_by_its_lines() {
-    let lib = "//! Words.\n//!\n//! ```text\n//! top       what is above\n//!   a, b    what is below\n//! ```\nmod a;\n";
+    let lib =
+        "//! Words.\n//!\n//! ```text\n//! top       what is above\n//!   a, b    what is below\n//! ```\nmod a;\n";
     let expected = [("top", 0), ("a", 1), ("b", 1)].map(|(name, line)| (name.to_owned(), line));
     assert_eq!(drawn(lib), BTreeMap::from(expected));
-    assert_eq!(imported("use crate::a::X;\n// crate::b\nlet y = crate::c(1);\n#[cfg(test)]\nuse crate::d;"), ["a", "c"]);
+    assert_eq!(
+        imported("use crate::a::X;\n// crate::b\nlet y = crate::c(1);\n#[cfg(test)]\nuse crate::d;"),
+        ["a", "c"]
+    );
 }

@@ -277,8 +277,8 @@ fn bad_tables_are_refused_each_for_its_reason_and_the_flight_goes_on() {
 }
 
 /// LQI as it is designed in the repository, and gains along the aggressive trajectory.
-const LQI: &[u8] = include_bytes!("../../../../gains/generated/lqi-e.bin");
-const ALONG: &[u8] = include_bytes!("../../../../gains/generated/along-aggressive.bin");
+const LQI: &[u8] = include_bytes!("../../../../../gains/generated/lqi-e.bin");
+const ALONG: &[u8] = include_bytes!("../../../../../gains/generated/along-aggressive.bin");
 
 #[test]
 fn tables_that_remember_or_follow_a_clock_fly_bit_for_bit() {

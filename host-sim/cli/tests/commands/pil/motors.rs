@@ -90,7 +90,7 @@ fn a_table_for_motor_forces_flies_bit_for_bit() {
         return;
     }
     // Designed for motors of 63.5 ms: the board reckons with the table's lag, not with its own craft's.
-    let blob: &[u8] = include_bytes!("../../../../gains/generated/actuator-aware-63ms.bin");
+    let blob: &[u8] = include_bytes!("../../../../../gains/generated/actuator-aware-63ms.bin");
     let (rate, ticks) = (Rate::from_hz(500).unwrap(), Rate::from_hz(1000).unwrap());
     let vehicle = Vehicle { name: Name::literal("crazyflie-2.1"), id: 0x8983_3c06 };
     let table = GainTable::from_bytes(blob).unwrap();
