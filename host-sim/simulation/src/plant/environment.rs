@@ -56,9 +56,9 @@ pub struct Environment {
     pub floor: bool,
     /// Radius of the rotors, m, where thrust grows near the floor.
     pub ground_effect_radius_m: Option<f64>,
-    /// Walls to lean on, and how far the craft's guards reach beyond the axes of its rotors, m.
+    /// Walls to lean on.
     pub walls: Vec<Wall>,
-    /// See `walls`.
+    /// How far the craft's guards reach beyond the axes of its rotors, m.
     pub guard_reach_m: f64,
 }
 

@@ -60,7 +60,7 @@ struct Acting {
 }
 
 impl Converter {
-    /// Before the first command acts there is none.
+    /// Commands within their limits, with their powers taken.
     fn acting(&self, commands_n: &Vector4<f64>) -> Acting {
         let [least_n, most_n] = self.limits_n;
         let mapped = commands_n.map(|command_n| {
