@@ -46,7 +46,7 @@ impl Scenario {
             setpoints: file.setpoints.unwrap_or_default(),
             estimator: file.estimator.unwrap_or_default(),
             seed: file.seed.unwrap_or(1),
-            environment: environment(file, &checks)?,
+            environment: environment(file, &checks, &vehicle)?,
             truth: truth(file, &checks, &vehicle, duration_s)?,
             gyro_bias_rad_s: bias("errors.gyro_bias_rad_s", errors.gyro_bias_rad_s, 1.0, "in rad/s")?,
             accelerometer_bias_m_s2: bias(
@@ -113,13 +113,17 @@ const TURBULENCE_HEIGHT_M: f64 = 1.0;
 /// `(0.177 + 0.000823 h)^0.4`.
 const VERTICAL_SHARE: f64 = 0.51;
 
-fn environment(file: &ScenarioFile, checks: &Checks<'_>) -> Result<Environment, ScenarioError> {
+fn environment(file: &ScenarioFile, checks: &Checks<'_>, vehicle: &Vehicle) -> Result<Environment, ScenarioError> {
     let own = match &file.air {
         None => return Ok(Environment::VACUUM),
         Some(Air::Own(own)) => own,
         Some(Air::Vehicle) => {
-            let reason = "\"vehicle\": the vehicle's file says nothing of its air; give [air] with figures".to_owned();
-            return Err(ScenarioError::Named { origin: checks.origin.to_owned(), key: "air", reason });
+            let air = plant::Air::of(vehicle).ok_or_else(|| ScenarioError::Named {
+                origin: checks.origin.to_owned(),
+                key: "air",
+                reason: "\"vehicle\": the vehicle's file says nothing of its air; give [air] with figures".to_owned(),
+            })?;
+            return Ok(Environment { air, ..Environment::VACUUM });
         }
     };
     let mean_m_s = Vector3::from(own.wind_m_s.unwrap_or([0.0; 3]));

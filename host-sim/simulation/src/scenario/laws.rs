@@ -2,12 +2,15 @@
 
 use std::str::FromStr;
 
+use quatrack::gains::paper as gains;
+use quatrack_design::vehicle::Vehicle;
 use serde::{Deserialize, Serialize};
 
+use super::core_law::{CoreLaw, Gain};
 use super::object_law::ObjectLaw;
 use crate::control_law::ControlLaw;
+use crate::flight::motor_laws::FlightError;
 use crate::rivals::{Actuation, CascadedPid, CascadedPidConfig, Lee, LeeConfig, Mellinger, MellingerConfig};
-use quatrack_design::vehicle::Vehicle;
 
 /// A law.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
@@ -16,7 +19,7 @@ pub enum Law {
     /// The Crazyflie controller's default table.
     #[default]
     Quatrack,
-    /// The actuator-aware table without a word of the air.
+    /// The actuator-aware law without a word of the air.
     ActuatorAware,
     /// The paper's, each behind the body-rate loop of the core.
     LqrE,
@@ -71,6 +74,16 @@ pub enum LawError {
         /// The mass that it was told, kg.
         mass_kg: f64,
     },
+    /// The core flies no such vehicle.
+    #[error("{law} on {vehicle}: {error}")]
+    Core {
+        /// Which law.
+        law: &'static str,
+        /// Whose name.
+        vehicle: String,
+        /// Why not.
+        error: FlightError,
+    },
 }
 
 impl Law {
@@ -113,13 +126,21 @@ impl Law {
                 LawError::NoTable { law: self.name(), vehicle: vehicle.name().to_owned(), mass_kg: told.mass_kg }
             })
         };
+        let core = |law: Result<CoreLaw, FlightError>| -> Result<Box<dyn ControlLaw>, LawError> {
+            law.map(|law| Box::new(law) as Box<dyn ControlLaw>).map_err(|error| LawError::Core {
+                law: self.name(),
+                vehicle: vehicle.name().to_owned(),
+                error,
+            })
+        };
+        let paper = |gain: Gain| core(CoreLaw::paper(vehicle, told, gain));
         Ok(match self {
-            // Today's default table is the actuator-aware one.
-            Self::Quatrack | Self::ActuatorAware => table(0)?,
-            Self::LyapE => table(1)?,
-            Self::LqrE => table(2)?,
-            Self::LyapF => table(3)?,
-            Self::LqrF => table(4)?,
+            Self::Quatrack => table(0)?,
+            Self::ActuatorAware => core(CoreLaw::actuator_aware(vehicle, told))?,
+            Self::LyapE => paper(Gain::Equilibrium(&gains::LYAP_E))?,
+            Self::LqrE => paper(Gain::Equilibrium(&gains::LQR_E))?,
+            Self::LyapF => paper(Gain::FlatOutput(&gains::LYAP_F))?,
+            Self::LqrF => paper(Gain::FlatOutput(&gains::LQR_F))?,
             Self::Mellinger => Box::new(Mellinger::new(MellingerConfig::firmware(told.mass_kg, &actuation), actuation)),
             Self::Lee => Box::new(Lee::new(LeeConfig::firmware(told.mass_kg), actuation)),
             Self::Pid => Box::new(CascadedPid::new(CascadedPidConfig::firmware(vehicle, told.mass_kg), actuation)),

@@ -11,12 +11,14 @@
 //!         course     hover, ramp, and what is measured
 //!       laws         laws by name
 //!         object_law the Crazyflie controller as a law
+//!         core_law   the core's controller as a law
 //!   file             the keys in TOML
 //! ```
 
 mod checked;
 mod checks;
 pub mod compare;
+mod core_law;
 pub mod course;
 mod error;
 pub mod file;

@@ -91,6 +91,15 @@ fn all_but_the_vehicle_may_be_left_out() {
 }
 
 #[test]
+fn the_vehicles_own_air_is_what_its_file_says() {
+    let read = scenario("vehicle = \"crazyflie-2.1-brushless\"\nair = \"vehicle\"").unwrap();
+    // arXiv 2512.14450, at 45 g; on the 39.3 g of the vehicle's file the same force is more a kilogram.
+    let air = &read.environment.air;
+    assert!((air.drag_per_s[0] - 0.447 * 0.045 / read.vehicle.mass_kg()).abs() < 1e-12, "{:?}", air.drag_per_s);
+    assert_eq!(air.moment_n_m_per_m_s, [7.0e-4, 9.1e-4]);
+}
+
+#[test]
 fn what_has_no_sense_is_refused_in_one_line_with_key_value_and_range() {
     let with = |line: &str| format!("vehicle = \"crazyflie-2.1\"\n{line}\n");
     for (text, parts) in [
