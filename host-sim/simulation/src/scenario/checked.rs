@@ -86,7 +86,7 @@ fn course(
     let name = file.course.as_deref().unwrap_or("eight");
     let foreign = |key, value: Option<f64>, of: &str| match value {
         Some(value) if name != of => {
-            Err(checks.refuse(key, value, format!("left out: it belongs to course = \"{of}\"")))
+            Err(checks.refuse(key, &value, format!("left out: it belongs to course = \"{of}\"")))
         }
         _ => Ok(()),
     };
@@ -155,12 +155,12 @@ fn truth(
         (None, Some(rise), Some(fall)) => (rise, fall),
         (Some(lag), _, _) => {
             let must = "left out beside lag_rise_ms and lag_fall_ms, or these two left out".to_owned();
-            return Err(checks.refuse("errors.lag_ms", lag, must));
+            return Err(checks.refuse("errors.lag_ms", &lag, must));
         }
         (None, rise, fall) => {
             let (key, value) = if rise.is_some() { ("errors.lag_rise_ms", rise) } else { ("errors.lag_fall_ms", fall) };
             let must = "given with lag_rise_ms and lag_fall_ms both; lag_ms is for one that is the same".to_owned();
-            return Err(checks.refuse(key, value.unwrap_or_default(), must));
+            return Err(checks.refuse(key, &value.unwrap_or_default(), must));
         }
     };
     let split = errors.lag_rise_ms.is_some();
@@ -223,7 +223,7 @@ fn filter(file: &ScenarioFile, checks: &Checks<'_>) -> Result<FilterFigures, Sce
         if (1000.0 / hz).fract() == 0.0 {
             Ok(hz)
         } else {
-            Err(checks.refuse(key, hz, "a divisor of 1000 Hz".to_owned()))
+            Err(checks.refuse(key, &hz, "a divisor of 1000 Hz".to_owned()))
         }
     };
     Ok(FilterFigures {

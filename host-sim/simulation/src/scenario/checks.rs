@@ -1,5 +1,7 @@
 //! Values of one file within their ranges, or why not.
 
+use std::fmt;
+
 use super::error::ScenarioError;
 
 /// Checks values of one file.
@@ -9,7 +11,7 @@ pub(super) struct Checks<'a> {
 }
 
 impl Checks<'_> {
-    pub(super) fn refuse(&self, key: &'static str, value: impl ToString, must: String) -> ScenarioError {
+    pub(super) fn refuse(&self, key: &'static str, value: &dyn fmt::Display, must: String) -> ScenarioError {
         ScenarioError::Value { origin: self.origin.to_owned(), key, value: value.to_string(), must }
     }
 
@@ -26,7 +28,7 @@ impl Checks<'_> {
         if (least..=most).contains(&value) {
             return Ok(value);
         }
-        Err(self.refuse(key, value, format!("from {least} to {most}, {what}")))
+        Err(self.refuse(key, &value, format!("from {least} to {most}, {what}")))
     }
 
     /// Likewise every component.

@@ -21,7 +21,7 @@ const AT_START: DeviationsAtStart =
 /// Where a law's estimate comes from.
 pub enum Estimation {
     /// The truth with noise.
-    Exact(Sensors),
+    Exact(Box<Sensors>),
     /// A filter behind noisy sensors.
     Filtered(Box<Filtered>),
 }

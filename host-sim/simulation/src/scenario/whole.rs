@@ -104,7 +104,7 @@ impl Scenario {
         };
         let sensors = Sensors::new(self.noise, self.gyro_bias_rad_s, self.accelerometer_bias_m_s2, self.seed);
         let estimation = match self.estimator {
-            EstimateFrom::Exact => Estimation::Exact(sensors),
+            EstimateFrom::Exact => Estimation::Exact(sensors.into()),
             EstimateFrom::Kalman => {
                 Estimation::Filtered(Filtered::start(&self.filter, sensors, self.noise.position_m, &start)?.into())
             }

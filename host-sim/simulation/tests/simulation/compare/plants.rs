@@ -89,7 +89,7 @@ impl Craft {
 
     fn fly(&self, law: &mut dyn ControlLaw, flown: &Flown, in_air: bool) -> RigidFlight {
         let mut plant = self.plant(in_air);
-        Bench { flown, setpoints: Setpoints::At100Hz, estimation: Estimation::Exact(Sensors::exact()) }
+        Bench { flown, setpoints: Setpoints::At100Hz, estimation: Estimation::Exact(Sensors::exact().into()) }
             .fly(&mut plant, law)
     }
 
