@@ -87,17 +87,17 @@ pub enum LawError {
 }
 
 impl Law {
-    /// All of them, ours first.
+    /// All of them: ours, the rivals, and what came before.
     pub const ALL: [Self; 9] = [
         Self::Quatrack,
+        Self::Mellinger,
+        Self::Lee,
+        Self::Pid,
         Self::ActuatorAware,
         Self::LqrE,
         Self::LyapE,
         Self::LqrF,
         Self::LyapF,
-        Self::Mellinger,
-        Self::Lee,
-        Self::Pid,
     ];
 
     /// As in files, on the command line and in tables.
