@@ -23,8 +23,9 @@ pub enum Force {
 pub enum Integration {
     /// Body rates and force held over the period: of second order and more.
     SecondOrder,
-    /// As the Crazyflie's firmware does it (`kalman_core.c`, release 2025.12): Euler's rule on the velocity in the body frame, and the
-    /// covariance of the attitude turned by half of what the body turns. For comparison with that firmware.
+    /// As the Crazyflie's firmware does it (`kalman_core.c`, commit 2a18fc29): Euler's rule on the velocity in the body
+    /// frame, and the covariance of the attitude turned by half of what the body turns. For comparison with that
+    /// firmware.
     Crazyflie,
 }
 
@@ -79,8 +80,8 @@ pub struct DeviationsAtStart {
 
 /// Craft and sensors as an [`super::Estimator`] reckons with them.
 ///
-/// Noise is given as a density, so that it does not depend on the rate of prediction: the standard deviation of a sample
-/// over the root of the sampling rate, [`noise_density`].
+/// Noise is given as a density, so that it does not depend on the rate of prediction: the standard deviation of a
+/// sample over the root of the sampling rate, [`noise_density`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -92,15 +93,15 @@ pub struct EstimatorConfig {
     /// Linear drag over mass along body x and body y, 1/s, for [`Force::ThrustAxis`]; 0 where it is unknown. There is
     /// none for body z: along it the accelerometer measures the drag together with the thrust.
     pub drag_per_s: [f32; 2],
-    /// White noise of the acceleration along body x, y, z, m/s^2 per root hertz: gusts and what else is not modelled; the
-    /// accelerometer's along each axis that is taken from it.
+    /// White noise of the acceleration along body x, y, z, m/s^2 per root hertz: gusts and what else is not modelled;
+    /// the accelerometer's along each axis that is taken from it.
     pub acceleration_noise: [f32; 3],
     /// White noise of the gyroscope about body x, y, z, rad/s per root hertz.
     pub gyro_noise: [f32; 3],
     /// How well a start is known.
     pub at_start: DeviationsAtStart,
-    /// Least standard deviation of any of the nine states in its SI unit (m, m/s, rad): keeps the estimate from taking no
-    /// measurement any more.
+    /// Least standard deviation of any of the nine states in its SI unit (m, m/s, rad): keeps the estimate from taking
+    /// no measurement any more.
     pub deviation_min: f32,
     /// Most of the same.
     pub deviation_max: f32,
@@ -114,9 +115,9 @@ pub fn noise_density(sample_deviation: f32, sample_hz: f32) -> f32 {
 }
 
 impl EstimatorConfig {
-    /// The Crazyflie's firmware as shipped (parameters `kalman.*`, release 2025.12): no drag, and deviations of 1 mm,
-    /// 1 mm/s and 1 mrad at least. Its noises, 0.5 and 1 m/s^2 and 0.1 rad/s, are added every millisecond: times the root
-    /// of 1 ms they are densities.
+    /// The Crazyflie's firmware as shipped (parameters `kalman.*`, commit 2a18fc29): no drag, and deviations of 1 mm,
+    /// 1 mm/s and 1 mrad at least. Its noises, 0.5 and 1 m/s^2 and 0.1 rad/s, are added every millisecond: times the
+    /// root of 1 ms they are densities.
     pub const CRAZYFLIE: Self = Self {
         force: Force::ThrustAxis,
         integration: Integration::Crazyflie,

@@ -190,7 +190,8 @@ impl Covariance {
 
     /// Whether all of it are numbers.
     pub(super) fn is_finite(&self) -> bool {
-        // A number that is not finite stays so in a sum of squares; variances are bounded, so that a finite sum stays finite.
+        // A number that is not finite stays so in a sum of squares; variances are bounded, so that a finite sum stays
+        // finite.
         let sum = self.position.norm_squared()
             + self.position_velocity.norm_squared()
             + self.position_attitude.norm_squared()

@@ -6,8 +6,8 @@ use super::covariance::Covariance;
 use crate::rigid_state::RigidState;
 use crate::state::State;
 
-/// A state and how well it is known. Made by [`super::Estimator::start`], carried on by the estimator's other functions; always of
-/// finite numbers, with an attitude of norm 1.
+/// A state and how well it is known. Made by [`super::Estimator::start`], carried on by the estimator's other
+/// functions; always of finite numbers, with an attitude of norm 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Estimate {

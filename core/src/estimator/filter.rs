@@ -25,8 +25,8 @@ pub const VELOCITY_MAX_M_S: f32 = 300.0;
 pub const TURN_MAX_RAD: f32 = 1.0;
 
 /// What a correction adds to the variances, as a part of those before it: more than what f32 rounds in taking a large
-/// variance down to a small one (nine errors, some three roundings of 6e-8 each), so that the covariance stays positive. A
-/// position that was known to 10 m is then known to 14 mm by its first measurement, and better by the next.
+/// variance down to a small one (nine errors, some three roundings of 6e-8 each), so that the covariance stays
+/// positive. A position that was known to 10 m is then known to 14 mm by its first measurement, and better by the next.
 const ROUNDING: f32 = 2e-6;
 
 impl Imu {
@@ -41,8 +41,8 @@ impl Imu {
 /// What a measurement of `N` numbers said.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Innovation<const N: usize> {
-    /// Measured minus predicted, in the measurement's unit; of an attitude the rotation vector from the predicted to the
-    /// measured, body frame, rad.
+    /// Measured minus predicted, in the measurement's unit; of an attitude the rotation vector from the predicted to
+    /// the measured, body frame, rad.
     pub difference: [f32; N],
     /// Variance of each that the filter expects.
     pub variance: [f32; N],
@@ -120,7 +120,8 @@ impl Estimator {
         let turn = sqrt(imu.body_rates_rad_s.dot(&imu.body_rates_rad_s)) * period_s;
         within(EstimatorFigure::Turn, turn, 0.0, TURN_MAX_RAD)?;
         let motion = Motion::over(&self.config, &estimate.state, imu, period_s);
-        // White noise over the period: half of it before and half of it after, which integrates it by the trapezoidal rule.
+        // White noise over the period: half of it before and half of it after, which integrates it by the trapezoidal
+        // rule.
         let half = 0.5 * period_s;
         let [ax, ay, az] = self.config.acceleration_noise;
         let [gx, gy, gz] = self.config.gyro_noise;

@@ -33,8 +33,8 @@ fn rows(difference: &Vector3<f32>, variance: f32) -> [Row; 3] {
     ]
 }
 
-/// The rotation vector of a unit quaternion's shorter way, rad: `2 v (1 + |v|^2 / 6 + 3 |v|^4 / 40)`, the arcsine's series; 8 %
-/// short at a right angle, exact to `|v|^7 / 11` near 0.
+/// The rotation vector of a unit quaternion's shorter way, rad: `2 v (1 + |v|^2 / 6 + 3 |v|^4 / 40)`, the arcsine's
+/// series; 8 % short at a right angle, exact to `|v|^7 / 11` near 0.
 fn rotation_vector(q: Quaternion) -> Vector3<f32> {
     let v = if q.w < 0.0 { -q.vector() } else { q.vector() };
     let v2 = v.dot(&v);

@@ -1,10 +1,11 @@
-//! Where the craft is: gyroscope, accelerometer and what measures its position in; state, covariance and innovations out.
+//! Where the craft is: gyroscope, accelerometer and what measures its position in; state, covariance and innovations
+//! out.
 //!
-//! The error-state Kalman filter of M. W. Mueller, M. Hamer and R. D'Andrea, "Fusing ultra-wideband range measurements with
-//! accelerometers and rate gyroscopes for quadrocopter state estimation" (ICRA 2015), with the covariance correction of
-//! M. W. Mueller, M. Hehn and R. D'Andrea, "Covariance correction step for Kalman filtering with an attitude" (Journal of
-//! Guidance, Control, and Dynamics 40(9), 2017). It is what the Crazyflie flies by; [`EstimatorConfig::CRAZYFLIE`] is set as
-//! it is there.
+//! The error-state Kalman filter of M. W. Mueller, M. Hamer and R. D'Andrea, "Fusing ultra-wideband range measurements
+//! with accelerometers and rate gyroscopes for quadrocopter state estimation" (ICRA 2015), with the covariance
+//! correction of M. W. Mueller, M. Hehn and R. D'Andrea, "Covariance correction step for Kalman filtering with an
+//! attitude" (Journal of Guidance, Control, and Dynamics 40(9), 2017). It is what the Crazyflie flies by;
+//! [`EstimatorConfig::CRAZYFLIE`] is set as it is there.
 //!
 //! # Model
 //!
@@ -24,8 +25,8 @@
 //! `v+ = v + h (R (f + w h x f / 2 + ...) - g e3)`, and likewise the position ([`Integration::SecondOrder`]).
 //!
 //! The errors go with it by `r+ = r + h (v + G a / 2)`, `v+ = (I - h R D R') v + G a`, `a+ = exp(-[w h]) a` with
-//! `G = -h R ([f] + D [R' v])`. The paper has the velocity in the body frame; the errors of the two choices are linear in
-//! each other, so that the filter is the same to the first order, and here position and velocity stay free of the
+//! `G = -h R ([f] + D [R' v])`. The paper has the velocity in the body frame; the errors of the two choices are linear
+//! in each other, so that the filter is the same to the first order, and here position and velocity stay free of the
 //! gyroscope's noise.
 //!
 //! A measurement is taken number by number, which needs no inverse. What it says of `a` is moved into `q`, and the
@@ -33,9 +34,9 @@
 //!
 //! # Numbers
 //!
-//! `f32`, additions, products, quotients and square roots alone: the same bits on every target. Nothing that is not finite
-//! gets in: it is refused by an [`EstimatorError`] that names it, and the estimate stays. Variances are bounded below and
-//! above.
+//! `f32`, additions, products, quotients and square roots alone: the same bits on every target. Nothing that is not
+//! finite gets in: it is refused by an [`EstimatorError`] that names it, and the estimate stays. Variances are bounded
+//! below and above.
 //!
 //! # Example
 //!

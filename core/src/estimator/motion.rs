@@ -77,7 +77,8 @@ impl Motion {
             }
         };
 
-        // An error a of the attitude turns the force, and the body in which the drag acts: d(dv/dt) = -R ([f] + D [v]) a.
+        // An error a of the attitude turns the force, and the body in which the drag acts: d(dv/dt) = -R ([f] + D [v])
+        // a.
         let dragged = rotation * Matrix3::from_diagonal(&Vector3::from(drag));
         let from_attitude = times_cross(&rotation, &force) + times_cross(&dragged, &velocity);
         let has_drag = drag != [0.0; 3];

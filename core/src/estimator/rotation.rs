@@ -5,8 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 use crate::math::sqrt;
 use crate::quaternion::Quaternion;
 
-/// The quaternion of a rotation vector `theta` (axis times angle, rad): `(cos |theta| / 2, sin(|theta| / 2) theta / |theta|)`
-/// by their series, each to the term of the sixth power.
+/// The quaternion of a rotation vector `theta` (axis times angle, rad): `(cos |theta| / 2, sin(|theta| / 2) theta /
+/// |theta|)` by their series, each to the term of the sixth power.
 ///
 /// The next terms are `h^8 / 8!` and `h^8 / 9!` with `h = |theta| / 2`: below 1e-7 for `|theta| <= 1`, which is the
 /// rounding of f32.

@@ -1,11 +1,12 @@
-//! Counts the instructions of the estimator: inertial samples and positions in, from a file of the host; counts and a hash of the
-//! estimate out, to another.
+//! Counts the instructions of the estimator: inertial samples and positions in, from a file of the host; counts and a
+//! hash of the estimate out, to another.
 //!
 //! Both files are in the folder in which the emulator runs, all numbers little-endian, 32 bits. `samples.bin`: for each
 //! step, nine floats: mean body rates (rad/s), mean specific force (m/s^2), position (m). `counts.bin`: the cost of
-//! reading the counter, counts of two loops of known length; then, for each filter (with drag, all axes of the accelerometer,
-//! as the Crazyflie's, in this order) and each step, counts of the prediction over 10 ms and of the update with a position
-//! (1 mm), and a hash of state and covariance; at the end the most stack of a prediction and of an update, bytes.
+//! reading the counter, counts of two loops of known length; then, for each filter (with drag, all axes of the
+//! accelerometer, as the Crazyflie's, in this order) and each step, counts of the prediction over 10 ms and of the
+//! update with a position (1 mm), and a hash of state and covariance; at the end the most stack of a prediction and of
+//! an update, bytes.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

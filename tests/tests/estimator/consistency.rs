@@ -2,7 +2,8 @@
 //!
 //! Over N independent runs the sum of the normalised errors squared has the chi-square distribution with 9 N degrees of
 //! freedom if the filter is consistent (Bar-Shalom, Li and Kirubarajan, "Estimation with Applications to Tracking and
-//! Navigation", section 5.4), which for N = 200 is normal with mean 9 N and variance 18 N to a fraction of its deviation.
+//! Navigation", section 5.4), which for N = 200 is normal with mean 9 N and variance 18 N to a fraction of its
+//! deviation.
 
 use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use quatrack::estimator::{Estimate, Estimator, EstimatorConfig, ImuAverager};
@@ -63,8 +64,8 @@ fn fly(config: EstimatorConfig, steps_per_prediction: u32) -> Consistency {
     found
 }
 
-/// How far a mean of `count` numbers, each chi-square with `freedom`, may be off: 3.9 standard deviations, which of all 36
-/// numbers that are looked at a consistent filter exceeds in one case of 290.
+/// How far a mean of `count` numbers, each chi-square with `freedom`, may be off: 3.9 standard deviations, which of all
+/// 36 numbers that are looked at a consistent filter exceeds in one case of 290.
 fn bound(freedom: f64, count: f64) -> f64 {
     3.9 * (2.0 * freedom / count).sqrt()
 }

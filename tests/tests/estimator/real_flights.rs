@@ -1,5 +1,6 @@
-//! Real flights of a Crazyflie 2.1 (NanoBench, github syediu/nanobench-iros2026, arXiv 2603.09908): its gyroscope, its accelerometer
-//! and Vicon's positions in, beside the estimate of its own firmware. Skipped, saying so, where the flights are not there.
+//! Real flights of a Crazyflie 2.1 (NanoBench, github syediu/nanobench-iros2026, arXiv 2603.09908): its gyroscope, its
+//! accelerometer and Vicon's positions in, beside the estimate of its own firmware. Skipped, saying so, where the
+//! flights are not there.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -100,7 +101,8 @@ impl Flight {
         MARGIN..self.position.len() - MARGIN
     }
 
-    /// How much later the gyroscope's column is than Vicon's attitude: where its rates about body x and y are those of the attitude.
+    /// How much later the gyroscope's column is than Vicon's attitude: where its rates about body x and y are those of
+    /// the attitude.
     fn gyro_shift(&self) -> f64 {
         const SPAN: usize = 2;
         let rates = |row: usize| {
@@ -110,7 +112,8 @@ impl Flight {
         best_shift(|shift| self.rows().map(|row| (at(&self.gyro, row, shift) - rates(row)).xy().norm_squared()).sum())
     }
 
-    /// Positions and velocities by our filter: the positions of Vicon at 100 Hz in, the inertial sensors by their shift.
+    /// Positions and velocities by our filter: the positions of Vicon at 100 Hz in, the inertial sensors by their
+    /// shift.
     fn estimated(&self, config: EstimatorConfig, shift: f64) -> Vec<(Vector3<f64>, Vector3<f64>)> {
         let estimator = Estimator::new(config).unwrap();
         let q = self.attitude[MARGIN].quaternion();
@@ -170,8 +173,8 @@ impl Flight {
 }
 
 /// The estimate on board is itself 11 to 42 mm off Vicon, with a delay that slips within a flight: where it is
-/// further off than 3 cm, two of the eleven flights, no filter that believes Vicon can be nearer to it. Along each axis 3 cm hold
-/// in all of them.
+/// further off than 3 cm, two of the eleven flights, no filter that believes Vicon can be nearer to it. Along each axis
+/// 3 cm hold in all of them.
 #[test]
 fn real_flights_are_estimated_as_on_board() {
     let mut velocities = [0.0; 2];

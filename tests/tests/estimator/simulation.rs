@@ -1,11 +1,13 @@
-//! A craft in air, flown on an eight by a simple law that knows its true state, and what its sensors measure. f64, 1 kHz.
+//! A craft in air, flown on an eight by a simple law that knows its true state, and what its sensors measure. f64, 1
+//! kHz.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use quatrack::estimator::{DeviationsAtStart, EstimatorConfig, Force, Gate, Imu, Integration, noise_density};
 use quatrack::{Quaternion, State};
 
 pub(crate) const STEP_S: f64 = 0.001;
-/// Drag over mass along the body axes, 1/s: that of a Crazyflie 2.1 Brushless (identified from arXiv 2512.14450's flights).
+/// Drag over mass along the body axes, 1/s: that of a Crazyflie 2.1 Brushless (identified from arXiv 2512.14450's
+/// flights).
 pub(crate) const DRAG_PER_S: [f64; 3] = [0.447, 0.435, 0.45];
 /// Standard deviations of a sample.
 pub(crate) const GYRO_RAD_S: f64 = 0.02;

@@ -92,12 +92,12 @@ impl Twin {
     }
 }
 
-/// Roundings do not add up: the positions take them back within the filter's memory, about 0.1 s for position and velocity
-/// and some seconds for the attitude. Each prediction rounds a velocity near 2 m/s by up to 1.2e-7 and the quaternion by up to
-/// 1e-7, so that within these times N roundings make root N: of the velocity 10 (100 in 0.1 s at 1 kHz, 1e-6 m/s), of the
-/// attitude 70 (5000 in 5 s, 7e-6 rad), which the thrust turns into 10 times as much acceleration and the next positions into
-/// velocity, 7e-6 m/s. The position, rounded to 1.2e-7 m, follows the measured one. Bounds are four times that, 1e-3 of the
-/// variances and of the innovations, whose expected deviation is 1 mm.
+/// Roundings do not add up: the positions take them back within the filter's memory, about 0.1 s for position and
+/// velocity and some seconds for the attitude. Each prediction rounds a velocity near 2 m/s by up to 1.2e-7 and the
+/// quaternion by up to 1e-7, so that within these times N roundings make root N: of the velocity 10 (100 in 0.1 s at 1
+/// kHz, 1e-6 m/s), of the attitude 70 (5000 in 5 s, 7e-6 rad), which the thrust turns into 10 times as much
+/// acceleration and the next positions into velocity, 7e-6 m/s. The position, rounded to 1.2e-7 m, follows the measured
+/// one. Bounds are four times that, 1e-3 of the variances and of the innovations, whose expected deviation is 1 mm.
 #[test]
 fn the_filter_is_its_twin_in_f64() {
     for steps_per_prediction in [10_u16, 2, 1] {
