@@ -159,16 +159,21 @@ impl Table {
         Self { gain: self.gain.scaled(&scales.within(self.margin)), ..*self }
     }
 
-    /// The controller of a step, within limits.
+    /// Does something with the table's controller within limits.
     ///
     /// # Errors
     /// None: a table has its actuation.
     #[inline(always)]
-    pub fn controller(&self, limits: Limits, feed_forward: FeedForward) -> Result<Controller<'_>, StepError> {
+    pub fn with_controller<'t, R>(
+        &'t self,
+        limits: Limits,
+        feed_forward: FeedForward,
+        act: impl FnOnce(&Controller<'t>) -> R,
+    ) -> Result<R, StepError> {
         let (error_form, player_rate) = (ErrorForm::HeadingFrame, RATE);
         let settings = Settings { limits, actuation: Some(&self.actuation), feed_forward, error_form, player_rate };
-        let law = self.gain.law(RATE, &settings).map_err(|_| StepError::NoActuation)?;
-        Ok(Controller::new(law, limits).with_actuation(&self.actuation))
+        let act = |law| act(&Controller::new(law, limits).with_actuation(&self.actuation));
+        self.gain.with_law(RATE, &settings, act).map_err(|_| StepError::NoActuation)
     }
 
     /// The entries that make up the gain where it decouples as designs at hover do: thrust from height, roll from y,

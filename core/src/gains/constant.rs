@@ -73,13 +73,29 @@ impl ConstantGain {
     /// [`ControllerError::NoActuation`] where motor forces have nothing to carry them.
     #[inline]
     pub fn law<'a>(&'a self, rate: Rate, settings: &Settings<'a>) -> Result<Law<'a>, ControllerError> {
+        self.with_law(rate, settings, |law| law)
+    }
+
+    /// Does something with the law. Written out for each: which law it is is then known to the compiler, and a step of a
+    /// controller that is made anew for it costs no more than of one that is kept.
+    ///
+    /// # Errors
+    /// As [`Self::law`].
+    #[inline(always)]
+    pub fn with_law<'a, R>(
+        &'a self,
+        rate: Rate,
+        settings: &Settings<'a>,
+        act: impl FnOnce(Law<'a>) -> R,
+    ) -> Result<R, ControllerError> {
         let Settings { feed_forward, error_form, actuation, .. } = *settings;
         Ok(match self {
-            Self::Equilibrium(gain) => Law::Equilibrium(Equilibrium { gain, error_form, feed_forward }),
-            Self::FlatOutput(gain) => Law::FlatOutput(FlatOutput { gain, feed_forward }),
-            Self::Integral(gain) => Law::IntegralAction(IntegralAction::new(gain, rate, feed_forward)),
+            Self::Equilibrium(gain) => act(Law::Equilibrium(Equilibrium { gain, error_form, feed_forward })),
+            Self::FlatOutput(gain) => act(Law::FlatOutput(FlatOutput { gain, feed_forward })),
+            Self::Integral(gain) => act(Law::IntegralAction(IntegralAction::new(gain, rate, feed_forward))),
             Self::ActuatorAware(gain) => {
-                Law::ActuatorAware(ActuatorAware::new(gain, actuation.ok_or(ControllerError::NoActuation)?))
+                let actuation = actuation.ok_or(ControllerError::NoActuation)?;
+                act(Law::ActuatorAware(ActuatorAware::new(gain, actuation)))
             }
         })
     }

@@ -1,7 +1,7 @@
 //! One step of one table's controller: sample or reference, and state in; the output, into the outcome.
 
 use quatrack::{
-    FifthOrderSample, Handover, Heading, Measured, Memory, MotorReference, Output as LawOutput, Reference,
+    Controller, FifthOrderSample, Handover, Heading, Measured, Memory, MotorReference, Output as LawOutput, Reference,
     ReferenceError, RigidState, StepError, Target,
 };
 
@@ -76,15 +76,14 @@ impl LawStep<'_> {
     /// in one step is then that of one.
     #[inline(never)]
     fn output(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<LawOutput, Unflown> {
-        let controller = table.controller(self.settings.limits, self.settings.feed_forward)?;
         if table.gain.gives_forces() {
             let reference = &MotorReference::from_flat_at(self.sample, self.heading, table.actuation.airframe())?;
             outcome.target = reference.state().attitude;
-            Ok(controller.step(memory, self.measured(), Target::with_forces(reference))?)
+            self.controlled(table, memory, Target::with_forces(reference))
         } else {
             let reference = &Reference::from_flat_at(&self.sample.flat, self.heading)?;
             outcome.target = reference.state().attitude;
-            Ok(controller.step(memory, self.measured(), Target::new(reference))?)
+            self.controlled(table, memory, Target::new(reference))
         }
     }
 
@@ -94,8 +93,7 @@ impl LawStep<'_> {
         let Ok(reference) = &MotorReference::from_flat_at(self.sample, self.heading, table.actuation.airframe()) else {
             return Err(Unflown::Motion);
         };
-        let controller = table.controller(self.settings.limits, self.settings.feed_forward)?;
-        let output = controller.step(memory, self.measured(), Target::with_forces(reference))?;
+        let output = self.controlled(table, memory, Target::with_forces(reference))?;
         outcome.target = reference.state().attitude;
         self.put(&output, outcome)
     }
@@ -115,10 +113,17 @@ impl LawStep<'_> {
         memory: &mut Memory,
         outcome: &mut Outcome,
     ) -> Result<(), Unflown> {
-        let controller = table.controller(self.settings.limits, self.settings.feed_forward)?;
-        let output = controller.step(memory, self.measured(), Target::new(reference))?;
+        let output = self.controlled(table, memory, Target::new(reference))?;
         outcome.target = reference.state().attitude;
         self.put(&output, outcome)
+    }
+
+    /// A step of a table's controller.
+    #[inline(always)]
+    fn controlled(&self, table: &Table, memory: &mut Memory, target: Target<'_>) -> Result<LawOutput, Unflown> {
+        let Settings { limits, feed_forward, .. } = *self.settings;
+        let step = |controller: &Controller<'_>| controller.step(memory, self.measured(), target);
+        Ok(table.with_controller(limits, feed_forward, step)??)
     }
 
     #[inline(always)]

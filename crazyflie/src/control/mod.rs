@@ -407,9 +407,10 @@ impl Controller {
                 self.memory.assume_hovering(self.craft.airframe());
             }
             let Settings { limits, feed_forward, .. } = self.settings;
-            let laws = (self.before.controller(limits, feed_forward), table.controller(limits, feed_forward));
-            if let (Ok(old), Ok(new)) = laws {
-                self.handover = Handover::begin(FADE_STEPS, old.law(), new.law(), &mut self.memory);
+            let old = self.before.with_controller(limits, feed_forward, |controller| *controller.law());
+            let new = table.with_controller(limits, feed_forward, |controller| *controller.law());
+            if let (Ok(old), Ok(new)) = (old, new) {
+                self.handover = Handover::begin(FADE_STEPS, &old, &new, &mut self.memory);
             }
             self.is_handing_over = !self.handover.is_over();
         }
