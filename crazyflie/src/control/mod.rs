@@ -406,9 +406,8 @@ impl Controller {
                 // The firmware's mixer has carried its commands to the motors: what they have by now nobody has kept.
                 self.memory.assume_hovering(self.craft.airframe());
             }
-            let Settings { limits, feed_forward, .. } = self.settings;
-            let old = self.before.with_controller(limits, feed_forward, |controller| *controller.law());
-            let new = table.with_controller(limits, feed_forward, |controller| *controller.law());
+            let feed_forward = self.settings.feed_forward;
+            let (old, new) = (self.before.law(feed_forward), table.law(feed_forward));
             if let (Ok(old), Ok(new)) = (old, new) {
                 self.handover = Handover::begin(FADE_STEPS, &old, &new, &mut self.memory);
             }
