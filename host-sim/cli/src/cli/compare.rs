@@ -43,13 +43,21 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let trajectory = scenario.course.trajectory().map(fly::trajectory).transpose()?;
     let flown = scenario.flown(trajectory);
     let laws = if args.laws.is_empty() { Law::ALL.to_vec() } else { args.laws.clone() };
-    let mut flights = Vec::with_capacity(laws.len());
+    let (mut flights, mut grounded) = (Vec::with_capacity(laws.len()), String::new());
     for law in laws {
-        let mut flying = law.start(&scenario.vehicle, &scenario.told).map_err(Failure::input)?;
+        let mut flying = match law.start(&scenario.vehicle, &scenario.told) {
+            Ok(flying) => flying,
+            // Nobody has asked for this one.
+            Err(error) if args.laws.is_empty() => {
+                grounded.push_str(&format!("\nnot flown: {error}"));
+                continue;
+            }
+            Err(error) => return Err(Failure::input(error)),
+        };
         flights.push((law.name().to_owned(), scenario.fly(flying.as_mut(), &flown).map_err(Failure::input)?));
     }
     let table = Table::of(&flights);
-    output::print(&format!("{scenario}\n\n{table}"))?;
+    output::print(&format!("{scenario}\n\n{table}{grounded}\n"))?;
     if let Some(path) = &args.json {
         output::write_json(path, &table)?;
         output::print(&format!("wrote {}\n", path.display()))?;

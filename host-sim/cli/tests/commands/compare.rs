@@ -19,7 +19,8 @@ fn scenario(name: &str, text: &str) -> (PathBuf, String) {
 
 #[test]
 fn laws_fly_and_their_table_and_picture_are_written() {
-    let text = "vehicle = \"crazyflie-2.1-brushless\"\ncourse = \"step\"\nstep_m = 0.2\nduration_s = 1.0\nair = \"vehicle\"\n";
+    let text =
+        "vehicle = \"crazyflie-2.1-brushless\"\ncourse = \"step\"\nstep_m = 0.2\nduration_s = 1.0\nair = \"vehicle\"\n";
     let (folder, path) = scenario("compare-flies", text);
     let [json, picture] = ["table.json", "step.svg"].map(|name| folder.join(name).to_str().unwrap().to_owned());
     let flown = compare(&["--scenario", &path, "--laws", "lee,quatrack", "--json", &json, "--picture", &picture]);

@@ -41,10 +41,13 @@ impl CoreLaw {
         Self::new(vehicle, told, told.lag_s.unwrap_or(vehicle.motors().lag_s), gain)
     }
 
-    /// The actuator-aware law by its standard weights: designed for the lag that is told, or for that of the default table.
+    /// The actuator-aware law by its standard weights, as the Crazyflie flies it: designed for the lag that is told, or for
+    /// that of the default table behind motors of the longest published lag.
     pub(super) fn actuator_aware(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, FlightError> {
-        let lag_s = told.lag_s.unwrap_or_else(|| default_lag_s(vehicle));
-        let design = actuator_aware(vehicle, lag_s, &ActuatorAwareWeights::STANDARD, PERIOD_S)?;
+        let [_, longest_s] = vehicle.motors().published_lag_s;
+        let lag_s = told.lag_s.unwrap_or(longest_s);
+        let design_lag_s = told.lag_s.unwrap_or_else(|| default_lag_s(vehicle));
+        let design = actuator_aware(vehicle, design_lag_s, &ActuatorAwareWeights::STANDARD, PERIOD_S)?;
         let rows = std::array::from_fn(|i| std::array::from_fn(|j| design.gain[(i, j)] as f32));
         Self::new(vehicle, told, lag_s, Gain::ActuatorAware(Box::new(ActuatorAwareGain::new(rows)?)))
     }

@@ -80,6 +80,13 @@ impl Bench<'_> {
             }
             plant.advance(&commands_n, STEP_S);
         }
+        // Where it was lost counts, also before anything is measured.
+        if let Some(Lost { time_s, .. }) = flight.lost {
+            let (state, target_m) = (*plant.state(), self.flown.course.at(time_s).position[0]);
+            if state.is_finite() {
+                flight.samples.push(RigidSample { time_s, state, commands_n, target_m });
+            }
+        }
         flight
     }
 
