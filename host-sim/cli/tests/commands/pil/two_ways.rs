@@ -10,8 +10,8 @@ use quatrack_cli::pil::client::Client;
 use quatrack_plan::plan::paper::Course;
 use quatrack_plan::plan::stored;
 
-use crate::emulated::connected;
-use crate::support::has_emulator;
+use super::emulated::connected;
+use super::support::has_emulator;
 
 /// Ticks a second of the board, and between two states.
 const TICK_HZ: u32 = 1000;
