@@ -27,17 +27,17 @@
 mod accepted;
 mod certificate;
 mod error;
+mod gain_table;
 mod gains;
 mod name;
-mod table;
 mod wire;
 
 pub use accepted::{AcceptedTable, margin_behind};
 pub use certificate::{Certificate, Figure, Hash, Margins, Vehicle};
 pub use error::{AcceptError, KnotFault, LoadError, TableError};
+pub use gain_table::GainTable;
 pub(crate) use gains::Content;
 pub use name::{Name, NameError};
-pub use table::GainTable;
 pub use wire::{FORMAT_VERSION, MAGIC};
 
 use core::fmt;
