@@ -1,21 +1,22 @@
 //! The quatrack controller on an STM32F405: states and orders in over a link, commands out at a fixed rate.
 //!
 //! ```text
-//! bin                         one image each: main (the line), pipes (the emulator's), measure, control_path
-//!   board                     clocks, pins, timers of one board
-//!     transport               bytes over a USART, or over files of the emulating machine (feature `semihosting`)
-//!     counter, stack, record  the free-running timer; the painted stack; what outlives a restart
-//!     log                     defmt's frames, in a ring that a debug probe reads
-//!     panic                   the handler that cannot link
-//!   tick                      what the timer's interrupts run
-//!   session                   frames in, orders to the flight, frames out
-//!     flight                  states, orders, ticks in; gated commands and motor forces out
-//!       laws                  which law is flown: built in, or of a loaded table
-//!       playback, stored      what is followed; the trajectories in flash
-//!         vehicle             the craft: its tables' name, its way to the motors
-//!           rates, timing     how often the loop ticks and steps; overruns, jitter, the longest step
-//!     craft                   a flight's gyroscope and motors
-//!       drivers               BMI088, brushed motors, battery, against the traits of `embedded-hal`
+//! bin                           one image each: main (the line), pipes (the emulator's), measure, control_path
+//!   tick                        what the timer's interrupts run
+//!     board                     clocks, pins, timers of one board
+//!       transport               bytes over a USART, or over files of the emulating machine
+//!         semihosting           files and the exit of that machine (feature `semihosting`)
+//!       counter, stack, record  the free-running timer; the painted stack; what outlives a restart
+//!       log                     defmt's frames, in a ring that a debug probe reads
+//!       panic                   the handler that cannot link
+//!     session                   frames in, orders to the flight, frames out
+//!       flight                  states, orders, ticks in; gated commands and motor forces out
+//!         laws                  which law is flown: built in, or of a loaded table
+//!         playback, stored      what is followed; the trajectories in flash
+//!           vehicle             the craft: its tables' name, its way to the motors
+//!             rates, timing     how often the loop ticks and steps; overruns, jitter, the longest step
+//!       craft                   a flight's gyroscope and motors
+//!         drivers               BMI088, brushed motors, battery, against the traits of `embedded-hal`
 //! ```
 //!
 //! From `session` and `craft` down nothing knows the hardware, and all of it is tested on the host.
