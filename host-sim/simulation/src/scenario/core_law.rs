@@ -12,7 +12,7 @@ use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_awa
 use quatrack_design::vehicle::Vehicle;
 
 use super::laws::ToldFigures;
-use crate::control_law::{ControlLaw, Estimate, Input};
+use crate::control_law::{ControlLaw, Estimate, Input, Setpoint};
 use crate::flight::motor_laws::{FlightError, default_lag_s};
 use crate::flight::motor_loop::{self, PERIOD_S, RATE};
 use crate::vehicles;
@@ -33,6 +33,34 @@ pub(super) struct CoreLaw {
     actuation: Actuation,
     limits: Limits,
     memory: Memory,
+    beyond_jerk: BeyondJerk,
+}
+
+/// Snap and crackle of setpoints that end with the jerk, by differences.
+#[derive(Clone, Copy, Default)]
+struct BeyondJerk {
+    newest: Option<Setpoint>,
+    snap_m_s4: Option<Vector3<f64>>,
+    crackle_m_s5: Vector3<f64>,
+}
+
+impl BeyondJerk {
+    /// The setpoint with what its jerk says of its higher derivatives; unchanged where it has them.
+    fn filled(&mut self, setpoint: &Setpoint) -> Setpoint {
+        if setpoint.snap_m_s4 != Vector3::zeros() || setpoint.crackle_m_s5 != Vector3::zeros() {
+            return *setpoint;
+        }
+        if let Some(before) = self.newest.filter(|before| before.sent_s < setpoint.sent_s) {
+            let period_s = setpoint.sent_s - before.sent_s;
+            let snap_m_s4 = (setpoint.jerk_m_s3 - before.jerk_m_s3) / period_s;
+            self.crackle_m_s5 = self.snap_m_s4.map_or_else(Vector3::zeros, |snap| (snap_m_s4 - snap) / period_s);
+            self.snap_m_s4 = Some(snap_m_s4);
+        }
+        self.newest = Some(*setpoint);
+        // A difference is the derivative in the middle between two setpoints, 10 ms apart.
+        let snap_m_s4 = self.snap_m_s4.unwrap_or_default() + self.crackle_m_s5 * 0.005;
+        Setpoint { snap_m_s4, crackle_m_s5: self.crackle_m_s5, ..*setpoint }
+    }
 }
 
 impl CoreLaw {
@@ -60,6 +88,7 @@ impl CoreLaw {
             actuation: Actuation::new(&airframe, RATE)?,
             limits: vehicles::limits(vehicle)?,
             memory: Memory::hovering(&airframe),
+            beyond_jerk: BeyondJerk::default(),
         })
     }
 }
@@ -71,6 +100,7 @@ impl ControlLaw for CoreLaw {
 
     fn step(&mut self, input: &Input) -> Result<Vector4<f64>, String> {
         let feed_forward = FeedForward::With;
+        let point = self.beyond_jerk.filled(&input.setpoint).carried_to(input.time_s);
         let controller = match &self.gain {
             Gain::ActuatorAware(gain) => Controller::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE),
             Gain::Equilibrium(gain) => {
@@ -78,8 +108,8 @@ impl ControlLaw for CoreLaw {
             }
             Gain::FlatOutput(gain) => Controller::new(FlatOutput { gain, feed_forward }, self.limits),
         };
-        let point = motor_loop::sample(&input.setpoint.carried_to(input.time_s));
-        let reference = MotorReference::from_flat(&point, self.actuation.airframe()).map_err(|e| e.to_string())?;
+        let reference = MotorReference::from_flat(&motor_loop::sample(&point), self.actuation.airframe())
+            .map_err(|e| e.to_string())?;
         let state = state(&input.estimate);
         let step = controller
             .with_actuation(&self.actuation)
