@@ -38,7 +38,7 @@
 //!             flatness        the flat map and its inverse
 //!               state, rigid_state, command, gain, motor_lag, clock
 //!                 quaternion, error
-//!                   math      square root, sine and cosine; checksum
+//!                   math, checksum  square root, sine and cosine; CRC-32C
 //! ```
 //!
 //! Features, none of them default: `link` for the serial link's frames; `serde` and `defmt` for plain data to be stored or logged.

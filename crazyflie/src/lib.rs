@@ -6,6 +6,7 @@
 //! ```text
 //! ffi            the symbols that the firmware and our app call; what they share
 //!   service      parameters, logs, tables that are sent
+//!     upload     the packets of a table that is sent
 //!     control    one step; changes of the table
 //!       guide    demands -> a motion with heading
 //!         stream, turning  setpoints at 100 Hz -> position to crackle, heading to its jerk, at every step
@@ -14,6 +15,7 @@
 //!         abi, demand, output
 //!           craft  what the firmware was built for -> which craft
 //!             builtin  the tables in the image
+//!               shared, try_cell, cycles  what two tasks share, and without waiting; the cycle counter
 //! ```
 //!
 //! On the target it is linked into one object whose only symbols are those of [`ffi`]; on a desk the same code flies in
