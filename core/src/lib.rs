@@ -49,6 +49,7 @@ extern crate std;
 
 pub mod airframe;
 pub mod body_rate;
+pub mod cascade;
 pub mod checksum;
 pub mod clock;
 pub mod command;
@@ -80,6 +81,7 @@ pub use nalgebra;
 
 pub use airframe::{Airframe, AirframeFigures};
 pub use body_rate::BodyRateLoop;
+pub use cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};
 pub use controller::{Controller, Memory};

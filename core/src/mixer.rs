@@ -80,6 +80,19 @@ impl MotorLimited {
         Self { bits: bits & Self::ALL }
     }
 
+    /// The same with thrust, attitude or yaw given up.
+    pub(crate) const fn with_thrust(self) -> Self {
+        Self { bits: self.bits | Self::THRUST }
+    }
+
+    pub(crate) const fn with_attitude(self) -> Self {
+        Self { bits: self.bits | Self::ATTITUDE }
+    }
+
+    pub(crate) const fn with_yaw(self) -> Self {
+        Self { bits: self.bits | Self::YAW }
+    }
+
     /// The same with what was cut of a command.
     #[inline]
     pub(crate) const fn with_command(self, limited: Limited) -> Self {

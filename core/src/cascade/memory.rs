@@ -1,0 +1,86 @@
+//! What the cascade remembers from step to step.
+
+use nalgebra::Vector3;
+
+use super::air_learner::SeenAir;
+use super::estimate::{Carried, HeldVelocity, Now};
+use super::force_observer::Disturbance;
+use super::ground::Ground;
+use super::torque_observer::Imbalance;
+use crate::mixer::Parts;
+use crate::motor_lag::MotorForces;
+use crate::quaternion::Quaternion;
+
+/// The memory of a [`super::Cascade`], which makes one: at rest or hovering.
+#[derive(Clone, Copy, Debug)]
+pub struct CascadeMemory {
+    pub(super) carried: Carried,
+    pub(super) held: HeldVelocity,
+    /// Forces that the motors should have, in parts, N.
+    pub(super) forces: Parts,
+    pub(super) disturbance: Disturbance,
+    pub(super) imbalance: Imbalance,
+    pub(super) air: SeenAir,
+    pub(super) ground: Ground,
+    pub(super) seen: Seen,
+}
+
+/// What a step leaves to the observers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub(super) now: Now,
+    pub(super) axis: Vector3<f32>,
+    /// Mean of the motors' forces over the step that follows, in parts, N.
+    pub(super) mean_forces: Parts,
+    /// What of them answers the air: roll and pitch, N.
+    pub(super) answer: [f32; 2],
+    /// The reference's velocity in its own body frame, x and y, m/s.
+    pub(super) body_velocity: [f32; 2],
+    /// Whether the craft was where it was sent, with motors within their range.
+    pub(super) undisturbed: bool,
+}
+
+impl CascadeMemory {
+    pub(super) const fn new(forces: Parts, air: SeenAir, stands: bool) -> Self {
+        let zero = Vector3::new(0.0, 0.0, 0.0);
+        let now = Now { position: zero, velocity: zero, attitude: Quaternion::IDENTITY, body_rates: zero };
+        Self {
+            carried: Carried::NONE,
+            held: HeldVelocity::NONE,
+            forces,
+            disturbance: Disturbance::NONE,
+            imbalance: Imbalance::NONE,
+            air,
+            ground: if stands { Ground::STANDING } else { Ground::FLYING },
+            seen: Seen {
+                now,
+                axis: Vector3::new(0.0, 0.0, 1.0),
+                mean_forces: forces,
+                answer: [0.0; 2],
+                body_velocity: [0.0; 2],
+                undisturbed: false,
+            },
+        }
+    }
+
+    /// Forces that the motors should have, N.
+    pub fn forces_n(&self) -> MotorForces {
+        self.forces.forces()
+    }
+
+    /// Whether the craft is taken to stand, or to be held.
+    pub fn stands(&self) -> bool {
+        self.ground.is_standing()
+    }
+
+    /// The disturbance that is seen: x and y in the world frame and along the thrust, m/s^2.
+    pub fn disturbance_m_s2(&self) -> Vector3<f32> {
+        let [x, y] = self.disturbance.across;
+        Vector3::new(x, y, self.disturbance.along)
+    }
+
+    /// The imbalance that is seen, as roll, pitch and yaw parts of the motors' forces, N.
+    pub fn imbalance_n(&self) -> [f32; 3] {
+        self.imbalance.parts
+    }
+}

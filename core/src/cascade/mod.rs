@@ -1,0 +1,304 @@
+//! The cascade: the equilibrium LQR of a craft whose motors lag, factored so that it has limits, told of the air, with observers in
+//! place of an integral. Estimate, gyroscope and a reference to its fifth derivative in; four motor forces out.
+//!
+//! In the order in which data flows, with `n = R z` and forces in parts of thrust, roll, pitch and yaw:
+//!
+//! ```text
+//! estimate        p, v, q carried on to the step; v held to p
+//! reference       a' = a + d v - d^, ...; flat map -> q_r, w_r, f_r, u_r; answer to the air's moment
+//! outer           A = -k_v sat[(v - v_r) + sat(k_p / k_v (p - p_r))];  h = a' + A + g z, within its limits
+//! attitude        e = vector part of q_d^-1 q, q_d along h at the reference's heading
+//! inner           u = u_r - (k_th 2 e + k_w (w - w_r) + k_f (f^ + t^ - f_r)) - t^;   t = m / 4 (h . n - d^_z)
+//! allocation      within the motors' range, attitude first;  f^ by the motors' lag
+//! - - - - - - - - after the motors have their forces - - - - - - - -
+//! force_observer  d^ across and its slope, d^_z along the thrust
+//! torque_observer t^ about each axis
+//! air_learner     d, c_x, c_y; the wind's moment
+//! ground          whether the craft stands, and the observers with it
+//! ```
+//!
+//! [`Cascade::command`] is the upper half, [`Cascade::observe`] the lower one: a caller with little time at the step may call it
+//! before the next one. Where nothing is limited and the observers see nothing, the command is the LQR's.
+
+mod air;
+mod air_learner;
+mod allocation;
+mod attitude;
+mod bounds;
+mod estimate;
+mod force_observer;
+mod gains;
+mod ground;
+mod inner;
+mod jerk_fit;
+mod limits;
+mod memory;
+mod outer;
+mod reference;
+mod torque_observer;
+
+use nalgebra::Vector3;
+
+pub use self::air::{Air, AirError};
+use self::air_learner::{AirLearner, Felt};
+use self::allocation::Allocation;
+use self::force_observer::{ForceObserver, Pushed};
+pub use self::gains::{CascadeGainError, CascadeGains, HeightGains, TiltGains, YawGains};
+use self::inner::{Errors, InnerLoop};
+pub use self::jerk_fit::JerkFit;
+pub use self::limits::{CascadeLimits, CascadeLimitsError};
+pub use self::memory::CascadeMemory;
+use self::memory::Seen;
+use self::outer::OuterLoop;
+use self::reference::{InAir, Surroundings};
+use self::torque_observer::TorqueObserver;
+use crate::airframe::Airframe;
+use crate::clock::Rate;
+use crate::error::{Field, StateError, StepError};
+use crate::law::difference;
+use crate::mixer::{MotorLimited, Parts};
+use crate::motor_lag::{MotorForces, MotorLag, MotorLagError};
+use crate::motor_reference::FifthOrderSample;
+use crate::quaternion::Heading;
+use crate::rigid_state::RigidState;
+
+/// The cascade for a craft at a control rate. What it remembers is apart, in [`CascadeMemory`].
+#[derive(Clone, Copy, Debug)]
+pub struct Cascade {
+    airframe: Airframe,
+    lag: MotorLag,
+    drag_along_share: f32,
+    outer: OuterLoop,
+    inner: InnerLoop,
+    allocation: Allocation,
+    force_observer: ForceObserver,
+    torque_observer: TorqueObserver,
+    air_learner: AirLearner,
+}
+
+/// What a step is given.
+#[derive(Clone, Copy, Debug)]
+pub struct CascadeInput<'a> {
+    /// The estimate, and the gyroscope's body rates.
+    pub state: &'a RigidState,
+    /// The reference; its own angle of heading is not looked at.
+    pub sample: &'a FifthOrderSample,
+    /// The reference's heading.
+    pub heading: Heading,
+}
+
+impl Cascade {
+    /// For gains that were designed for the airframe's motor lag and the rate.
+    ///
+    /// # Errors
+    /// [`MotorLagError`] for a lag shorter than two control periods.
+    pub const fn new(
+        gains: &CascadeGains,
+        airframe: &Airframe,
+        rate: Rate,
+        limits: &CascadeLimits,
+        air: &Air,
+    ) -> Result<Self, MotorLagError> {
+        let lag = match MotorLag::new(airframe.figures().motor_lag_s, rate) {
+            Ok(lag) => lag,
+            Err(error) => return Err(error),
+        };
+        let period_s = lag.period_s();
+        Ok(Self {
+            airframe: airframe.commanded_at(rate),
+            lag,
+            drag_along_share: air.drag_along_share,
+            outer: OuterLoop::new(gains, airframe, limits),
+            inner: InnerLoop::new(gains),
+            allocation: Allocation::of(airframe),
+            force_observer: ForceObserver::new(period_s),
+            torque_observer: TorqueObserver::new(airframe, period_s),
+            air_learner: AirLearner::new(air, airframe, period_s),
+        })
+    }
+
+    /// The same, stiffer or softer in position by a factor: its square times the position gains, itself times the velocity gains.
+    pub const fn with_stiffness(self, factor: f32) -> Self {
+        Self { outer: self.outer.scaled(factor), ..self }
+    }
+
+    /// The craft, with the lead of its commands.
+    pub const fn airframe(&self) -> &Airframe {
+        &self.airframe
+    }
+
+    /// What a craft that stands with its motors off remembers.
+    pub const fn at_rest(&self) -> CascadeMemory {
+        CascadeMemory::new(Parts { thrust: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0 }, self.air_learner.beginning(), true)
+    }
+
+    /// What a craft that hovers remembers: after a selection in flight.
+    pub const fn hovering(&self) -> CascadeMemory {
+        let thrust = self.airframe.hover_force_n();
+        CascadeMemory::new(Parts { thrust, roll: 0.0, pitch: 0.0, yaw: 0.0 }, self.air_learner.beginning(), false)
+    }
+
+    /// Drag (1/s) and moment (N s) that are flown with, told or learned.
+    pub const fn air(&self, memory: &CascadeMemory) -> (f32, [f32; 2]) {
+        let now = &memory.air.now;
+        (now.drag, self.air_learner.moment_n_s(now))
+    }
+
+    /// One step with all that follows it, with the specific force in the body frame (m/s^2) where an accelerometer gives one.
+    ///
+    /// # Errors
+    /// Those of [`Self::command`].
+    pub fn step(
+        &self,
+        memory: &mut CascadeMemory,
+        input: &CascadeInput<'_>,
+        accelerometer: Option<&Vector3<f32>>,
+    ) -> Result<(MotorForces, MotorLimited), StepError> {
+        let stepped = self.command(memory, input)?;
+        self.observe(memory, accelerometer);
+        Ok(stepped)
+    }
+
+    /// The commanded forces for this step, N, finite and within the motors' range, and what was given up to stay there.
+    ///
+    /// # Errors
+    /// [`StepError`] where the estimate is not to be flown on or the reference has no attitude. There are then no forces and the
+    /// memory is as it was: the caller stops or levels, and never holds the last ones.
+    pub fn command(
+        &self,
+        memory: &mut CascadeMemory,
+        input: &CascadeInput<'_>,
+    ) -> Result<(MotorForces, MotorLimited), StepError> {
+        match self.stepped(memory, input) {
+            Some((after, forces, limited)) => {
+                *memory = after;
+                Ok((forces, limited))
+            }
+            None => Err(refusal(input)),
+        }
+    }
+
+    #[inline(always)]
+    fn stepped(
+        &self,
+        memory: &CascadeMemory,
+        input: &CascadeInput<'_>,
+    ) -> Option<(CascadeMemory, MotorForces, MotorLimited)> {
+        let (mut after, period_s) = (*memory, self.lag.period_s());
+        let mut now = after.carried.at_step(input.state, period_s)?;
+        after.held.step(&mut now, period_s);
+
+        let (standing, disturbance, air) = (memory.ground.is_standing(), &memory.disturbance, memory.air.now);
+        let around = Surroundings {
+            air: if standing { air.without_moment() } else { air },
+            disturbance: disturbance.across,
+            slope: disturbance.slope,
+            wind: memory.air.wind,
+        };
+        let reference = InAir::of(input.sample, input.heading, &around, now.attitude, &self.airframe).ok()?;
+
+        let flat = &input.sample.flat;
+        let position = difference(&now.position, &flat.position_m);
+        let velocity = difference(&now.velocity, &flat.velocity_m_s);
+        let correction = self.outer.correction(&position, &velocity, standing);
+        let wanted = self.outer.limited(&reference.acceleration, &correction);
+
+        let axis = now.attitude.thrust_axis();
+        let [p, q, r] = reference.body_rates;
+        let w = &now.body_rates;
+        let errors = Errors {
+            half_rotation: attitude::half_error(&wanted, reference.heading, now.attitude),
+            body_rates: [w.x - p, w.y - q, w.z - r],
+            imbalance: memory.imbalance.parts,
+        };
+        let along = axis.x * wanted.x + axis.y * wanted.y + axis.z * wanted.z;
+        let drag_apart = air.drag * (self.drag_along_share - 1.0);
+        let v = &now.velocity;
+        let moved = drag_apart * (axis.x * v.x + axis.y * v.y + axis.z * v.z);
+        let thrust = self.airframe.mixing.quarter_mass_kg * (along - disturbance.along + moved);
+        let asked = self.inner.commands(thrust, [&reference.forces, &reference.commands], &memory.forces, &errors);
+        let (commands, limited) = self.allocation.allocate(asked)?;
+
+        after.forces = self.next(&memory.forces, &commands);
+        let far = position.x * position.x + position.y * position.y + position.z * position.z > FAR_M * FAR_M;
+        after.seen = Seen {
+            now,
+            axis,
+            mean_forces: middle(&memory.forces, &after.forces),
+            answer: reference.answer,
+            body_velocity: reference.body_velocity,
+            undisturbed: !(far || limited.any()),
+        };
+        let forces = commands.forces().map(|force| self.allocation.cut(force));
+        Some((after, forces, limited))
+    }
+
+    /// What follows a step: the observers, the air, the ground.
+    pub fn observe(&self, memory: &mut CascadeMemory, accelerometer: Option<&Vector3<f32>>) {
+        let CascadeMemory { seen, ground, .. } = &*memory;
+        let (seen, stood, period_s) = (*seen, ground.is_standing(), self.lag.period_s());
+        let push = memory.disturbance.along;
+        memory.ground.step(&seen.now, memory.disturbance.is_on_bound(), push, period_s);
+        if memory.ground.is_standing() || stood {
+            return self.stand(memory, &seen);
+        }
+        let thrust = seen.mean_forces.thrust / self.airframe.mixing.quarter_mass_kg;
+        let drag = memory.air.now.drag;
+        let pushed = Pushed { velocity: seen.now.velocity, axis: seen.axis, thrust, drag };
+        self.force_observer.step(&mut memory.disturbance, &pushed);
+        let rates = &seen.now.body_rates;
+        self.torque_observer.step(&mut memory.imbalance, rates, &seen.mean_forces, seen.answer);
+        let felt = Felt {
+            accelerometer,
+            body_velocity: seen.body_velocity,
+            body_rates: rates,
+            forces: &seen.mean_forces,
+            undisturbed: seen.undisturbed,
+        };
+        self.air_learner.step(&mut memory.air, &felt);
+    }
+
+    /// Observers that see nothing.
+    #[cold]
+    #[inline(never)]
+    fn stand(&self, memory: &mut CascadeMemory, seen: &Seen) {
+        memory.disturbance.rest(&seen.now.velocity);
+        memory.imbalance.rest(&seen.now.body_rates);
+        self.air_learner.rest(&mut memory.air);
+    }
+
+    /// The motors' forces a period later.
+    #[inline(always)]
+    fn next(&self, forces: &Parts, commands: &Parts) -> Parts {
+        let left = self.lag.decay();
+        let next = |f: f32, u: f32| u + (f - u) * left;
+        Parts {
+            thrust: next(forces.thrust, commands.thrust),
+            roll: next(forces.roll, commands.roll),
+            pitch: next(forces.pitch, commands.pitch),
+            yaw: next(forces.yaw, commands.yaw),
+        }
+    }
+}
+
+/// Distance from the reference beyond which nothing is learned, m.
+const FAR_M: f32 = 0.4;
+
+#[inline(always)]
+fn middle(a: &Parts, b: &Parts) -> Parts {
+    Parts {
+        thrust: 0.5 * (a.thrust + b.thrust),
+        roll: 0.5 * (a.roll + b.roll),
+        pitch: 0.5 * (a.pitch + b.pitch),
+        yaw: 0.5 * (a.yaw + b.yaw),
+    }
+}
+
+/// Why there are no forces.
+#[cold]
+#[inline(never)]
+fn refusal(input: &CascadeInput<'_>) -> StepError {
+    let of_rates = |value: &f32| StateError::NonFinite { field: Field::BodyRates, value: *value };
+    let rates = || input.state.body_rates_rad_s.iter().find(|rate| !rate.is_finite()).map(of_rates);
+    input.state.state.fault().or_else(rates).map_or(StepError::Singular, StepError::State)
+}

@@ -1,0 +1,245 @@
+//! A flight of the cascade on a plant: setpoints at 100 Hz to the jerk, estimates with noise, figures.
+
+use nalgebra::Vector3;
+use quatrack::cascade::{Cascade, CascadeInput, CascadeMemory, JerkFit};
+use quatrack::{FifthOrderSample, FlatSample, Heading, Quaternion, RigidState, State};
+
+use crate::course::Course;
+use crate::noise::Random;
+use crate::plant::{Craft, GRAVITY, Plant, STEP_S};
+
+/// Where estimates come from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Estimates {
+    /// Of each step: the truth with noise of position, velocity, body rates and specific force.
+    Noisy([f64; 4]),
+}
+
+pub const NOISE: Estimates = Estimates::Noisy([1e-3, 1e-2, 0.02, 0.1]);
+pub const EXACT: Estimates = Estimates::Noisy([0.0; 4]);
+
+/// What happens around a flight.
+#[derive(Clone)]
+pub struct Flight<'a> {
+    pub cascade: Cascade,
+    pub craft: Craft,
+    pub course: Course,
+    pub estimates: Estimates,
+    pub seed: u64,
+    /// From when on and how long errors are summed, s.
+    pub from_s: f64,
+    pub for_s: f64,
+    pub wind: &'a dyn Fn(f64) -> Vector3<f64>,
+    pub push: &'a dyn Fn(f64) -> Vector3<f64>,
+    pub setpoint_s: &'a dyn Fn(u32) -> f64,
+    pub start: Start,
+    pub accelerometer: bool,
+    pub accelerometer_bias: Vector3<f64>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+pub enum Start {
+    Hovering,
+    /// At some rotation (axis times angle), in hover's place.
+    Tilted(Vector3<f64>),
+    Ground,
+}
+
+#[derive(Clone, Debug, Default)]
+pub struct Figures {
+    pub iae: f64,
+    pub largest: f64,
+    pub tilt_deg: f64,
+    pub speed: f64,
+    pub lowest: f64,
+    /// Farthest along +x relative to the goal at the end.
+    pub beyond: f64,
+    pub activity: f64,
+    pub lost: bool,
+    pub final_error: f64,
+    pub drag: f64,
+    pub moment: [f64; 2],
+    pub limited: u32,
+    pub across: f64,
+}
+
+pub fn still(_: f64) -> Vector3<f64> {
+    Vector3::zeros()
+}
+
+impl<'a> Flight<'a> {
+    pub fn of(cascade: Cascade, craft: Craft, course: Course) -> Self {
+        let (from_s, for_s) = match course {
+            Course::Hover => (2.0, 10.0),
+            Course::Step { at_s, .. } => (at_s, 5.0),
+            Course::Eight { .. } => (5.0, 12.0),
+            Course::W => (2.0, 12.0),
+            Course::TakeOff { at_s, .. } => (at_s, 6.0),
+        };
+        Self {
+            cascade,
+            craft,
+            course,
+            estimates: NOISE,
+            seed: 1,
+            from_s,
+            for_s,
+            wind: &still,
+            push: &still,
+            setpoint_s: &|_| 0.01,
+            start: Start::Hovering,
+            accelerometer: true,
+            accelerometer_bias: Vector3::zeros(),
+        }
+    }
+
+    pub fn fly(&self) -> Figures {
+        self.fly_with(&mut |_, _, _| {})
+    }
+
+    pub fn fly_with(&self, look: &mut dyn FnMut(f64, &Plant, &CascadeMemory)) -> Figures {
+        let mut random = Random::new(self.seed);
+        let home = self.course.at(0.0).0[0];
+        let mut plant = Plant::at(self.craft, home, self.start != Start::Ground);
+        if let Start::Tilted(rotation) = self.start {
+            plant.q = nalgebra::UnitQuaternion::from_scaled_axis(rotation);
+        }
+        let mut memory = if self.start == Start::Ground { self.cascade.at_rest() } else { self.cascade.hovering() };
+        let mut stream = Stream::new();
+        let (mut next_setpoint, mut setpoints, mut commands) = (0.0, 0, plant.forces.map(|f| f / self.craft.motors[0]));
+        let mut figures = Figures { lowest: f64::INFINITY, ..Figures::default() };
+        let (mut squares, mut samples) = (0.0, 0.0);
+        let goal = self.course.at(1e3).0[0];
+        let steps = ((self.from_s + self.for_s) / 0.002).round() as u32;
+        let most = f64::from(self.cascade.airframe().figures().force_max_n);
+        for step in 0..steps {
+            let t = f64::from(step) * 0.002;
+            if t >= next_setpoint - 1e-9 {
+                stream.accept(&self.course.at(t), t);
+                next_setpoint += (self.setpoint_s)(setpoints);
+                setpoints += 1;
+            }
+            let Estimates::Noisy([np, nv, nw, na]) = self.estimates;
+            let p = plant.p + random.vector(np);
+            let v = plant.v + random.vector(nv);
+            let w = plant.w + random.vector(nw);
+            let felt = plant.felt + random.vector(na) + self.accelerometer_bias;
+            let q = plant.q;
+            let state = RigidState {
+                state: State {
+                    position_m: p.cast(),
+                    attitude: Quaternion::new(q.w as f32, q.i as f32, q.j as f32, q.k as f32),
+                    velocity_m_s: v.cast(),
+                },
+                body_rates_rad_s: w.cast(),
+            };
+            let sample = stream.at(t);
+            let heading = Heading::from_angle(sample.flat.heading_rad);
+            let input = CascadeInput { state: &state, sample: &sample, heading };
+            let felt = felt.cast();
+            let Ok((forces, limited)) = self.cascade.step(&mut memory, &input, self.accelerometer.then_some(&felt)) else {
+                figures.lost = true;
+                break;
+            };
+            commands_of(&mut commands, &forces);
+            figures.limited += u32::from(limited.any());
+            let (wind, push) = ((self.wind)(t), (self.push)(t));
+            for _ in 0..(0.002 / STEP_S).round() as u32 {
+                plant.step(&commands, &wind, &push);
+            }
+            let after = t + 0.002;
+            look(after, &plant, &memory);
+            let error = (plant.p - self.course.at(after).0[0]).norm();
+            let tilt = (plant.q * Vector3::z()).z.clamp(-1.0, 1.0).acos().to_degrees();
+            if after > self.from_s {
+                figures.iae += 0.002 * error;
+                figures.largest = figures.largest.max(error);
+                figures.tilt_deg = figures.tilt_deg.max(tilt);
+                figures.speed = figures.speed.max(plant.v.norm());
+                figures.lowest = figures.lowest.min(plant.p.z);
+                let way = goal - home;
+                if way.norm() > 1e-9 {
+                    figures.beyond = figures.beyond.max((plant.p - goal).dot(&way.normalize()));
+                }
+                figures.across = figures.across.max(plant.p.x.hypot(plant.p.y));
+                let hover = self.craft.mass_kg * GRAVITY / 4.0;
+                squares += commands.iter().map(|u| ((u - hover) / most).powi(2)).sum::<f64>() / 4.0;
+                samples += 1.0;
+            }
+            figures.final_error = error;
+            if !(plant.p.norm() < 200.0) || (plant.p.z < -5.0) {
+                figures.lost = true;
+                break;
+            }
+        }
+        figures.activity = (squares / f64::max(samples, 1.0)).sqrt();
+        let (drag, moment) = self.cascade.air(&memory);
+        figures.drag = f64::from(drag);
+        figures.moment = moment.map(f64::from);
+        figures
+    }
+}
+
+fn commands_of(commands: &mut [f64; 4], forces: &[f32; 4]) {
+    *commands = forces.map(f64::from);
+}
+
+/// Setpoints as an object on board takes them: extrapolated by their own derivatives, with snap and crackle of the fit.
+struct Stream {
+    newest: FifthOrderSample,
+    at_s: f64,
+    fit: JerkFit,
+    begun: bool,
+}
+
+impl Stream {
+    fn new() -> Self {
+        let newest = FifthOrderSample::at_rest(Vector3::new(0.0_f32, 0.0, 0.0), 0.0);
+        Self { newest, at_s: 0.0, fit: JerkFit::NONE, begun: false }
+    }
+
+    fn accept(&mut self, motion: &crate::course::Motion, t: f64) {
+        let ([p, v, a, j], [heading, rate, acceleration]) = *motion;
+        let flat = FlatSample {
+            position_m: p.cast(),
+            velocity_m_s: v.cast(),
+            acceleration_m_s2: a.cast(),
+            jerk_m_s3: j.cast(),
+            heading_rad: heading as f32,
+            heading_rate_rad_s: rate as f32,
+        };
+        let jumps = (flat.position_m - self.newest.flat.position_m).norm() > 0.05;
+        if jumps || !self.begun {
+            self.fit.forget();
+        }
+        let gap = (t - self.at_s) as f32;
+        self.fit.accept(&flat.jerk_m_s3, gap);
+        let [snap, crackle] = self.fit.snap_and_crackle();
+        self.newest = FifthOrderSample {
+            snap_m_s4: snap,
+            crackle_m_s5: crackle,
+            heading_acceleration_rad_s2: acceleration as f32,
+            ..FifthOrderSample::of_jerk(flat)
+        };
+        (self.at_s, self.begun) = (t, true);
+    }
+
+    fn at(&self, t: f64) -> FifthOrderSample {
+        let t = (t - self.at_s) as f32;
+        let FifthOrderSample { flat, snap_m_s4: s, crackle_m_s5: c, .. } = self.newest;
+        let FlatSample { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j, .. } = flat;
+        let second = self.newest.heading_acceleration_rad_s2;
+        FifthOrderSample {
+            flat: FlatSample {
+                position_m: p + (v + (a + (j + (s + c * (t / 5.0)) * (t / 4.0)) * (t / 3.0)) * (t / 2.0)) * t,
+                velocity_m_s: v + (a + (j + (s + c * (t / 4.0)) * (t / 3.0)) * (t / 2.0)) * t,
+                acceleration_m_s2: a + (j + (s + c * (t / 3.0)) * (t / 2.0)) * t,
+                jerk_m_s3: j + (s + c * (t / 2.0)) * t,
+                heading_rad: flat.heading_rad + t * (flat.heading_rate_rad_s + 0.5 * t * second),
+                heading_rate_rad_s: flat.heading_rate_rad_s + t * second,
+            },
+            snap_m_s4: s + c * t,
+            ..self.newest
+        }
+    }
+}
