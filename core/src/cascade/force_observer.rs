@@ -48,12 +48,13 @@ pub(super) struct Disturbance {
     pub(super) along: f32,
 }
 
-/// What moved the craft over a step.
+/// What moved the craft over the step that has ended.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pushed {
-    /// Velocity at the beginning of the step.
+    /// Velocity at its end, and the mean over it, m/s.
     pub(super) velocity: Vector3<f32>,
-    /// Thrust axis and thrust over mass, m/s^2.
+    pub(super) mean_velocity: Vector3<f32>,
+    /// Means of thrust axis and thrust over mass, m/s^2.
     pub(super) axis: Vector3<f32>,
     pub(super) thrust: f32,
     /// Drag, 1/s.
@@ -74,22 +75,23 @@ impl ForceObserver {
     /// Moves the memory on by a step.
     #[inline(always)]
     pub(super) fn step(&self, memory: &mut Disturbance, pushed: &Pushed) {
-        let (h, n, v) = (self.period_s, &pushed.axis, &pushed.velocity);
+        let (h, n, v, mean) = (self.period_s, &pushed.axis, &pushed.velocity, &pushed.mean_velocity);
         let Disturbance { velocity: known, across: [dx, dy], slope: [sx, sy], along } = *memory;
+        let (thrust, d) = (pushed.thrust + along, pushed.drag);
+        let expected = Vector3::new(
+            known.x + h * (n.x * thrust - d * mean.x + dx),
+            known.y + h * (n.y * thrust - d * mean.y + dy),
+            known.z + h * (n.z * thrust - d * mean.z - GRAVITY_M_S2),
+        );
+        let (ex, ey, ez) = (v.x - expected.x, v.y - expected.y, v.z - expected.z);
         let jumped = |e: f32| !(e >= -JUMP_M_S && e <= JUMP_M_S);
-        let (ex, ey, ez) = (v.x - known.x, v.y - known.y, v.z - known.z);
         if jumped(ex) || jumped(ey) || jumped(ez) {
             memory.velocity = *v;
             return;
         }
-        let (thrust, d) = (pushed.thrust + along, pushed.drag);
         let [l1, l2, l3] = self.across;
         let [m1, m2] = self.along;
-        memory.velocity = Vector3::new(
-            known.x + h * (n.x * thrust - d * v.x + dx) + l1 * ex,
-            known.y + h * (n.y * thrust - d * v.y + dy) + l1 * ey,
-            known.z + h * (n.z * thrust - d * v.z - GRAVITY_M_S2) + m1 * ez,
-        );
+        memory.velocity = Vector3::new(expected.x + l1 * ex, expected.y + l1 * ey, expected.z + m1 * ez);
         let (x, slope_x) = bounded(dx + h * sx + l2 * ex, sx + l3 * ex);
         let (y, slope_y) = bounded(dy + h * sy + l2 * ey, sy + l3 * ey);
         memory.across = [x, y];
@@ -107,9 +109,9 @@ fn bounded(disturbance: f32, slope: f32) -> (f32, f32) {
 }
 
 impl Disturbance {
-    /// None, at rest.
+    /// None, at a velocity not seen yet: the first is taken as it is.
     pub(super) const NONE: Self =
-        Self { velocity: Vector3::new(0.0, 0.0, 0.0), across: [0.0; 2], slope: [0.0; 2], along: 0.0 };
+        Self { velocity: Vector3::new(f32::INFINITY, 0.0, 0.0), across: [0.0; 2], slope: [0.0; 2], along: 0.0 };
 
     /// Forgotten, at a velocity: what a craft sees that stands.
     pub(super) fn rest(&mut self, velocity: &Vector3<f32>) {
@@ -135,11 +137,13 @@ mod tests {
         let (observer, mut memory) = (ForceObserver::new(H), Disturbance::NONE);
         let (mut vx, mut vz, mut time) = (0.0, 0.0, 0.0);
         while time < seconds {
-            let velocity = Vector3::new(vx, 0.0, vz);
-            let thrust = GRAVITY_M_S2;
-            observer.step(&mut memory, &Pushed { velocity, axis: Vector3::z(), thrust, drag: 0.3 });
+            let before = Vector3::new(vx, 0.0, vz);
             vx += H * (slope * time - 0.3 * vx);
             vz += H * (thrust_off - 0.3 * vz);
+            let velocity = Vector3::new(vx, 0.0, vz);
+            let mean_velocity = (before + velocity) * 0.5;
+            let thrust = GRAVITY_M_S2;
+            observer.step(&mut memory, &Pushed { velocity, mean_velocity, axis: Vector3::z(), thrust, drag: 0.3 });
             time += H;
         }
         memory

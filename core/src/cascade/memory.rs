@@ -22,7 +22,19 @@ pub struct CascadeMemory {
     pub(super) imbalance: Imbalance,
     pub(super) air: SeenAir,
     pub(super) ground: Ground,
+    /// Mean of the forces over the step that has begun, in parts, N.
+    pub(super) coming: Parts,
     pub(super) seen: Seen,
+    /// What was seen a step before.
+    pub(super) before: Before,
+}
+
+/// What the means over a step take of its beginning.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Before {
+    pub(super) velocity: Vector3<f32>,
+    pub(super) axis: Vector3<f32>,
+    pub(super) answer: [f32; 2],
 }
 
 /// What a step leaves to the observers.
@@ -30,7 +42,7 @@ pub struct CascadeMemory {
 pub(super) struct Seen {
     pub(super) now: Now,
     pub(super) axis: Vector3<f32>,
-    /// Mean of the motors' forces over the step that follows, in parts, N.
+    /// Mean of the motors' forces over the step that has ended, in parts, N.
     pub(super) mean_forces: Parts,
     /// What of them answers the air: roll and pitch, N.
     pub(super) answer: [f32; 2],
@@ -42,7 +54,7 @@ pub(super) struct Seen {
 
 impl CascadeMemory {
     pub(super) const fn new(forces: Parts, air: SeenAir, stands: bool) -> Self {
-        let zero = Vector3::new(0.0, 0.0, 0.0);
+        let (zero, up) = (Vector3::new(0.0, 0.0, 0.0), Vector3::new(0.0, 0.0, 1.0));
         let now = Now { position: zero, velocity: zero, attitude: Quaternion::IDENTITY, body_rates: zero };
         Self {
             carried: Carried::NONE,
@@ -52,9 +64,11 @@ impl CascadeMemory {
             imbalance: Imbalance::NONE,
             air,
             ground: if stands { Ground::STANDING } else { Ground::FLYING },
+            coming: forces,
+            before: Before { velocity: zero, axis: up, answer: [0.0; 2] },
             seen: Seen {
                 now,
-                axis: Vector3::new(0.0, 0.0, 1.0),
+                axis: up,
                 mean_forces: forces,
                 answer: [0.0; 2],
                 body_velocity: [0.0; 2],

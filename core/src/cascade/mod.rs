@@ -48,7 +48,7 @@ use self::inner::{Errors, InnerLoop};
 pub use self::jerk_fit::JerkFit;
 pub use self::limits::{CascadeLimits, CascadeLimitsError};
 pub use self::memory::CascadeMemory;
-use self::memory::Seen;
+use self::memory::{Before, Seen};
 use self::outer::OuterLoop;
 use self::reference::{InAir, Surroundings};
 use self::torque_observer::TorqueObserver;
@@ -220,11 +220,12 @@ impl Cascade {
         let (commands, limited) = self.allocation.allocate(asked)?;
 
         after.forces = self.next(&memory.forces, &commands);
+        after.coming = middle(&memory.forces, &after.forces);
         let far = position.x * position.x + position.y * position.y + position.z * position.z > FAR_M * FAR_M;
         after.seen = Seen {
             now,
             axis,
-            mean_forces: middle(&memory.forces, &after.forces),
+            mean_forces: memory.coming,
             answer: reference.answer,
             body_velocity: reference.body_velocity,
             undisturbed: !(far || limited.any()),
@@ -235,8 +236,9 @@ impl Cascade {
 
     /// What follows a step: the observers, the air, the ground.
     pub fn observe(&self, memory: &mut CascadeMemory, accelerometer: Option<&Vector3<f32>>) {
-        let CascadeMemory { seen, ground, .. } = &*memory;
-        let (seen, stood, period_s) = (*seen, ground.is_standing(), self.lag.period_s());
+        let CascadeMemory { seen, before, ground, .. } = *memory;
+        let (stood, period_s) = (ground.is_standing(), self.lag.period_s());
+        memory.before = Before { velocity: seen.now.velocity, axis: seen.axis, answer: seen.answer };
         let push = memory.disturbance.along;
         memory.ground.step(&seen.now, memory.disturbance.is_on_bound(), push, period_s);
         if memory.ground.is_standing() || stood {
@@ -244,10 +246,17 @@ impl Cascade {
         }
         let thrust = seen.mean_forces.thrust / self.airframe.mixing.quarter_mass_kg;
         let drag = memory.air.now.drag;
-        let pushed = Pushed { velocity: seen.now.velocity, axis: seen.axis, thrust, drag };
+        let pushed = Pushed {
+            velocity: seen.now.velocity,
+            mean_velocity: mean(&before.velocity, &seen.now.velocity),
+            axis: mean(&before.axis, &seen.axis),
+            thrust,
+            drag,
+        };
         self.force_observer.step(&mut memory.disturbance, &pushed);
-        let rates = &seen.now.body_rates;
-        self.torque_observer.step(&mut memory.imbalance, rates, &seen.mean_forces, seen.answer);
+        let ([rx, ry], [sx, sy]) = (before.answer, seen.answer);
+        let (rates, answer) = (&seen.now.body_rates, [0.5 * (rx + sx), 0.5 * (ry + sy)]);
+        self.torque_observer.step(&mut memory.imbalance, rates, &seen.mean_forces, answer);
         let felt = Felt {
             accelerometer,
             body_velocity: seen.body_velocity,
@@ -279,6 +288,11 @@ impl Cascade {
             yaw: next(forces.yaw, commands.yaw),
         }
     }
+}
+
+#[inline(always)]
+fn mean(a: &Vector3<f32>, b: &Vector3<f32>) -> Vector3<f32> {
+    Vector3::new(0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.z + b.z))
 }
 
 /// Distance from the reference beyond which nothing is learned, m.

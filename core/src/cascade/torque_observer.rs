@@ -43,8 +43,8 @@ pub(super) struct Imbalance {
 }
 
 impl Imbalance {
-    /// None, at rest.
-    pub(super) const NONE: Self = Self { body_rates: Vector3::new(0.0, 0.0, 0.0), parts: [0.0; 3] };
+    /// None, at body rates not seen yet: the first are taken as they are.
+    pub(super) const NONE: Self = Self { body_rates: Vector3::new(f32::INFINITY, 0.0, 0.0), parts: [0.0; 3] };
 }
 
 impl Imbalance {
@@ -69,24 +69,25 @@ impl TorqueObserver {
         }
     }
 
-    /// Moves the memory on by a step that began with body rates, under forces in parts and an answer to the air (roll and
-    /// pitch).
+    /// Moves the memory on by a step that has ended with body rates, under forces in parts and an answer to the air (roll and
+    /// pitch), the means over it.
     #[inline(always)]
     pub(super) fn step(&self, memory: &mut Imbalance, w: &Vector3<f32>, forces: &Parts, answer: [f32; 2]) {
         let ([tx, ty, tz], known, [gx, gy, gz]) = (memory.parts, memory.body_rates, self.gyroscopic);
         let ([px, py, pz], [kx, ky, kz], [lx, ly, lz]) = (self.per_force, self.rate_gain, self.part_gain);
-        let (ex, ey, ez) = (w.x - known.x, w.y - known.y, w.z - known.z);
+        let [mx, my] = answer;
+        let expected = Vector3::new(
+            known.x + px * (forces.roll + tx - mx - gx * (w.y * w.z)),
+            known.y + py * (forces.pitch + ty - my - gy * (w.x * w.z)),
+            known.z + pz * (forces.yaw + tz - gz * (w.x * w.y)),
+        );
+        let (ex, ey, ez) = (w.x - expected.x, w.y - expected.y, w.z - expected.z);
         let jumped = |e: f32| !(e >= -JUMP_RAD_S && e <= JUMP_RAD_S);
         if jumped(ex) || jumped(ey) || jumped(ez) {
             memory.body_rates = *w;
             return;
         }
-        let [mx, my] = answer;
-        memory.body_rates = Vector3::new(
-            known.x + px * (forces.roll + tx - mx - gx * (w.y * w.z)) + kx * ex,
-            known.y + py * (forces.pitch + ty - my - gy * (w.x * w.z)) + ky * ey,
-            known.z + pz * (forces.yaw + tz - gz * (w.x * w.y)) + kz * ez,
-        );
+        memory.body_rates = Vector3::new(expected.x + kx * ex, expected.y + ky * ey, expected.z + kz * ez);
         let most = self.most_n;
         memory.parts = [within(tx + lx * ex, most), within(ty + ly * ey, most), within(tz + lz * ez, most)];
     }
@@ -119,6 +120,6 @@ mod tests {
             let forces = Parts { thrust: 0.1, roll: 0.004, pitch: -0.002, yaw: 0.0 };
             observer.step(&mut memory, &Vector3::zeros(), &forces, [0.004, -0.002]);
         }
-        assert_eq!(memory, Imbalance::NONE);
+        assert_eq!((memory.body_rates, memory.parts), (Vector3::zeros(), [0.0; 3]));
     }
 }

@@ -15,7 +15,7 @@ pub enum Estimates {
     Noisy([f64; 4]),
 }
 
-pub const NOISE: Estimates = Estimates::Noisy([1e-3, 1e-2, 0.02, 0.1]);
+pub const NOISE: Estimates = Estimates::Noisy([1e-3, 1e-2, 0.02, 0.0]);
 pub const EXACT: Estimates = Estimates::Noisy([0.0; 4]);
 
 /// What happens around a flight.
@@ -33,6 +33,8 @@ pub struct Flight<'a> {
     pub push: &'a dyn Fn(f64) -> Vector3<f64>,
     pub setpoint_s: &'a dyn Fn(u32) -> f64,
     pub start: Start,
+    /// Setpoints of each step with the course's own snap and crackle.
+    pub to_fifth: bool,
     pub accelerometer: bool,
     pub accelerometer_bias: Vector3<f64>,
 }
@@ -88,6 +90,7 @@ impl<'a> Flight<'a> {
             push: &still,
             setpoint_s: &|_| 0.01,
             start: Start::Hovering,
+            to_fifth: false,
             accelerometer: true,
             accelerometer_bias: Vector3::zeros(),
         }
@@ -133,7 +136,7 @@ impl<'a> Flight<'a> {
                 },
                 body_rates_rad_s: w.cast(),
             };
-            let sample = stream.at(t);
+            let sample = if self.to_fifth { exact(&self.course, t) } else { stream.at(t) };
             let heading = Heading::from_angle(sample.flat.heading_rad);
             let input = CascadeInput { state: &state, sample: &sample, heading };
             let felt = felt.cast();
@@ -182,6 +185,29 @@ impl<'a> Flight<'a> {
 
 fn commands_of(commands: &mut [f64; 4], forces: &[f32; 4]) {
     *commands = forces.map(f64::from);
+}
+
+/// The course to its fifth derivative, by differences of its jerk.
+fn exact(course: &Course, t: f64) -> FifthOrderSample {
+    let h = 1e-3;
+    let [before, (now, turn), after] = [t - h, t, t + h].map(|t| course.at(t));
+    let jerk = |motion: &crate::course::Motion| motion.0[3];
+    let (a, b) = (jerk(&before), jerk(&after));
+    let flat = FlatSample {
+        position_m: now[0].cast(),
+        velocity_m_s: now[1].cast(),
+        acceleration_m_s2: now[2].cast(),
+        jerk_m_s3: now[3].cast(),
+        heading_rad: turn[0] as f32,
+        heading_rate_rad_s: turn[1] as f32,
+    };
+    FifthOrderSample {
+        snap_m_s4: ((b - a) / (2.0 * h)).cast(),
+        crackle_m_s5: ((b + a - 2.0 * now[3]) / (h * h)).cast(),
+        heading_acceleration_rad_s2: turn[2] as f32,
+        heading_jerk_rad_s3: ((after.1[2] - before.1[2]) / (2.0 * h)) as f32,
+        flat,
+    }
 }
 
 /// Setpoints as an object on board takes them: extrapolated by their own derivatives, with snap and crackle of the fit.
