@@ -55,11 +55,11 @@ impl Air {
 
     /// Crazyflie 2.1 Brushless: 80 % of what was identified from flights with guards (arXiv 2512.14450).
     pub const BRUSHLESS: Self =
-        Self { drag_per_s: 0.353, drag_along_share: 1.0, moment_n_s: [5.6e-4, 7.3e-4], gust: 0.5, learn: true };
+        Self { drag_per_s: 0.353, drag_along_share: 1.0, moment_n_s: [5.6e-4, 7.3e-4], gust: 0.55, learn: true };
 
     /// Crazyflies with brushed motors: 80 % of what was identified from flights of the 2.1 (arXiv 2603.09908).
     pub const BRUSHED: Self =
-        Self { drag_per_s: 0.316, drag_along_share: 1.0, moment_n_s: [3.0e-4, 3.4e-4], gust: 0.5, learn: true };
+        Self { drag_per_s: 0.316, drag_along_share: 1.0, moment_n_s: [3.0e-4, 3.4e-4], gust: 0.55, learn: true };
 
     /// Largest drag, 1/s.
     pub const DRAG_MAX_PER_S: f32 = 1.0;

@@ -22,7 +22,7 @@ const TICK_S: f32 = 0.01;
 const LOW_PASS: f32 = 8.0 * TICK_S / (1.0 + 4.0 * TICK_S);
 const HIGH_PASS: f32 = TICK_S;
 /// Weight of the told figures, and most weight of what was seen, m^2/s.
-const TOLD_WEIGHT: f32 = 0.1;
+const TOLD_WEIGHT: f32 = 0.02;
 const SEEN_MOST: f32 = 30.0;
 /// Least drag by which a felt force is taken for a wind, 1/s.
 const DRAG_LEAST_PER_S: f32 = 0.2;
