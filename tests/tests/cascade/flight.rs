@@ -5,6 +5,7 @@ use quatrack::cascade::{Cascade, CascadeInput, CascadeMemory, JerkFit};
 use quatrack::{FifthOrderSample, FlatSample, Heading, Quaternion, RigidState, State};
 
 use crate::course::Course;
+use crate::filter::Filter;
 use crate::noise::Random;
 use crate::plant::{Craft, GRAVITY, Plant, STEP_S};
 
@@ -13,6 +14,8 @@ use crate::plant::{Craft, GRAVITY, Plant, STEP_S};
 pub enum Estimates {
     /// Of each step: the truth with noise of position, velocity, body rates and specific force.
     Noisy([f64; 4]),
+    /// Of the firmware's filter, with its drag over mass (1/s): positions of 1 mm at 100 Hz.
+    Filtered(f64),
 }
 
 pub const NOISE: Estimates = Estimates::Noisy([1e-3, 1e-2, 0.02, 0.0]);
@@ -108,6 +111,8 @@ impl<'a> Flight<'a> {
             plant.q = nalgebra::UnitQuaternion::from_scaled_axis(rotation);
         }
         let mut memory = if self.start == Start::Ground { self.cascade.at_rest() } else { self.cascade.hovering() };
+        let drag = if let Estimates::Filtered(drag) = self.estimates { drag } else { 0.0 };
+        let mut filter = Filter::at(home, drag);
         let mut stream = Stream::new();
         let (mut next_setpoint, mut setpoints, mut commands) = (0.0, 0, plant.forces.map(|f| f / self.craft.motors[0]));
         let mut figures = Figures { lowest: f64::INFINITY, ..Figures::default() };
@@ -122,12 +127,24 @@ impl<'a> Flight<'a> {
                 next_setpoint += (self.setpoint_s)(setpoints);
                 setpoints += 1;
             }
-            let Estimates::Noisy([np, nv, nw, na]) = self.estimates;
-            let p = plant.p + random.vector(np);
-            let v = plant.v + random.vector(nv);
-            let w = plant.w + random.vector(nw);
-            let felt = plant.felt + random.vector(na) + self.accelerometer_bias;
-            let q = plant.q;
+            let (p, v, q, w, felt) = match self.estimates {
+                Estimates::Noisy([np, nv, nw, na]) => (
+                    plant.p + random.vector(np),
+                    plant.v + random.vector(nv),
+                    plant.q,
+                    plant.w + random.vector(nw),
+                    plant.felt + random.vector(na) + self.accelerometer_bias,
+                ),
+                Estimates::Filtered(_) => {
+                    let w = plant.w + random.vector(0.02);
+                    let felt = plant.felt + random.vector(0.05) + self.accelerometer_bias;
+                    filter.sense(&w, &felt);
+                    if step % 5 == 4 {
+                        filter.update(&(plant.p + random.vector(1e-3)));
+                    }
+                    (filter.p, filter.velocity(), filter.q, w, felt)
+                }
+            };
             let state = RigidState {
                 state: State {
                     position_m: p.cast(),

@@ -2,6 +2,7 @@
 
 mod course;
 mod crafts;
+mod filter;
 mod flight;
 mod noise;
 mod plant;
