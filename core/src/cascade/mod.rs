@@ -237,11 +237,11 @@ impl Cascade {
     /// What follows a step: the observers, the air, the ground.
     pub fn observe(&self, memory: &mut CascadeMemory, accelerometer: Option<&Vector3<f32>>) {
         let CascadeMemory { seen, before, ground, .. } = *memory;
-        let (stood, period_s) = (ground.is_standing(), self.lag.period_s());
+        let (flew, period_s) = (ground.is_flying(), self.lag.period_s());
         memory.before = Before { velocity: seen.now.velocity, axis: seen.axis, answer: seen.answer };
         let push = memory.disturbance.along;
         memory.ground.step(&seen.now, memory.disturbance.is_on_bound(), push, period_s);
-        if memory.ground.is_standing() || stood {
+        if !(flew && memory.ground.is_flying()) {
             return self.stand(memory, &seen);
         }
         let thrust = seen.mean_forces.thrust / self.airframe.mixing.quarter_mass_kg;

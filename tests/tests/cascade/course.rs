@@ -15,8 +15,8 @@ pub enum Course {
     Eight { w: f64, turn: f64 },
     /// The paper's W behind 2 s of hover.
     W,
-    /// Up from the ground at 2 s.
-    TakeOff { at_s: f64, in_s: f64 },
+    /// At a place on the ground, then up.
+    TakeOff { from: Vector3<f64>, at_s: f64, in_s: f64 },
 }
 
 include!("../../../plans/aggressive.rs");
@@ -35,9 +35,10 @@ impl Course {
             }
             Self::Eight { w, turn } => eight(w, turn, t),
             Self::W => ([w(t - 2.0)[0] + home, w(t - 2.0)[1], w(t - 2.0)[2], w(t - 2.0)[3]], [0.0; 3]),
-            Self::TakeOff { at_s, in_s } => {
+            Self::TakeOff { from, at_s, in_s } => {
                 let [z, v, a, j] = septic(((t - at_s) / in_s).clamp(0.0, 1.0), in_s, HEIGHT);
-                ([z, v, a, j].map(|z| Vector3::new(0.0, 0.0, z)), [0.0; 3])
+                let [p, v, a, j] = [z, v, a, j].map(|z| Vector3::new(0.0, 0.0, z));
+                ([from + p, v, a, j], [0.0; 3])
             }
         }
     }

@@ -33,7 +33,8 @@ pub struct Flight<'a> {
     pub from_s: f64,
     pub for_s: f64,
     pub wind: &'a dyn Fn(f64) -> Vector3<f64>,
-    pub push: &'a dyn Fn(f64) -> Vector3<f64>,
+    /// Force from outside over mass, m/s^2.
+    pub push: &'a dyn Fn(f64, &Plant) -> Vector3<f64>,
     pub setpoint_s: &'a dyn Fn(u32) -> f64,
     pub start: Start,
     /// Setpoints of each step with the course's own snap and crackle.
@@ -90,7 +91,7 @@ impl<'a> Flight<'a> {
             from_s,
             for_s,
             wind: &still,
-            push: &still,
+            push: &|_, _| Vector3::zeros(),
             setpoint_s: &|_| 0.01,
             start: Start::Hovering,
             to_fifth: false,
@@ -105,7 +106,7 @@ impl<'a> Flight<'a> {
 
     pub fn fly_with(&self, look: &mut dyn FnMut(f64, &Plant, &CascadeMemory)) -> Figures {
         let mut random = Random::new(self.seed);
-        let home = self.course.at(0.0).0[0];
+        let home = if self.start == Start::Ground { Vector3::zeros() } else { self.course.at(0.0).0[0] };
         let mut plant = Plant::at(self.craft, home, self.start != Start::Ground);
         if let Start::Tilted(rotation) = self.start {
             plant.q = nalgebra::UnitQuaternion::from_scaled_axis(rotation);
@@ -163,8 +164,9 @@ impl<'a> Flight<'a> {
             };
             commands_of(&mut commands, &forces);
             figures.limited += u32::from(limited.any());
-            let (wind, push) = ((self.wind)(t), (self.push)(t));
+            let wind = (self.wind)(t);
             for _ in 0..(0.002 / STEP_S).round() as u32 {
+                let push = (self.push)(t, &plant);
                 plant.step(&commands, &wind, &push);
             }
             let after = t + 0.002;

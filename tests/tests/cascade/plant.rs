@@ -107,6 +107,7 @@ impl Plant {
             self.v *= if slide > grip { 1.0 - grip / slide } else { 0.0 };
             self.w = Vector3::zeros();
             self.q = UnitQuaternion::identity();
+            self.felt = Vector3::new(0.0, 0.0, thrust.max(GRAVITY));
         }
     }
 }
