@@ -1,8 +1,9 @@
 //! What an actuator-aware gain is certified for: its own loop, a region of craft, and where it ends.
 
-use quatrack_sim::certify::{Controller, Plant, Region, Timing, certify, certify_region, motor_lag_limit};
-use quatrack_sim::design::actuator_aware::{ActuatorAwareDesign, ActuatorAwareWeights, actuator_aware};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::certify::{Controller, Plant, Region, Timing, certify, certify_region, motor_lag_limit};
+use quatrack_design::design::actuator_aware::{ActuatorAwareDesign, ActuatorAwareWeights, actuator_aware};
+use quatrack_design::vehicle::Vehicle;
+use quatrack_simulation::vehicles;
 
 const PERIOD_S: f64 = 0.002;
 
@@ -12,7 +13,7 @@ fn design(vehicle: &Vehicle, lag_s: f64) -> ActuatorAwareDesign {
 
 #[test]
 fn a_predicted_actuator_that_is_right_leaves_the_poles_where_the_design_put_them() {
-    let vehicle = Vehicle::by_name("crazyflie-2.1").expect("built in");
+    let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     let lag_s = 0.126;
     let design = design(&vehicle, lag_s);
     let plant = Plant::hover_with_motors(&vehicle, lag_s, 1.0, 1.0);
@@ -45,7 +46,7 @@ fn the_default_tables_hold_all_over_the_published_lags() {
         ("crazyflie-2.1-upgrade-kit", 0.1, 0.997_910_82),
         ("crazyflie-2.1-brushless", 0.1, 0.997_939_95),
     ] {
-        let vehicle = Vehicle::by_name(name).expect("built in");
+        let vehicle = vehicles::by_name(name).expect("built in");
         let design = design(&vehicle, lag_s);
         let region = Region::of_any_crazyflie();
         let found = certify_region(&vehicle, &design.gain_in_parts, lag_s, PERIOD_S, &region).expect("computed");
@@ -57,8 +58,8 @@ fn the_default_tables_hold_all_over_the_published_lags() {
 
 #[test]
 fn tables_for_a_known_lag_hold_from_half_to_one_and_a_half_of_it() {
-    for name in Vehicle::names() {
-        let vehicle = Vehicle::by_name(name).expect("built in");
+    for name in vehicles::names() {
+        let vehicle = vehicles::by_name(name).expect("built in");
         for lag_s in [0.0635, 0.126] {
             let design = design(&vehicle, lag_s);
             let region = Region::around_lag(lag_s);
@@ -70,7 +71,7 @@ fn tables_for_a_known_lag_hold_from_half_to_one_and_a_half_of_it() {
 
 #[test]
 fn the_lag_limit_parts_stable_from_unstable() {
-    let vehicle = Vehicle::by_name("crazyflie-2.1").expect("built in");
+    let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     let design = design(&vehicle, 0.0635);
     let limit = motor_lag_limit(&vehicle, &design.gain_in_parts, 0.0635, PERIOD_S).expect("computed");
     for (share, stable) in [(0.999, true), (1.001, false)] {

@@ -1,18 +1,19 @@
 //! The actuator-aware design: the hover model against the rigid plant, the Riccati equation, the structure of the gain.
 
 use nalgebra::{DMatrix, UnitQuaternion, Vector3, Vector4};
-use quatrack_sim::design::actuator_aware::{
+use quatrack_design::design::actuator_aware::{
     ActuatorAwareDesign, ActuatorAwareWeights, ERRORS, FORCES, actuator_aware, hover_pair, in_parts, parts,
 };
-use quatrack_sim::design::codegen;
-use quatrack_sim::design::sampled::shaped;
-use quatrack_sim::plant::{Craft, RigidState};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::design::codegen;
+use quatrack_design::design::sampled::shaped;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_simulation::plant::{Craft, RigidState};
+use quatrack_simulation::vehicles;
 
 const PERIOD_S: f64 = 0.002;
 
 fn vehicle() -> Vehicle {
-    Vehicle::by_name("crazyflie-2.1").expect("built in")
+    vehicles::by_name("crazyflie-2.1").expect("built in")
 }
 
 fn design(lag_s: f64) -> ActuatorAwareDesign {
@@ -51,8 +52,8 @@ fn displaced(state: usize, by: f64, hover_n: f64) -> RigidState {
 
 #[test]
 fn the_hover_model_is_the_derivative_of_the_rigid_plant() {
-    for name in Vehicle::names() {
-        let vehicle = Vehicle::by_name(name).expect("built in");
+    for name in vehicles::names() {
+        let vehicle = vehicles::by_name(name).expect("built in");
         let (hover_n, craft) = (vehicle.hover_thrust_n(), Craft::new(&vehicle));
         let (a, b) = hover_pair(&vehicle, vehicle.motors().lag_s, 1.0, 1.0);
         let (h, by) = (1e-6, 1e-5);
@@ -85,8 +86,8 @@ fn the_hover_model_is_the_derivative_of_the_rigid_plant() {
 
 #[test]
 fn the_gain_solves_its_riccati_equation() {
-    for name in Vehicle::names() {
-        let vehicle = Vehicle::by_name(name).expect("built in");
+    for name in vehicles::names() {
+        let vehicle = vehicles::by_name(name).expect("built in");
         for lag_s in [0.03, 0.0635, 0.126] {
             let design = actuator_aware(&vehicle, lag_s, &ActuatorAwareWeights::STANDARD, PERIOD_S).expect("solved");
             assert!(design.relative_residual < 1e-14, "{name} {lag_s}: {:e}", design.relative_residual);
@@ -135,7 +136,7 @@ fn a_full_inertia_couples_the_chains() {
         .replace("[16.571710e-6, 0.0, 0.0]", "[16.571710e-6, 0.830806e-6, 0.718277e-6]")
         .replace("[0.0, 16.655602e-6, 0.0]", "[0.830806e-6, 16.655602e-6, 1.800197e-6]")
         .replace("[0.0, 0.0, 29.261652e-6]", "[0.718277e-6, 1.800197e-6, 29.261652e-6]");
-    let vehicle = Vehicle::from_toml(&text).expect("valid");
+    let vehicle = vehicles::from_toml(&text).expect("valid");
     let gain =
         actuator_aware(&vehicle, 0.126, &ActuatorAwareWeights::STANDARD, PERIOD_S).expect("solved").gain_in_parts;
     // Roll now answers to pitch and heading too; thrust still to height alone.

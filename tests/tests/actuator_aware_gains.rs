@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use quatrack::Rate;
 use quatrack::gains::table::ActuatorTable;
-use quatrack_sim::certify::Region;
-use quatrack_sim::design::actuator_aware::ActuatorAwareWeights;
-use quatrack_sim::flight::motor_laws::{AwareTable, default_lag_s};
-use quatrack_sim::gains::{Design, Export, GainsError, Problem};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::certify::Region;
+use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
+use quatrack_simulation::flight::motor_laws::{AwareTable, default_lag_s};
+use quatrack_simulation::gains::{Design, Export, GainsError, Problem};
+use quatrack_simulation::vehicles;
 
 const TEXT: &str = include_str!("../../gains/actuator-aware.toml");
 
@@ -23,16 +23,16 @@ fn committed_tables_are_those_that_the_flights_are_flown_with() {
         ("actuator-aware-kit", "crazyflie-2.1-upgrade-kit"),
         ("actuator-aware-brushless", "crazyflie-2.1-brushless"),
     ] {
-        let vehicle = Vehicle::by_name(vehicle).expect("built in");
+        let vehicle = vehicles::by_name(vehicle).expect("built in");
         let bytes = std::fs::read(folder().join(format!("generated/{design}.bin"))).expect("committed");
         let table = ActuatorTable::from_bytes(&bytes).expect("sound");
-        assert_eq!((table.head().vehicle.id, table.head().rate.hz()), (vehicle.id(), 500), "{design}");
+        assert_eq!((table.head().vehicle.id, table.head().rate.hz()), (vehicles::id(&vehicle), 500), "{design}");
         let lag_s = default_lag_s(&vehicle);
         assert_eq!(table.lag().lag_s(), lag_s as f32, "{design}");
         let weights = &ActuatorAwareWeights::STANDARD;
         let flown = AwareTable::new(&vehicle, lag_s, weights, &Region::of_any_crazyflie()).expect("designed");
         assert_eq!(table.gain(), flown.gain(), "{design}");
-        let board = quatrack::gains::table::Vehicle { id: vehicle.id(), ..table.head().vehicle };
+        let board = quatrack::gains::table::Vehicle { id: vehicles::id(&vehicle), ..table.head().vehicle };
         assert!(table.accept_for(&board, Rate::from_hz(500).expect("in range")).is_ok(), "{design}");
     }
 }

@@ -1,7 +1,7 @@
 //! Section III on the paper's own models: the numbers that pencil gives.
 
 use nalgebra::{Complex, DMatrix};
-use quatrack_sim::analysis::{SectionThree, jordan_blocks};
+use quatrack_design::analysis::{SectionThree, jordan_blocks};
 
 #[test]
 fn eigenvalues_of_both_models_are_all_zero() {

@@ -3,7 +3,7 @@
 use nalgebra::{Complex, DMatrix};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use quatrack_sim::analysis::{
+use quatrack_design::analysis::{
     MatrixError, controllability_matrix, distinct_eigenvalues, eigenvalues, jordan_blocks, numerical_rank, pbh_test,
     singular_values, staircase,
 };

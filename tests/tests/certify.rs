@@ -1,12 +1,12 @@
 //! Certificates against closed forms, another tool's margins and the motion itself.
 
 use nalgebra::{Complex, DMatrix, DVector, SMatrix};
-use quatrack_sim::certify::{
+use quatrack_design::certify::{
     Certificate, CertifyError, Controller, Minimum, Plant, Timing, certify, require, structured_bounds,
 };
-use quatrack_sim::design::integral::{IntegralWeights, sampled_lqi};
-use quatrack_sim::design::sampled::{Sampling, sampled_equilibrium};
-use quatrack_sim::design::synthesis::{
+use quatrack_design::design::integral::{IntegralWeights, sampled_lqi};
+use quatrack_design::design::sampled::{Sampling, sampled_equilibrium};
+use quatrack_design::design::synthesis::{
     EquilibriumWeights, FlatWeights, PAPER_MU, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat,
 };
 
@@ -227,7 +227,7 @@ fn the_motion_decays_just_inside_the_limits_and_grows_just_outside() {
     let whole = lqr_e().gain;
     let gain = matrix(1, 3, &[whole[(1, 1)], whole[(1, 7)], whole[(1, 3)]]);
     let certificate = certified(&Plant::equilibrium(), &lqr_e(), Timing::at_rate(100));
-    let of_roll = |limits: &[quatrack_sim::certify::StabilityLimit]| {
+    let of_roll = |limits: &[quatrack_design::certify::StabilityLimit]| {
         limits.iter().find(|limit| limit.channels == "p_rad_s").expect("has the channel").stable_to_s
     };
     let delay_us = of_roll(&certificate.delay) * 1e6;

@@ -9,7 +9,7 @@ use quatrack::{
     Airframe, Equilibrium, FifthOrderSample, FlatOutput, FlatSample, Heading, Limits, MotorReference, Reference, State,
     Tracker,
 };
-use quatrack_sim::model::flat::reference_point;
+use quatrack_design::model::flat::reference_point;
 
 /// Accelerations with a tilt of at most about 80 degrees and a thrust from a third of hover on.
 fn acceleration() -> impl Strategy<Value = Vector3<f32>> {
@@ -68,7 +68,7 @@ proptest! {
             ..FlatSample::at_rest(Vector3::new(0.1, -0.2, 0.3), psi)
         };
         let core = Reference::from_flat(&sample).unwrap();
-        let model = reference_point(&quatrack_sim::trajectory::FlatSample {
+        let model = reference_point(&quatrack_design::model::flat::FlatSample {
             position_m: sample.position_m.map(f64::from),
             velocity_m_s: sample.velocity_m_s.map(f64::from),
             acceleration_m_s2: a.map(f64::from),

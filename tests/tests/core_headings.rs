@@ -7,13 +7,15 @@ use quatrack::nalgebra::Vector3;
 use quatrack::{
     AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Quaternion, Rate, Reference, State, Tracker,
 };
-use quatrack_sim::flight::closed_loop::{Flight, fly_sampled};
-use quatrack_sim::flight::core_loop::{self, CoreLoop};
-use quatrack_sim::flight::metrics::Metrics;
-use quatrack_sim::flight::reference::Exact;
-use quatrack_sim::model::StateVector;
-use quatrack_sim::trajectory::polynomial::{Piece, PiecewisePolynomial};
-use quatrack_sim::trajectory::{FlatSample, Trajectory};
+use quatrack_design::model::StateVector;
+use quatrack_design::model::flat::FlatSample;
+use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::polynomial::{Piece, PiecewisePolynomial};
+use quatrack_simulation::flight::closed_loop::{Flight, fly_sampled};
+use quatrack_simulation::flight::core_loop::CoreLoop;
+use quatrack_simulation::flight::metrics::Metrics;
+use quatrack_simulation::flight::reference::Exact;
 
 const RATE_HZ: u32 = 500;
 
@@ -50,7 +52,7 @@ fn fly(
     law: AnyLaw<'_>,
     disturb: impl Fn(u32, &StateVector) -> StateVector,
 ) -> Flight {
-    let pieces = core_loop::pieces(pieces);
+    let pieces = on_board::pieces(pieces);
     let mut core = CoreLoop::new(&pieces, Rate::from_hz(RATE_HZ).unwrap(), law, Limits::NONE).unwrap();
     fly_sampled(&Exact(trajectory), RATE_HZ, |tick, _, x| core.step(tick, &disturb(tick, x)))
 }

@@ -11,11 +11,11 @@ use quatrack::{
     AlongTrajectory, Command, Controller, Crossfade, Equilibrium, FeedForward, FlatSample, FlightLaw, IntegralAction,
     Limits, Memory, Progress, Quaternion, Rate, Reference, State, StepError, Tracker,
 };
-use quatrack_sim::design::integral::{IntegralWeights, sampled_lqi};
-use quatrack_sim::design::sampled::{Sampling, shaped};
-use quatrack_sim::design::synthesis::EquilibriumWeights;
-use quatrack_sim::flight::core_loop;
-use quatrack_sim::model::{InputVector, StateVector, VELOCITY, dynamics, normalised};
+use quatrack_design::design::integral::{IntegralWeights, sampled_lqi};
+use quatrack_design::design::sampled::{Sampling, shaped};
+use quatrack_design::design::synthesis::EquilibriumWeights;
+use quatrack_design::model::{InputVector, StateVector, VELOCITY, dynamics, normalised};
+use quatrack_simulation::flight::core_loop;
 use quatrack_tests::halton;
 
 fn rate(hz: u32) -> Rate {

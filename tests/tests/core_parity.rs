@@ -3,10 +3,10 @@
 use quatrack::gains::paper;
 use quatrack::nalgebra::Vector3;
 use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlatSample, Limits, Reference, Tracker};
-use quatrack_sim::flight::core_loop;
-use quatrack_sim::flight::law::{Feedback, Law};
-use quatrack_sim::model::flat::reference_point;
-use quatrack_sim::model::{ATTITUDE, StateVector};
+use quatrack_design::model::flat::reference_point;
+use quatrack_design::model::{ATTITUDE, StateVector};
+use quatrack_simulation::flight::core_loop;
+use quatrack_simulation::flight::law::{Feedback, Law};
 use quatrack_tests::{halton, quantile};
 
 const CASES: u32 = 4000;
@@ -31,7 +31,7 @@ fn errors(core: AnyLaw<'_>, law: Law<'_>, heading_max_rad: f64) -> Vec<f64> {
     let mut errors = Vec::new();
     for case in 0..CASES {
         let u = halton::<20>(case);
-        let sample = quatrack_sim::trajectory::FlatSample {
+        let sample = quatrack_design::model::flat::FlatSample {
             position_m: vector(&u[0..3], 2.0),
             velocity_m_s: vector(&u[3..6], 2.0),
             acceleration_m_s2: vector(&u[6..9], 4.0),
@@ -53,7 +53,7 @@ fn errors(core: AnyLaw<'_>, law: Law<'_>, heading_max_rad: f64) -> Vec<f64> {
         for i in 0..4 {
             state[ATTITUDE + i] = f64::from((state[ATTITUDE + i] / norm) as f32);
         }
-        let exact = feedback.input(&quatrack_sim::model::normalised(&state), &target);
+        let exact = feedback.input(&quatrack_design::model::normalised(&state), &target);
         let reference = Reference::from_flat(&FlatSample {
             position_m: sample.position_m.map(|v| v as f32),
             velocity_m_s: sample.velocity_m_s.map(|v| v as f32),

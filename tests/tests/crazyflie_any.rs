@@ -6,8 +6,8 @@ use std::sync::atomic::Ordering::Relaxed;
 use proptest::prelude::*;
 use quatrack_crazyflie::abi::{Attitude, Control, Mode, Modes, Quaternion, SensorData, Setpoint, State, Vector};
 use quatrack_crazyflie::ffi;
-use quatrack_sim::crazyflie::{Firmware, Sensors, Tune};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_simulation::crazyflie::{Firmware, Sensors, Tune};
+use quatrack_simulation::vehicles;
 
 /// Numbers that make sense most of the time.
 fn number(size: f32) -> impl Strategy<Value = f32> {
@@ -111,7 +111,7 @@ proptest! {
         flown in prop::collection::vec((setpoint(), state(), 0..7_u8, number(0.15)), 1..30),
         first_step in prop_oneof![Just(10_u32), Just(u32::MAX - 101)],
     ) {
-        let vehicle = Vehicle::by_name(name).unwrap();
+        let vehicle = vehicles::by_name(name).unwrap();
         let tune = Tune { table: 0, motor_lag_s: 0.0 };
         let _alone = Firmware::start(&vehicle, &tune, Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 });
         let mut control = Control::default();

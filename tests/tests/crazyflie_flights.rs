@@ -3,17 +3,18 @@
 use nalgebra::Vector3;
 use quatrack_crazyflie::abi::{Attitude, Control, Mode, Modes, Setpoint};
 use quatrack_crazyflie::ffi;
-use quatrack_sim::crazyflie::{Case, Course, Firmware, Sensors, Tune, fly};
-use quatrack_sim::flight::robustness::NOISE;
-use quatrack_sim::plant::{Craft, RigidState};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_simulation::crazyflie::{Case, Course, Firmware, Sensors, Tune, fly};
+use quatrack_simulation::flight::robustness::NOISE;
+use quatrack_simulation::plant::{Craft, RigidState};
+use quatrack_simulation::vehicles;
 use std::sync::atomic::Ordering::Relaxed;
 
 const QUIET: Sensors = Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 };
 const DEFAULT: Tune = Tune { table: 0, motor_lag_s: 0.0 };
 
 fn vehicle(name: &str) -> Vehicle {
-    Vehicle::by_name(name).unwrap()
+    vehicles::by_name(name).unwrap()
 }
 
 fn case(lag_s: f64) -> Case {

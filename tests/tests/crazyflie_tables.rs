@@ -11,11 +11,11 @@ use quatrack_crazyflie::craft::{Craft as Flown, KNOWN, RATE};
 use quatrack_crazyflie::ffi;
 use quatrack_crazyflie::tables::{Gains, Refusal, Table, limits_within};
 use quatrack_crazyflie::upload::{PACKET_BYTES, Packet, Status};
-use quatrack_sim::crazyflie::{Course, Design, Firmware, Sensors, Setpoints, Stated, Tune, motor_gains};
-use quatrack_sim::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
-use quatrack_sim::design::discretise::zero_order_hold;
-use quatrack_sim::plant::{Craft, RigidState};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
+use quatrack_design::design::discretise::zero_order_hold;
+use quatrack_simulation::crazyflie::{Course, Design, Firmware, Sensors, Setpoints, Stated, Tune, motor_gains};
+use quatrack_simulation::plant::{Craft, RigidState};
+use quatrack_simulation::vehicles;
 
 const QUIET: Sensors = Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 };
 const LAG_S: f32 = 0.0635;
@@ -70,9 +70,9 @@ fn what_flies_with_a_stated_lag_is_stable_with_that_off_by_a_quarter_and_everyth
 #[test]
 fn the_crafts_are_those_of_the_vehicle_files() {
     for (known, name) in KNOWN.iter().zip(["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"]) {
-        let vehicle = Vehicle::by_name(name).unwrap();
+        let vehicle = vehicles::by_name(name).unwrap();
         let figures = known.airframe.figures();
-        assert_eq!((known.vehicle.name.as_str(), known.vehicle.id), (vehicle.name(), vehicle.id()), "{name}");
+        assert_eq!((known.vehicle.name.as_str(), known.vehicle.id), (vehicle.name(), vehicles::id(&vehicle)), "{name}");
         assert_eq!(figures.mass_kg, vehicle.mass_kg() as f32, "{name}");
         let motors = vehicle.motors();
         for (found, wanted) in [
@@ -113,7 +113,7 @@ fn known_lag_table(vehicle: TableVehicle) -> Vec<u8> {
 
 /// The same with limits of its own.
 fn table_within(vehicle: TableVehicle, limits: Limits) -> Vec<u8> {
-    let craft = Vehicle::by_name("crazyflie-2.1").unwrap();
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
     let design = actuator_aware(&craft, f64::from(LAG_S), &ActuatorAwareWeights::STANDARD, 0.002).unwrap();
     let rows = std::array::from_fn(|i| std::array::from_fn(|j| design.gain[(i, j)] as f32));
     let margins = Margins { gain_factor: 1.5, phase_rad: 0.4 };
@@ -168,7 +168,7 @@ fn with_checksum(mut table: Vec<u8>) -> Vec<u8> {
 
 #[test]
 fn a_table_is_sent_in_flight_and_taken_over_without_a_bump() {
-    let craft = Vehicle::by_name("crazyflie-2.1").unwrap();
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
     let mut firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: 0.0 }, QUIET);
     let mut plant = Craft::new(&craft);
     plant.motors = plant.motors.with_lag(LAG_S.into(), LAG_S.into());
@@ -203,7 +203,7 @@ fn a_table_is_sent_in_flight_and_taken_over_without_a_bump() {
 
 #[test]
 fn what_is_damaged_uncertified_or_for_another_craft_is_refused_and_changes_nothing() {
-    let craft = Vehicle::by_name("crazyflie-2.1").unwrap();
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
     let _firmware = Firmware::start(&craft, &Tune { table: 5, motor_lag_s: LAG_S.into() }, QUIET);
     let good = known_lag_table(KNOWN[0].vehicle);
 
@@ -233,7 +233,7 @@ fn what_is_damaged_uncertified_or_for_another_craft_is_refused_and_changes_nothi
 
 #[test]
 fn a_lag_is_stated_in_flight_and_one_that_nothing_is_certified_for_changes_nothing() {
-    let craft = Vehicle::by_name("crazyflie-2.1").unwrap();
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
     let _firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: 0.0 }, QUIET);
     let state = |lag_s: f32| {
         ffi::quatrack.parameters.motor_lag_s.set(lag_s);
@@ -270,7 +270,7 @@ fn limits_are_the_tighter_of_the_owners_and_the_tables() {
 
 #[test]
 fn a_sent_table_is_flown_within_its_own_limits() {
-    let craft = Vehicle::by_name("crazyflie-2.1").unwrap();
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
     let mut firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: LAG_S.into() }, QUIET);
     let plant = Craft::new(&craft);
     // Manual flight at 200 degrees a second of roll, which is 3.5 rad/s.
@@ -305,7 +305,7 @@ fn a_sent_table_is_flown_within_its_own_limits() {
 
 #[test]
 fn scales_stay_within_the_certificates_margin() {
-    let craft = Vehicle::by_name("crazyflie-2.1").unwrap();
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
     let _firmware = Firmware::start(&craft, &Tune { table: 0, motor_lag_s: 0.0 }, QUIET);
     let gains = || [0, 4, 10, 16].map(|index: usize| ffi::quatrack.gains.entries[index].get());
     let (plain, most) = (gains(), ffi::quatrack.gains.scale_max.get());

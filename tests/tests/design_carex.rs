@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::DMatrix;
-use quatrack_sim::design::{RiccatiSolution, care, strong_care};
+use quatrack_design::design::{RiccatiSolution, care, strong_care};
 
 struct Case {
     a: DMatrix<f64>,

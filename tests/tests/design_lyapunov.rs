@@ -3,7 +3,7 @@
 use nalgebra::DMatrix;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use quatrack_sim::design::{DesignError, decay_rate_design, lyapunov};
+use quatrack_design::design::{DesignError, decay_rate_design, lyapunov};
 
 fn matrix(rows: usize, columns: usize, entries: &[f64]) -> DMatrix<f64> {
     DMatrix::from_row_slice(rows, columns, entries)

@@ -1,10 +1,10 @@
 //! The four gains of the paper against the closed forms that pencil gives for their chains.
 
 use nalgebra::{DMatrix, SMatrix};
-use quatrack_sim::design::synthesis::{
+use quatrack_design::design::synthesis::{
     EquilibriumWeights, FlatWeights, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat,
 };
-use quatrack_sim::design::{DesignError, care, decay_rate_design};
+use quatrack_design::design::{DesignError, care, decay_rate_design};
 
 const G: f64 = 9.81;
 
@@ -160,9 +160,9 @@ fn a_plant_that_decays_faster_than_mu_is_refused_by_name_of_its_pole() {
 
 #[test]
 fn the_unreduced_hover_model_is_refused_by_both_designs() {
-    let (a, b) = quatrack_sim::model::linear::linearise(
-        &quatrack_sim::model::hover_state(),
-        &quatrack_sim::model::hover_input(),
+    let (a, b) = quatrack_design::model::linear::linearise(
+        &quatrack_design::model::hover_state(),
+        &quatrack_design::model::hover_input(),
     );
     let a = DMatrix::from_column_slice(10, 10, a.as_slice());
     let b = DMatrix::from_column_slice(10, 4, b.as_slice());

@@ -2,8 +2,8 @@
 
 use nalgebra::DMatrix;
 use proptest::prelude::*;
-use quatrack_sim::analysis::MatrixError;
-use quatrack_sim::design::{DesignError, RiccatiSolution, care, lqr, strong_care};
+use quatrack_design::analysis::MatrixError;
+use quatrack_design::design::{DesignError, RiccatiSolution, care, lqr, strong_care};
 use quatrack_tests::design_problem::{
     cases, hidden_mode, identity, matrix, random_problem, relative_error, scales_with_the_states,
 };

@@ -1,13 +1,13 @@
 //! Gains for a control rate: the paper's problems in 70 digits, their limit, their cost, integrals and delays.
 
 use nalgebra::DMatrix;
-use quatrack_sim::analysis::eigenvalues;
-use quatrack_sim::design::discretise::zero_order_hold;
-use quatrack_sim::design::integral::{IntegralWeights, lqi, sampled_lqi};
-use quatrack_sim::design::sampled::{
+use quatrack_design::analysis::eigenvalues;
+use quatrack_design::design::discretise::zero_order_hold;
+use quatrack_design::design::integral::{IntegralWeights, lqi, sampled_lqi};
+use quatrack_design::design::sampled::{
     CostForm, Sampling, equilibrium_pair, sampled_cost, sampled_equilibrium, sampled_flat,
 };
-use quatrack_sim::design::synthesis::{EquilibriumWeights, FlatWeights, lqr_equilibrium};
+use quatrack_design::design::synthesis::{EquilibriumWeights, FlatWeights, lqr_equilibrium};
 
 fn matrix(rows: usize, columns: usize, entries: &[f64]) -> DMatrix<f64> {
     DMatrix::from_row_slice(rows, columns, entries)

@@ -1,20 +1,20 @@
 //! Gains over time: the error dynamics against the model itself, a hover, and the letter W.
 
 use nalgebra::{DMatrix, Quaternion, Rotation3, SMatrix, SVector, UnitQuaternion, Vector3};
-use quatrack_sim::design::DesignError;
-use quatrack_sim::design::along::{error_dynamics, gains_along};
-use quatrack_sim::design::sampled::{Sampling, equilibrium_pair, sampled_equilibrium};
-use quatrack_sim::design::synthesis::EquilibriumWeights;
-use quatrack_sim::flight::closed_loop::{HeldCommand, fly_sampled};
-use quatrack_sim::flight::law::{Feedback, Law};
-use quatrack_sim::flight::metrics::Metrics;
-use quatrack_sim::flight::reference::{Exact, Reference};
-use quatrack_sim::model::flat::{ReferencePoint, reference_point, scalar_first, unit};
-use quatrack_sim::model::{
+use quatrack_design::design::DesignError;
+use quatrack_design::design::along::{error_dynamics, gains_along};
+use quatrack_design::design::sampled::{Sampling, equilibrium_pair, sampled_equilibrium};
+use quatrack_design::design::synthesis::EquilibriumWeights;
+use quatrack_design::model::flat::FlatSample;
+use quatrack_design::model::flat::{ReferencePoint, reference_point, scalar_first, unit};
+use quatrack_design::model::{
     ATTITUDE, InputVector, POSITION, StateVector, VELOCITY, attitude, dynamics, position, velocity,
 };
-use quatrack_sim::plan::paper;
-use quatrack_sim::trajectory::FlatSample;
+use quatrack_plan::plan::paper;
+use quatrack_simulation::flight::closed_loop::{HeldCommand, fly_sampled};
+use quatrack_simulation::flight::law::{Feedback, Law};
+use quatrack_simulation::flight::metrics::Metrics;
+use quatrack_simulation::flight::reference::{Exact, Reference};
 
 fn at_rest() -> ReferencePoint {
     let zero = Vector3::zeros();

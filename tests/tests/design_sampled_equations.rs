@@ -2,10 +2,10 @@
 
 use nalgebra::DMatrix;
 use proptest::prelude::*;
-use quatrack_sim::analysis::eigenvalues;
-use quatrack_sim::design::discretise::{exponential, zero_order_hold, zero_order_hold_late};
-use quatrack_sim::design::sampled::{CostForm, Sampling, sampled_lqr};
-use quatrack_sim::design::{DesignError, dare, dlqr, dlqr_with_cross, stein};
+use quatrack_design::analysis::eigenvalues;
+use quatrack_design::design::discretise::{exponential, zero_order_hold, zero_order_hold_late};
+use quatrack_design::design::sampled::{CostForm, Sampling, sampled_lqr};
+use quatrack_design::design::{DesignError, dare, dlqr, dlqr_with_cross, stein};
 use quatrack_tests::design_problem::{
     cases, hidden_mode, identity, matrix, random_problem, relative_error, scales_with_the_states,
 };

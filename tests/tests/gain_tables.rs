@@ -2,11 +2,11 @@
 
 use nalgebra::SMatrix;
 use quatrack::gains::paper;
-use quatrack_sim::design::codegen::{paper_tables, rounded};
-use quatrack_sim::design::synthesis::{
+use quatrack_design::design::codegen::{ENTRY_MIN, paper_tables, rounded};
+use quatrack_design::design::synthesis::{
     EquilibriumWeights, FlatWeights, PAPER_MU, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat,
 };
-use quatrack_sim::model::GRAVITY_M_S2 as G;
+use quatrack_design::model::GRAVITY_M_S2 as G;
 
 /// A gain that is zero but for the entries given as (row, column, value).
 fn sparse<const M: usize, const N: usize>(entries: &[(usize, usize, f64)]) -> SMatrix<f64, M, N> {
@@ -92,4 +92,10 @@ fn the_committed_tables_are_the_synthesis_rounded_to_f32() {
 #[test]
 fn the_committed_source_is_what_the_generator_writes() {
     assert_eq!(include_str!("../../core/src/gains/paper.rs"), paper_tables().unwrap());
+}
+
+/// The design crate does without the core and so has the number once more.
+#[test]
+fn entries_become_zero_below_what_the_core_takes() {
+    assert_eq!(ENTRY_MIN.to_bits(), quatrack::gains::table::ENTRY_MIN.to_bits());
 }

@@ -6,17 +6,18 @@ use std::path::Path;
 use nalgebra::{SMatrix, Vector3};
 use quatrack::Trajectory;
 use quatrack::gains::table::{ScheduleRows, ScheduleTable, TableKind};
-use quatrack_sim::certify::{
+use quatrack_design::certify::{
     Certificate, CertifyError, Controller, Plant, Timing, certify, certify_along, moving_decrease,
 };
-use quatrack_sim::design::along::{GainsAlong, gains_along};
-use quatrack_sim::design::sampled::{Sampling, sampled_equilibrium};
-use quatrack_sim::design::synthesis::EquilibriumWeights;
-use quatrack_sim::gains::{Course, Design, GainsError, Problem, Table};
-use quatrack_sim::model::flat::{ReferencePoint, reference_point};
-use quatrack_sim::pil::stored;
-use quatrack_sim::reproduction::table::Course as Paper;
-use quatrack_sim::trajectory::{FlatSample, Trajectory as _};
+use quatrack_design::design::along::{GainsAlong, gains_along};
+use quatrack_design::design::sampled::{Sampling, sampled_equilibrium};
+use quatrack_design::design::synthesis::EquilibriumWeights;
+use quatrack_design::model::flat::FlatSample;
+use quatrack_design::model::flat::{ReferencePoint, reference_point};
+use quatrack_plan::plan::paper::Course as Paper;
+use quatrack_plan::plan::stored;
+use quatrack_plan::trajectory::Trajectory as _;
+use quatrack_simulation::gains::{Course, Design, GainsError, Problem, Table};
 use serde_json::Value;
 
 mod generated {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use quatrack_sim::design::synthesis::{EquilibriumWeights, FlatWeights};
-use quatrack_sim::gains::{Design, Gains, GainsError, Method, Problem};
+use quatrack_design::design::synthesis::{EquilibriumWeights, FlatWeights};
+use quatrack_simulation::gains::{Design, Gains, GainsError, Method, Problem};
 
 const LQR_E: &str = include_str!("../../gains/lqr-e.toml");
 const LQR_F: &str = include_str!("../../gains/lqr-f.toml");

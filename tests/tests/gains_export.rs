@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::DMatrix;
-use quatrack_sim::gains::{Design, Export};
+use quatrack_simulation::gains::{Design, Export};
 use serde_json::Value;
 
 fn export(name: &str, text: &str) -> Value {

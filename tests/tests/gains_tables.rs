@@ -5,6 +5,7 @@ use quatrack::gains::paper;
 use quatrack::gains::table::{AcceptedTable, GainTable, Name, Rows, TableKind, Vehicle};
 use quatrack::law::{EquilibriumGain, FlatOutputGain};
 use quatrack::{Limits, Rate};
+use quatrack_simulation::vehicles;
 use serde_json::Value;
 
 macro_rules! generated {
@@ -62,8 +63,8 @@ fn rust_and_binary_tables_hold_the_same_gains_and_the_papers_are_those_of_the_im
 
 #[test]
 fn the_board_accepts_every_table_for_its_vehicle_and_rate_alone() {
-    let described = quatrack_sim::vehicle::Vehicle::by_name("crazyflie-2.1").unwrap();
-    let vehicle = Vehicle { name: Name::new(described.name()).unwrap(), id: described.id() };
+    let described = vehicles::by_name("crazyflie-2.1").unwrap();
+    let vehicle = Vehicle { name: Name::new(described.name()).unwrap(), id: vehicles::id(&described) };
     for (name, bytes, _) in FILES {
         let rate = Rate::from_hz(if name.ends_with("100hz") { 100 } else { 500 }).unwrap();
         let table = AcceptedTable::from_bytes(bytes, &vehicle, rate).unwrap();
@@ -74,7 +75,7 @@ fn the_board_accepts_every_table_for_its_vehicle_and_rate_alone() {
             _ => TableKind::Equilibrium,
         };
         assert_eq!(table.kind(), kind, "{name}");
-        let limits: Limits = described.limits().unwrap();
+        let limits: Limits = vehicles::limits(&described).unwrap();
         assert_eq!(table.limits(), limits, "{name}");
         assert!(AcceptedTable::from_bytes(bytes, &vehicle, Rate::from_hz(250).unwrap()).is_err());
         assert!(AcceptedTable::from_bytes(bytes, &Vehicle { id: vehicle.id ^ 1, ..vehicle }, rate).is_err());

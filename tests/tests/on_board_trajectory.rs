@@ -3,10 +3,10 @@
 use quatrack::nalgebra::Vector3;
 use quatrack::trajectory::{MAX_DURATION_NS, TrajectoryError};
 use quatrack::{FlatSample, Piece, Player, Rate, Trajectory};
-use quatrack_sim::flight::core_loop;
-use quatrack_sim::plan;
-use quatrack_sim::trajectory::Trajectory as _;
-use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_plan::plan;
+use quatrack_plan::trajectory::Trajectory as _;
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 
 fn paper_trajectories() -> [PiecewisePolynomial; 2] {
     [plan::paper::mild(), plan::paper::aggressive()]
@@ -21,7 +21,7 @@ fn constant(duration_ns: u64, x: f32) -> Piece {
 #[test]
 fn the_player_follows_the_papers_trajectories_at_any_rate() {
     for trajectory in paper_trajectories() {
-        let pieces = core_loop::pieces(&trajectory);
+        let pieces = on_board::pieces(&trajectory);
         for hz in [100, 333, 500, 1000] {
             let mut player = Player::new(Trajectory::new(&pieces).unwrap(), Rate::from_hz(hz).unwrap());
             for tick in 0..player.end_tick() {
@@ -43,7 +43,7 @@ fn the_player_follows_the_papers_trajectories_at_any_rate() {
 #[test]
 fn ticks_may_jump_and_run_backwards() {
     let [_, trajectory] = paper_trajectories();
-    let pieces = core_loop::pieces(&trajectory);
+    let pieces = on_board::pieces(&trajectory);
     let new = || Player::new(Trajectory::new(&pieces).unwrap(), Rate::from_hz(500).unwrap());
     let mut forwards = new();
     let in_order: Vec<FlatSample> = (0..6000).map(|tick| forwards.at(tick)).collect();
@@ -59,7 +59,7 @@ fn ticks_may_jump_and_run_backwards() {
 #[test]
 fn a_bookmark_goes_on_where_the_player_was() {
     let [mild, w] = paper_trajectories();
-    let (pieces, others) = (core_loop::pieces(&w), core_loop::pieces(&mild));
+    let (pieces, others) = (on_board::pieces(&w), on_board::pieces(&mild));
     let trajectory = Trajectory::new(&pieces).unwrap();
     let mut whole = Player::new(trajectory, Rate::from_hz(500).unwrap());
     let mut bookmark = whole.bookmark();
@@ -110,7 +110,7 @@ fn what_cannot_be_flown_is_refused_by_piece() {
 
 #[test]
 fn a_checksum_tells_trajectories_apart() {
-    let [mild, aggressive] = paper_trajectories().map(|trajectory| core_loop::pieces(&trajectory));
+    let [mild, aggressive] = paper_trajectories().map(|trajectory| on_board::pieces(&trajectory));
     let checksum = |pieces: &[Piece]| Trajectory::new(pieces).unwrap().checksum();
     // Byte by byte as documented, with the checksum of the frames of the link.
     let bytes: Vec<u8> = mild

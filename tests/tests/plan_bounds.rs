@@ -1,8 +1,8 @@
 //! Plans other than the paper's: bounds hold for all t, and where they cannot, the report says which is too tight.
 
-use quatrack_sim::plan::{Extremes, Infeasibility, Limit, Plan, PlanError, paper};
-use quatrack_sim::trajectory::Trajectory;
-use quatrack_sim::trajectory::bspline::BSpline;
+use quatrack_plan::plan::{Extremes, Infeasibility, Limit, Plan, PlanError, paper};
+use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::bspline::BSpline;
 
 /// The mild plan with lines that start with a key replaced, all of them.
 fn mild_with(edits: &[(&str, &str)]) -> String {

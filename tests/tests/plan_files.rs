@@ -1,6 +1,6 @@
 //! Plan files that cannot be used: each is refused with a line that names what is wrong, its value and what it must be.
 
-use quatrack_sim::plan::{Plan, PlanError};
+use quatrack_plan::plan::{Plan, PlanError};
 
 const HEAD: &str = "degree = 5\nspans = 10\nduration_s = 4.0\nsnap_sample_period_s = 0.1\n";
 const START: &str = "[[waypoints]]\ntime_s = 0.0\nposition_m = [0, 0, 0]\n";

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use nalgebra::Vector3;
-use quatrack_sim::plan::{Extremes, Limit, Plan, paper};
-use quatrack_sim::trajectory::bspline::BSpline;
+use quatrack_plan::plan::{Extremes, Limit, Plan, paper};
+use quatrack_plan::trajectory::bspline::BSpline;
 
 fn mild() -> (Plan, BSpline) {
     let plan = paper::mild().unwrap();

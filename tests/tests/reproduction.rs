@@ -2,15 +2,16 @@
 
 use std::path::Path;
 
-use quatrack_sim::flight::closed_loop::{SAMPLE_PERIOD_S, Solver, fly_continuous};
-use quatrack_sim::flight::metrics::Metrics;
-use quatrack_sim::flight::reference::{Exact, Sampled};
-use quatrack_sim::integrator::Method;
-use quatrack_sim::plan;
-use quatrack_sim::reproduction::report::Reproduction;
-use quatrack_sim::reproduction::table::{Controller, Course, Gains, fly_cell};
-use quatrack_sim::trajectory::file::{self, TrajectoryFile};
-use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_plan::plan;
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::trajectory::file::{self, TrajectoryFile};
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_simulation::flight::closed_loop::{SAMPLE_PERIOD_S, Solver, fly_continuous};
+use quatrack_simulation::flight::metrics::Metrics;
+use quatrack_simulation::flight::reference::{Exact, Sampled};
+use quatrack_simulation::integrator::Method;
+use quatrack_simulation::reproduction::report::Reproduction;
+use quatrack_simulation::reproduction::table::{Controller, Gains, fly_cell};
 
 fn paper_trajectories() -> [PiecewisePolynomial; 2] {
     [plan::paper::mild(), plan::paper::aggressive()]
@@ -88,10 +89,12 @@ fn the_paper_s_integrator_agrees_with_runge_kutta_to_four_digits() {
     for trajectory in [mild, aggressive] {
         for controller in [Controller::LyapE, Controller::LqrE] {
             let reference =
-                Sampled::new(&trajectory, SAMPLE_PERIOD_S, quatrack_sim::reproduction::published::reference);
+                Sampled::new(&trajectory, SAMPLE_PERIOD_S, quatrack_simulation::reproduction::published::reference);
             let gain = gains.equilibrium(controller).unwrap();
             let iae = |method| {
-                let law = |x: &_, target: &_| quatrack_sim::reproduction::published::equilibrium_input(gain, x, target);
+                let law = |x: &_, target: &_| {
+                    quatrack_simulation::reproduction::published::equilibrium_input(gain, x, target)
+                };
                 let flight = fly_continuous(&reference, law, Solver::Fixed { method, substeps: 1 });
                 Metrics::of(&flight).iae_m_s.unwrap()
             };
@@ -104,7 +107,7 @@ fn the_paper_s_integrator_agrees_with_runge_kutta_to_four_digits() {
 #[test]
 fn a_flight_that_cannot_be_held_is_lost_and_has_no_iae() {
     let [mild, _] = paper_trajectories();
-    let runaway = |_: &_, _: &_| quatrack_sim::model::InputVector::new(1e3, 0.0, 0.0, 0.0);
+    let runaway = |_: &_, _: &_| quatrack_design::model::InputVector::new(1e3, 0.0, 0.0, 0.0);
     let flight = fly_continuous(&Exact(&mild), runaway, Solver::PAPER);
     let lost = flight.lost.as_ref().unwrap();
     // 990 m/s^2 upwards: 1 km after sqrt(2000 / 990) s.

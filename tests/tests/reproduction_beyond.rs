@@ -2,11 +2,11 @@
 
 use std::sync::LazyLock;
 
-use quatrack_sim::plan;
-use quatrack_sim::reproduction::beyond::{Beyond, Figures, Method, RATES_HZ};
-use quatrack_sim::reproduction::report::Reproduction;
-use quatrack_sim::reproduction::table::Course;
-use quatrack_sim::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_plan::plan;
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_simulation::reproduction::beyond::{Beyond, Figures, Method, RATES_HZ};
+use quatrack_simulation::reproduction::report::Reproduction;
 
 const COURSES: [Course; 2] = [Course::Mild, Course::Aggressive];
 

@@ -1,13 +1,14 @@
 //! The rigid plant alone, against what mechanics says: free fall, hover, conservation, analytic rotations, lag, order.
 
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
-use quatrack_sim::plant::{Craft, Ground, RigidState, Shove};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_simulation::plant::{Craft, Ground, RigidState, Shove};
+use quatrack_simulation::vehicles;
 
 const G: f64 = 9.81;
 
 fn vehicle() -> Vehicle {
-    Vehicle::by_name("crazyflie-2.1").expect("built in")
+    vehicles::by_name("crazyflie-2.1").expect("built in")
 }
 
 /// The 2.1 with the off-diagonal inertia that Foerster identified.
@@ -16,7 +17,7 @@ fn skewed() -> Vehicle {
         .replace("[16.571710e-6, 0.0, 0.0]", "[16.571710e-6, 0.830806e-6, 0.718277e-6]")
         .replace("[0.0, 16.655602e-6, 0.0]", "[0.830806e-6, 16.655602e-6, 1.800197e-6]")
         .replace("[0.0, 0.0, 29.261652e-6]", "[0.718277e-6, 1.800197e-6, 29.261652e-6]");
-    Vehicle::from_toml(&text).expect("valid")
+    vehicles::from_toml(&text).expect("valid")
 }
 
 /// A craft whose motors may stand still.
@@ -46,8 +47,8 @@ fn free_fall_is_a_parabola() {
 
 #[test]
 fn hover_trim_stays() {
-    for name in Vehicle::names() {
-        let vehicle = Vehicle::by_name(name).expect("built in");
+    for name in vehicles::names() {
+        let vehicle = vehicles::by_name(name).expect("built in");
         let start = RigidState::at_rest(Vector3::new(0.0, 0.0, 1.0), vehicle.hover_thrust_n());
         let commands = Vector4::repeat(vehicle.hover_thrust_n());
         let end = Craft::new(&vehicle).hold(&start, &commands, 0.0, 10.0);
@@ -103,7 +104,7 @@ fn halving_the_step_divides_the_error_by_sixteen() {
 #[test]
 fn a_symmetric_top_precesses_as_euler_says() {
     let text = include_str!("../../gains/vehicles/crazyflie-2.1.toml").replace("16.655602e-6", "16.571710e-6");
-    let vehicle = Vehicle::from_toml(&text).expect("valid");
+    let vehicle = vehicles::from_toml(&text).expect("valid");
     let mut start = RigidState::at_rest(Vector3::zeros(), 0.0);
     start.body_rates_rad_s = Vector3::new(4.0, 0.0, 6.0);
     let end = without_thrust(&vehicle).hold(&start, &Vector4::zeros(), 0.0, 2.0);
@@ -163,8 +164,8 @@ fn a_shove_gives_its_impulse() {
 
 #[test]
 fn a_dropped_craft_comes_to_stand_on_its_feet() {
-    for name in Vehicle::names() {
-        let vehicle = Vehicle::by_name(name).expect("built in");
+    for name in vehicles::names() {
+        let vehicle = vehicles::by_name(name).expect("built in");
         let craft = without_thrust(&vehicle).with_load(Ground::under(&vehicle));
         let mut x = RigidState::at_rest(Vector3::new(0.0, 0.0, 0.06), 0.0);
         x.attitude = UnitQuaternion::from_euler_angles(0.1, -0.05, 0.3);

@@ -1,14 +1,15 @@
 //! The robustness flights and the manoeuvres, held to figures: the f32 core at 500 Hz on the rigid plant.
 
-use quatrack_sim::certify::Region;
-use quatrack_sim::design::actuator_aware::ActuatorAwareWeights;
-use quatrack_sim::flight::manoeuvres::{Manoeuvre, Outcome};
-use quatrack_sim::flight::motor_laws::{AwareTable, default_lag_s};
-use quatrack_sim::flight::robustness::{CASES, Report, report};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::certify::Region;
+use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_simulation::flight::manoeuvres::{Manoeuvre, Outcome};
+use quatrack_simulation::flight::motor_laws::{AwareTable, default_lag_s};
+use quatrack_simulation::flight::robustness::{CASES, Report, report};
+use quatrack_simulation::vehicles;
 
 fn vehicle(name: &str) -> Vehicle {
-    Vehicle::by_name(name).expect("built in")
+    vehicles::by_name(name).expect("built in")
 }
 
 fn iae(report: &Report, law: &str, lag_ms: f64, case: &str) -> Option<f64> {
@@ -51,7 +52,7 @@ fn every_case_is_flown_closer_than_by_the_prototype_of_the_law() {
 
 #[test]
 fn manoeuvres_end_where_they_should_on_every_vehicle() {
-    for name in Vehicle::names() {
+    for name in vehicles::names() {
         let vehicle = vehicle(name);
         let weights = &ActuatorAwareWeights::STANDARD;
         let region = Region::of_any_crazyflie();

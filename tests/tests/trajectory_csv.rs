@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use proptest::prelude::*;
-use quatrack_sim::trajectory::Trajectory;
-use quatrack_sim::trajectory::polynomial::csv::{self, CsvError};
-use quatrack_sim::trajectory::polynomial::{Coordinate, Piece, PiecewisePolynomial};
+use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::polynomial::csv::{self, CsvError};
+use quatrack_plan::trajectory::polynomial::{Coordinate, Piece, PiecewisePolynomial};
 
 /// A row that stays at x = `from`.
 fn row(duration: &str, from: &str) -> String {

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use proptest::prelude::*;
-use quatrack_sim::trajectory::Trajectory;
-use quatrack_sim::trajectory::file::{self, FileError, TrajectoryFile};
+use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::file::{self, FileError, TrajectoryFile};
 
 const TOML: &str = "# a comment\ndegree = 2\nduration_s = 3.0\ncontrol_points_m = [\n  [0.0, 0.0, 0.0],\n  \
                     [1.0, 0.5, 0.25],\n  [1, 1, 1],\n]\n";

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
-use quatrack_sim::trajectory::Trajectory;
-use quatrack_sim::trajectory::bspline::BSpline;
-use quatrack_sim::trajectory::polynomial::{Coordinate, Piece, PiecewisePolynomial, PolynomialError};
+use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::bspline::BSpline;
+use quatrack_plan::trajectory::polynomial::{Coordinate, Piece, PiecewisePolynomial, PolynomialError};
 
 /// Control points of the size of the paper's: a metre or two.
 fn wavy(degree: usize, spans: usize) -> BSpline {

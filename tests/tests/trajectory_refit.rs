@@ -4,14 +4,14 @@
 use std::num::NonZeroUsize;
 
 use nalgebra::Vector3;
-use quatrack_sim::flight::deviation::Deviation;
-use quatrack_sim::flight::reference::Exact;
-use quatrack_sim::plan;
-use quatrack_sim::trajectory::Trajectory;
-use quatrack_sim::trajectory::bspline::BSpline;
-use quatrack_sim::trajectory::poly4d::{PIECE_BYTES, PIECES_MAX, StoreError, StoredTrajectory};
-use quatrack_sim::trajectory::polynomial::{Coordinate, Piece, PiecewisePolynomial};
-use quatrack_sim::trajectory::refit;
+use quatrack_plan::plan;
+use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::bspline::BSpline;
+use quatrack_plan::trajectory::poly4d::{PIECE_BYTES, PIECES_MAX, StoreError, StoredTrajectory};
+use quatrack_plan::trajectory::polynomial::{Coordinate, Piece, PiecewisePolynomial};
+use quatrack_plan::trajectory::refit;
+use quatrack_simulation::flight::deviation::Deviation;
+use quatrack_simulation::flight::reference::Exact;
 
 fn pieces_of(curve: &BSpline) -> PiecewisePolynomial {
     PiecewisePolynomial::from_bspline(curve).expect("a spline of a few metres")

@@ -1,29 +1,34 @@
 //! Vehicles: the built-in files, what their figures come to, and what is refused.
 
-use quatrack_sim::vehicle::{Vehicle, VehicleError};
+use quatrack_design::vehicle::VehicleError;
+use quatrack_simulation::vehicles::{self, VehicleFileError};
 
 const TEXT: &str = include_str!("../../gains/vehicles/crazyflie-2.1.toml");
 
 #[test]
 fn the_board_flies_tables_for_the_vehicle_that_they_are_designed_for() {
-    let vehicle = Vehicle::by_name("crazyflie-2.1").expect("built in");
+    let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     // The image is built for the target alone, so its source is read.
     let laws = include_str!("../../firmware/src/laws.rs");
     let declared = laws.lines().find(|line| line.starts_with("pub const VEHICLE: Vehicle")).expect("declared");
     assert!(declared.contains(&format!("Name::literal(\"{}\")", vehicle.name())), "{declared}");
     let id = declared.split_once("id: 0x").and_then(|(_, rest)| rest.split_once(' ')).expect("an id").0;
-    assert_eq!(u32::from_str_radix(&id.replace('_', ""), 16), Ok(vehicle.id()), "gains/vehicles/crazyflie-2.1.toml");
+    assert_eq!(
+        u32::from_str_radix(&id.replace('_', ""), 16),
+        Ok(vehicles::id(&vehicle)),
+        "gains/vehicles/crazyflie-2.1.toml"
+    );
 }
 
 #[test]
 fn built_in_vehicles_hover_between_their_limits() {
-    for name in Vehicle::names() {
-        let vehicle = Vehicle::by_name(name).expect("built in");
+    for name in vehicles::names() {
+        let vehicle = vehicles::by_name(name).expect("built in");
         assert_eq!(vehicle.name(), name.strip_suffix("-kit").unwrap_or(name));
-        assert_eq!(Vehicle::by_name(vehicle.name()), Ok(vehicle.clone()));
+        assert_eq!(vehicles::by_name(vehicle.name()), Ok(vehicle.clone()));
         let [min, max] = vehicle.thrust_limits_m_s2();
         assert!(min < 9.81 && max > 1.5 * 9.81, "{name}: {min} to {max} m/s^2");
-        assert!(vehicle.limits().is_ok());
+        assert!(vehicles::limits(&vehicle).is_ok());
         let [shortest, longest] = vehicle.motors().published_lag_s;
         assert!((shortest..=longest).contains(&vehicle.motors().lag_s), "{name}");
     }
@@ -31,7 +36,7 @@ fn built_in_vehicles_hover_between_their_limits() {
 
 #[test]
 fn the_crazyflie_has_the_firmware_s_figures() {
-    let vehicle = Vehicle::by_name("crazyflie-2.1").expect("built in");
+    let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     // 0.029 kg * 9.81 m/s^2 / 4.
     assert!((vehicle.hover_thrust_n() - 0.071_122_5).abs() < 1e-15);
     let mixing = vehicle.motors().mixing();
@@ -47,13 +52,13 @@ fn the_crazyflie_has_the_firmware_s_figures() {
 
 #[test]
 fn the_id_tells_figures_and_names_apart_and_ignores_comments() {
-    let id = |text: &str| Vehicle::from_toml(text).expect("valid").id();
+    let id = |text: &str| vehicles::id(&vehicles::from_toml(text).expect("valid"));
     let known = id(TEXT);
     assert_eq!(known, id(&format!("# another comment\n{TEXT}")));
     assert_ne!(known, id(&TEXT.replace("mass_kg = 0.029", "mass_kg = 0.0291")));
     assert_ne!(known, id(&TEXT.replace("name = \"crazyflie-2.1\"", "name = \"mine\"")));
     assert_ne!(known, id(&TEXT.replace("\nlag_s = 0.126", "\nlag_s = 0.1")));
-    let all = Vehicle::names().map(|name| Vehicle::by_name(name).expect("built in").id());
+    let all = vehicles::names().map(|name| vehicles::id(&vehicles::by_name(name).expect("built in")));
     assert!(all[0] != all[1] && all[1] != all[2] && all[0] != all[2]);
 }
 
@@ -61,10 +66,10 @@ fn the_id_tells_figures_and_names_apart_and_ignores_comments() {
 fn refusals_name_the_field() {
     let refused = |from: &str, to: &str| {
         assert!(TEXT.contains(from), "{from}");
-        Vehicle::from_toml(&TEXT.replace(from, to)).expect_err("refused")
+        vehicles::from_toml(&TEXT.replace(from, to)).expect_err("refused")
     };
     let field = |from: &str, to: &str| match refused(from, to) {
-        VehicleError::Value { field, .. } => field,
+        VehicleFileError::Refused(VehicleError::Value { field, .. }) => field,
         other => panic!("{other}"),
     };
     assert_eq!(field("mass_kg = 0.029", "mass_kg = -0.029"), "body.mass_kg");
@@ -77,7 +82,7 @@ fn refusals_name_the_field() {
     assert_eq!(field("[0.0635, 0.126]", "[0.126, 0.0635]"), "motors.published_lag_s");
     assert_eq!(field("[20.0, 20.0, 10.0]", "[20.0, 0.0, 10.0]"), "limits.body_rates_rad_s");
     let at = 1 + TEXT.lines().position(|line| line.starts_with("arm_m")).expect("is there");
-    assert!(matches!(refused("\narm_m", "\narm_mm"), VehicleError::Syntax { line, .. } if line == at));
-    let unknown = Vehicle::by_name("crazyflie").expect_err("refused").to_string();
+    assert!(matches!(refused("\narm_m", "\narm_mm"), VehicleFileError::Syntax { line, .. } if line == at));
+    let unknown = vehicles::by_name("crazyflie").expect_err("refused").to_string();
     assert!(unknown.contains("crazyflie-2.1-upgrade-kit"), "{unknown}");
 }

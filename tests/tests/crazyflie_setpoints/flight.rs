@@ -5,9 +5,10 @@ use std::sync::atomic::Ordering::Relaxed;
 use nalgebra::Vector3;
 use quatrack_crazyflie::abi::Setpoint;
 use quatrack_crazyflie::ffi;
-use quatrack_sim::crazyflie::{Firmware, Sensors, Tune};
-use quatrack_sim::plant::{Craft, RigidState};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_simulation::crazyflie::{Firmware, Sensors, Tune};
+use quatrack_simulation::plant::{Craft, RigidState};
+use quatrack_simulation::vehicles;
 
 use crate::planner::Planned;
 use crate::sent::position;
@@ -26,7 +27,7 @@ pub(crate) struct Flight {
 
 impl Flight {
     pub(crate) fn of(name: &str, table: u8, motor_lag_s: f64) -> Self {
-        let vehicle = Vehicle::by_name(name).unwrap();
+        let vehicle = vehicles::by_name(name).unwrap();
         let firmware = Firmware::start(&vehicle, &Tune { table, motor_lag_s }, QUIET);
         let state = RigidState::at_rest(Vector3::z(), vehicle.hover_thrust_n());
         let mut craft = Craft::new(&vehicle);

@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering::Relaxed;
 use nalgebra::Vector3;
 use quatrack_crazyflie::abi::Setpoint;
 use quatrack_crazyflie::ffi;
-use quatrack_sim::plant::{Craft, Ground, RigidState};
+use quatrack_simulation::plant::{Craft, Ground, RigidState};
 
 use crate::flight::{CRAFTS, Flight, MapInto};
 use crate::planner::{Piece, Planned};

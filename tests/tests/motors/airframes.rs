@@ -1,14 +1,14 @@
 //! The core's constants and the host's vehicle files are the same craft.
 
 use quatrack::{Airframe, AirframeFigures};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_simulation::vehicles;
 
 use super::CRAFT;
 
 #[test]
 fn constants_are_the_vehicle_files() {
     for (name, airframe) in CRAFT {
-        let vehicle = Vehicle::by_name(name).unwrap();
+        let vehicle = vehicles::by_name(name).unwrap();
         let motors = vehicle.motors();
         let expected = AirframeFigures {
             mass_kg: vehicle.mass_kg() as f32,
@@ -27,7 +27,7 @@ fn constants_are_the_vehicle_files() {
 #[test]
 fn wrench_is_the_hosts_mixing() {
     for (name, airframe) in CRAFT {
-        let mixing = Vehicle::by_name(name).unwrap().motors().mixing();
+        let mixing = vehicles::by_name(name).unwrap().motors().mixing();
         for motor in 0..4 {
             let mut forces = [0.0; 4];
             forces[motor] = 0.1_f32;

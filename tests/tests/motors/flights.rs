@@ -7,8 +7,8 @@ use quatrack::{
     ActuatorMemory, Airframe, BodyRateLoop, ByBodyRates, Equilibrium, FeedForward, MotorLag, MotorLaw, MotorReference,
     MotorTracker, Rate, Tracker,
 };
-use quatrack_sim::plant::{Craft, RigidState};
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_simulation::plant::{Craft, RigidState};
+use quatrack_simulation::vehicles;
 
 use super::law::{RATE_HZ, designed, tracker};
 use super::{Eight, measured, on};
@@ -35,7 +35,7 @@ fn fly(
 }
 
 fn craft(lag_s: f64) -> (Craft, Airframe) {
-    let mut craft = Craft::new(&Vehicle::by_name("crazyflie-2.1").unwrap());
+    let mut craft = Craft::new(&vehicles::by_name("crazyflie-2.1").unwrap());
     craft.motors = craft.motors.with_lag(lag_s, lag_s);
     let airframe = Airframe::CRAZYFLIE_2_1.with_motor_lag(lag_s as f32).unwrap();
     (craft, airframe.commanded_at(Rate::from_hz(RATE_HZ).unwrap()))
@@ -82,7 +82,7 @@ fn the_papers_law_flies_through_rate_loop_and_mixer_where_motors_are_quick_and_n
         let law = ByBodyRates {
             tracker: Tracker::new(
                 Equilibrium { feed_forward: FeedForward::With, ..Equilibrium::new(&paper::LQR_E) },
-                Vehicle::by_name("crazyflie-2.1").unwrap().limits().unwrap(),
+                vehicles::limits(&vehicles::by_name("crazyflie-2.1").unwrap()).unwrap(),
             ),
             body_rates: BodyRateLoop::behind_lag(&airframe),
             lag: MotorLag::new(lag_s as f32, Rate::from_hz(RATE_HZ).unwrap()).unwrap(),

@@ -7,9 +7,9 @@ use quatrack::{
     ActuatorAware, ActuatorAwareGain, ActuatorMemory, Airframe, MotorLaw, MotorReference, MotorStep, MotorTracker,
     Quaternion, Rate, RigidState,
 };
-use quatrack_sim::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
-use quatrack_sim::design::codegen::rounded;
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
+use quatrack_design::design::codegen::rounded;
+use quatrack_simulation::vehicles;
 
 use super::{CRAFT, Eight, measured, on};
 
@@ -17,7 +17,7 @@ pub(crate) const RATE_HZ: u32 = 500;
 
 /// The gain for a vehicle whose motors have a lag, as the core flies it.
 pub(crate) fn designed(name: &str, lag_s: f64) -> ActuatorAwareGain {
-    let vehicle = Vehicle::by_name(name).unwrap();
+    let vehicle = vehicles::by_name(name).unwrap();
     let design = actuator_aware(&vehicle, lag_s, &ActuatorAwareWeights::STANDARD, 1.0 / f64::from(RATE_HZ)).unwrap();
     ActuatorAwareGain::new(rounded(&design.gain.fixed_resize::<4, 19>(0.0))).unwrap()
 }

@@ -9,7 +9,7 @@ mod reference;
 
 use nalgebra::{Quaternion as Quaternion64, UnitQuaternion, Vector3, Vector4};
 use quatrack::{Airframe, FifthOrderSample, FlatSample, MotorReference, Quaternion, RigidState, State};
-use quatrack_sim::plant;
+use quatrack_simulation::plant;
 
 const CRAFT: [(&str, Airframe); 3] = [
     ("crazyflie-2.1", Airframe::CRAZYFLIE_2_1),

@@ -5,8 +5,8 @@ use nalgebra::{Quaternion as Quaternion64, SVector, Vector4};
 use quatrack::error::{Field, ReferenceError};
 use quatrack::nalgebra::Vector3;
 use quatrack::{Airframe, FifthOrderSample, MotorReference, Piece, Player, Rate, Trajectory};
-use quatrack_sim::plant::Craft;
-use quatrack_sim::vehicle::Vehicle;
+use quatrack_simulation::plant::Craft;
+use quatrack_simulation::vehicles;
 
 use super::{CRAFT, Eight, on};
 
@@ -49,7 +49,7 @@ fn every_derivative_is_that_of_the_one_before() {
 #[test]
 fn the_commands_fly_the_plant_open_loop() {
     for (name, airframe) in CRAFT {
-        let craft = Craft::new(&Vehicle::by_name(name).unwrap());
+        let craft = Craft::new(&vehicles::by_name(name).unwrap());
         for eight in [Eight::LEVEL, Eight::TURNING] {
             let step_s = 5e-4;
             let mut x = on(&eight.reference(0.0, &airframe));

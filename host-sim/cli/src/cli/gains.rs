@@ -1,0 +1,250 @@
+//! `quatrack gains`: design files in; tables, their check and their figures out.
+
+mod show;
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Subcommand;
+use quatrack_simulation::gains::{self, Certified, Checked, Design, Failed, GainsError};
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::{Failure, output};
+
+/// Where designs stand unless told otherwise.
+const FOLDER: &str = "gains";
+
+/// Designs gain tables, certifies them, and checks those that are committed.
+#[derive(clap::Args)]
+#[command(arg_required_else_help = true)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Computes the gains of a design, certifies them as rounded to f32, and writes NAME.json (f64 gains and every
+    /// figure), NAME.rs (the f32 table) and NAME.bin (the table that a board loads).
+    ///
+    /// A design that misses its own minimum is refused with the figure, its value and the minimum: exit code 1, nothing
+    /// written.
+    Design {
+        /// Designs, TOML files; a file's name is its table's.
+        #[arg(required = true, value_name = "FILE")]
+        designs: Vec<PathBuf>,
+        /// Folder to write to, created where it is missing [default: generated, beside the design]
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Write the figures that a design can ask for, as JSON.
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
+    /// Computes everything again and compares it with the files that are there: tables byte for byte, figures to 1e-6.
+    ///
+    /// Exit code 1 with the first difference of each file.
+    Check {
+        /// Folders of designs, or designs [default: gains]
+        #[arg(value_name = "DIR|FILE")]
+        paths: Vec<PathBuf>,
+        /// Write what was found, as JSON.
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
+    /// Prints a table and its certificate.
+    Show {
+        /// A design (TOML), or what was made of one (JSON or binary).
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// Write all of it as JSON.
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
+    /// Prints a line for each design of a folder.
+    List {
+        /// The folder [default: gains]
+        #[arg(value_name = "DIR")]
+        folder: Option<PathBuf>,
+        /// Write the list as JSON.
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    match &args.command {
+        Command::Design { designs, out, json } => design(designs, out.as_deref(), json.as_deref()),
+        Command::Check { paths, json } => check(paths, json.as_deref()),
+        Command::Show { file, json } => show::show(file, json.as_deref()),
+        Command::List { folder, json } => list(folder.as_deref(), json.as_deref()),
+    }
+}
+
+/// Reads, computes and certifies a design.
+fn certified(path: &Path) -> Result<Certified, Failure> {
+    Design::from_file(path).and_then(|design| design.certify()).map_err(|error| failed(path, &error))
+}
+
+/// How an error of a design ends the command: 1 where the answer is no, 2 where the file cannot be used.
+pub(super) fn failed(path: &Path, error: &GainsError) -> Failure {
+    let line = format!("{}: {error}", path.display());
+    if error.is_verdict() { Failure::verdict(line) } else { Failure::input(line) }
+}
+
+fn wrote(text: &mut String, path: &Path) {
+    let _ = writeln!(text, "wrote {}", path.display());
+}
+
+fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<(), Failure> {
+    let mut summaries = Vec::new();
+    for path in paths {
+        let certified = certified(path)?;
+        let folder = out.map_or_else(|| gains::default_folder(path), Path::to_path_buf);
+        output::create_dir(&folder)?;
+        let document = gains::json_document(&certified);
+        let mut text = format!("{}\n{}", path.display(), figures(&document));
+        for file in gains::artifacts(&certified, &folder) {
+            output::write(&file.path, &file.contents)?;
+            wrote(&mut text, &file.path);
+        }
+        if certified.table.is_none() {
+            text += "  no table: no law on board remembers its last commands, so delay_samples above 0 has gains and a \
+                     certificate only\n";
+        }
+        output::print(&text)?;
+        summaries.push(json!({ "design": path, "name": document["name"], "figures": document["figures"] }));
+    }
+    if let Some(path) = json {
+        output::write_json(path, &summaries)?;
+    }
+    Ok(())
+}
+
+/// Every figure that a design can ask for, beside what this one asks.
+fn figures(document: &Value) -> String {
+    let mut text = String::new();
+    for figure in document["figures"].as_array().into_iter().flatten() {
+        let unit = figure["unit"].as_str().unwrap_or_default();
+        let told = |value: f64| format!("{value} {unit}").trim_end().to_owned();
+        let found = figure["found"].as_f64().map_or_else(|| "unlimited".to_owned(), told);
+        let asked = figure["asked"].as_f64().map_or_else(String::new, |asked| format!("  at least {}", told(asked)));
+        let name = figure["figure"].as_str().unwrap_or_default();
+        let _ = writeln!(text, "  {name:<50} {found:>16}{asked}");
+    }
+    text
+}
+
+fn check(paths: &[PathBuf], json: Option<&Path>) -> Result<(), Failure> {
+    let default = [PathBuf::from(FOLDER)];
+    let paths = if paths.is_empty() { require_folder(Path::new(FOLDER)).map(|()| &default[..])? } else { paths };
+    let mut checked: Vec<Checked> = Vec::new();
+    for path in paths {
+        let found = if path.is_dir() { gains::check_folder(path) } else { check_file(path) };
+        checked.extend(found.map_err(|Failed { path, error }| failed(&path, &error))?);
+    }
+    if checked.is_empty() {
+        return Err(Failure::input(format!(
+            "{}: no design here; designs are files ending in .toml",
+            paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+        )));
+    }
+    if let Some(path) = json {
+        let files: Vec<Value> =
+            checked.iter().map(|file| json!({ "file": file.path, "difference": file.difference })).collect();
+        output::write_json(path, &files)?;
+    }
+    let differing: Vec<&Checked> = checked.iter().filter(|file| file.difference.is_some()).collect();
+    match differing.split_first() {
+        None => output::print(&format!("{} files are what their designs give\n", checked.len())),
+        Some((first, others)) => {
+            let mut line = told(first);
+            for other in others {
+                line += "\nquatrack: ";
+                line += &told(other);
+            }
+            Err(Failure::verdict(line))
+        }
+    }
+}
+
+fn told(checked: &Checked) -> String {
+    format!("{}: {}", checked.path.display(), checked.difference.as_deref().unwrap_or_default())
+}
+
+/// A design, or the design of a file that was made of one.
+fn check_file(path: &Path) -> Result<Vec<Checked>, Failed> {
+    let is_made = path.extension().is_some_and(|extension| ["json", "rs", "bin"].iter().any(|made| extension == *made));
+    let beside = path.parent().and_then(Path::parent).filter(|_| is_made);
+    match (beside, path.file_stem()) {
+        (Some(folder), Some(stem)) => {
+            let design = folder.join(stem).with_extension("toml");
+            let folder = gains::default_folder(&design);
+            let mut checked = gains::check_design(&design, &folder)?;
+            checked.retain(|file| file.path.file_name() == path.file_name());
+            Ok(checked)
+        }
+        _ => gains::check_design(path, &gains::default_folder(path)),
+    }
+}
+
+fn require_folder(folder: &Path) -> Result<(), Failure> {
+    if folder.is_dir() {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "{}: no such folder here; run this where one stands, as in a checkout, or name a folder of designs",
+        folder.display()
+    )))
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Failure> {
+    fs::read(path).map_err(|error| Failure::input(format!("{}: cannot be read ({error})", path.display())))
+}
+
+/// A line of the list.
+#[derive(Serialize)]
+struct Entry {
+    name: String,
+    linearisation: String,
+    method: String,
+    vehicle: String,
+    control_rate_hz: u32,
+    description: String,
+    /// Whether all of its files are there; `check` tells whether they are right.
+    generated: bool,
+}
+
+fn list(folder: Option<&Path>, json: Option<&Path>) -> Result<(), Failure> {
+    let folder = folder.unwrap_or(Path::new(FOLDER));
+    require_folder(folder)?;
+    let paths = gains::designs(folder)
+        .map_err(|error| Failure::input(format!("{}: cannot be read ({error})", folder.display())))?;
+    let mut entries = Vec::new();
+    for path in &paths {
+        let design = Design::from_file(path).map_err(|error| failed(path, &error))?;
+        let beside = gains::default_folder(path);
+        let (linearisation, method) = design.problem.named();
+        entries.push(Entry {
+            generated: beside.join(format!("{}.json", design.name)).is_file(),
+            name: design.name.to_string(),
+            linearisation: linearisation.to_owned(),
+            method: method.to_owned(),
+            vehicle: design.vehicle.name().to_owned(),
+            control_rate_hz: design.rate.hz(),
+            description: design.description,
+        });
+    }
+    let mut text = String::new();
+    for Entry { name, linearisation, method, vehicle, control_rate_hz, description, generated } in &entries {
+        let first = description.lines().next().unwrap_or_default();
+        let state = if *generated { "" } else { " (not generated)" };
+        let _ = writeln!(
+            text,
+            "{name:<24} {linearisation:<12} {method:<12} {vehicle:<26} {control_rate_hz:>5} Hz  {first}{state}"
+        );
+    }
+    output::print(&text)?;
+    json.map_or(Ok(()), |path| output::write_json(path, &entries))
+}

@@ -1,0 +1,62 @@
+//! `quatrack measure`: images in; instructions a step, flash, RAM and stack out, for a person and as JSON.
+
+use std::path::PathBuf;
+
+use quatrack_cli::pil::PilError;
+use quatrack_cli::pil::image::{self, Image};
+use quatrack_cli::pil::measure::{self, Images, Report};
+
+use super::{Failure, output};
+
+/// Counts instructions on the emulated target, over both of the paper's flights with all four controllers: each law's
+/// step, the reference, the whole tick; and what the firmware takes in flash and RAM.
+///
+/// Every state is counted as it was flown and at its worst: errors in the heading frame of a turning reference, with and
+/// without feed-forward, nothing limited and everything, either sign of the quaternion; and with a gain without a zero.
+/// Every command is compared with the host's.
+///
+/// Builds its four images inside a checkout. An instruction is not a cycle: the counts compare programs, not clocks.
+#[derive(clap::Args)]
+pub(crate) struct Args {
+    /// Folder with the four images (quatrack-measure, quatrack-control-path, quatrack-motor-path,
+    /// quatrack-firmware-pipes), or one of them in it, instead of building them.
+    #[arg(long, value_name = "FILE")]
+    image: Option<PathBuf>,
+    /// Write the figures as JSON.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    // Whatever keeps an image from being run is for the user to mend.
+    let report = counted(args).map_err(Failure::input)?;
+    output::print(&report.to_string())?;
+    if let Some(path) = &args.json {
+        output::write_json(path, &report)?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    Ok(())
+}
+
+fn counted(args: &Args) -> Result<Report, PilError> {
+    let images = match &args.image {
+        Some(path) => {
+            let folder = if path.is_dir() { path.as_path() } else { path.parent().unwrap_or(path) };
+            let [counting, control_path, motor_path, flying] =
+                [Image::Measure, Image::ControlPath, Image::MotorPath, Image::Pipes]
+                    .map(|image| folder.join(image.binary()));
+            Images { counting, control_path, motor_path, flying }
+        }
+        None => {
+            let checkout = image::checkout()?;
+            let build = |image| image::build(&checkout, image);
+            Images {
+                control_path: build(Image::ControlPath)?,
+                motor_path: build(Image::MotorPath)?,
+                counting: build(Image::Measure)?,
+                flying: build(Image::Pipes)?,
+            }
+        }
+    };
+    measure::count(&images, None)
+}

@@ -1,0 +1,187 @@
+//! `quatrack refit`: a trajectory in; one that the Crazyflie's trajectory memory holds, and how far off it is, out.
+
+use std::fmt::Write as _;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use clap::builder::RangedU64ValueParser;
+use quatrack::law::EquilibriumGain;
+use quatrack::{Equilibrium, ErrorForm, FeedForward, Limits, Rate};
+use quatrack_design::design::codegen::rounded;
+use quatrack_design::design::synthesis::{self, EquilibriumWeights};
+use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::poly4d::{MEMORY_BYTES, PIECES_MAX, StoredTrajectory};
+use quatrack_plan::trajectory::polynomial::{PiecewisePolynomial, csv};
+use quatrack_plan::trajectory::refit::refit;
+use quatrack_simulation::flight::closed_loop::fly_sampled;
+use quatrack_simulation::flight::core_loop::CoreLoop;
+use quatrack_simulation::flight::deviation::Deviation;
+use quatrack_simulation::flight::metrics::Metrics;
+use quatrack_simulation::flight::reference::Exact;
+use serde::Serialize;
+
+use super::{Failure, output};
+
+/// Control steps a second of the flights that compare the two trajectories.
+const RATE_HZ: u32 = 500;
+
+/// Fits a trajectory into the Crazyflie's trajectory memory and says how far off the fit is.
+///
+/// The pieces have degree 7 and meet up to jerk. A trajectory that already has few enough pieces keeps them.
+///
+/// Examples:
+///   quatrack refit aggressive --csv w.csv
+///   quatrack refit my.csv --pieces 15 --tolerance-m 0.001 --csv short.csv --json fit.json
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Args {
+    /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), or a plan
+    /// (TOML, planned first).
+    #[arg(value_name = "mild|aggressive|FILE")]
+    trajectory: String,
+    /// Most pieces, 1 to 31, which is what the memory holds.
+    #[arg(long, value_name = "N", default_value_t = PIECES_MAX, value_parser = pieces_parser())]
+    pieces: usize,
+    /// Write nothing and exit with 1 if the position is further off than this.
+    #[arg(long, value_name = "X", value_parser = tolerance)]
+    tolerance_m: Option<f64>,
+    /// Write the pieces as they are stored, in the uav_trajectories form that Bitcraze's tools read.
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Write the figures as JSON.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+/// What is printed, and written as JSON.
+#[derive(Serialize)]
+struct Report {
+    original_pieces: usize,
+    pieces: usize,
+    memory_bytes: usize,
+    duration_s: f64,
+    /// Of the pieces as they are stored and as the firmware evaluates them.
+    largest_difference: Deviation,
+    lqr_e: Comparison,
+    lqr_e_feed_forward: Comparison,
+}
+
+/// IAE (23) times the sampling period of one controller, m s; nothing where the flight was lost.
+#[derive(Serialize)]
+struct Comparison {
+    original_iae_m_s: Option<f64>,
+    refit_iae_m_s: Option<f64>,
+    /// The refit flown, its distance taken from the original.
+    refit_from_original_iae_m_s: Option<f64>,
+}
+
+fn pieces_parser() -> RangedU64ValueParser<usize> {
+    RangedU64ValueParser::new().range(1..=PIECES_MAX as u64)
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value = text.parse().map_err(|_| "not a number of metres".to_owned())?;
+    if value > 0.0 { Ok(value) } else { Err("must be a positive number of metres".to_owned()) }
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let name = &args.trajectory;
+    let original = super::fly::trajectory(name)?;
+    let failed = |error: &dyn std::fmt::Display| Failure::input(format!("{name}: {error}"));
+    let pieces = NonZeroUsize::new(args.pieces).unwrap_or(NonZeroUsize::MIN);
+    let fitted = refit(&original, pieces).map_err(|error| failed(&error))?;
+    let stored = StoredTrajectory::new(&fitted).map_err(|error| failed(&error))?;
+    let gain = synthesis::lqr_equilibrium(&EquilibriumWeights::paper()).map_err(Failure::input)?.gain;
+    let gain = EquilibriumGain::new(rounded(&gain)).map_err(Failure::input)?;
+    let compare =
+        |feed_forward| compare(&original, stored.polynomials(), &gain, feed_forward).map_err(|error| failed(&error));
+    let report = Report {
+        original_pieces: original.pieces().len(),
+        pieces: stored.pieces().len(),
+        memory_bytes: stored.bytes(),
+        duration_s: stored.duration_s(),
+        largest_difference: Deviation::between(&Exact(&original), &Exact(&stored)),
+        lqr_e: compare(FeedForward::Without)?,
+        lqr_e_feed_forward: compare(FeedForward::With)?,
+    };
+    output::print(&text(name, &report))?;
+    let off_m = report.largest_difference.position_m;
+    if let Some(tolerance_m) = args.tolerance_m.filter(|tolerance_m| off_m.is_nan() || off_m > *tolerance_m) {
+        return Err(Failure::verdict(format!(
+            "{name}: {} pieces are {off_m:.2e} m off, more than --tolerance-m {tolerance_m}; allow more pieces (at most \
+             {PIECES_MAX}) or split the trajectory",
+            report.pieces
+        )));
+    }
+    if let Some(path) = &args.csv {
+        output::write(path, csv::write(stored.polynomials()).as_bytes())?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    if let Some(path) = &args.json {
+        output::write_json(path, &report)?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    Ok(())
+}
+
+/// The f32 core with the paper's LQR-E on both trajectories.
+fn compare(
+    original: &PiecewisePolynomial,
+    refit: &PiecewisePolynomial,
+    gain: &EquilibriumGain,
+    feed_forward: FeedForward,
+) -> Result<Comparison, String> {
+    let rate = Rate::from_hz(RATE_HZ).ok_or_else(|| format!("no clock of {RATE_HZ} Hz"))?;
+    let iae = |flown: &PiecewisePolynomial, measured_from: &PiecewisePolynomial| {
+        let pieces = on_board::pieces(flown);
+        let law = Equilibrium { gain, error_form: ErrorForm::HeadingFrame, feed_forward };
+        let mut core = CoreLoop::new(&pieces, rate, law, Limits::NONE).map_err(|error| error.to_string())?;
+        let flight = fly_sampled(&Exact(measured_from), rate.hz(), |tick, _, x| core.step(tick, x));
+        Ok::<_, String>(Metrics::of(&flight).iae_m_s)
+    };
+    Ok(Comparison {
+        original_iae_m_s: iae(original, original)?,
+        refit_iae_m_s: iae(refit, refit)?,
+        refit_from_original_iae_m_s: iae(refit, original)?,
+    })
+}
+
+fn text(name: &str, report: &Report) -> String {
+    let Report { original_pieces, pieces, memory_bytes, duration_s, .. } = report;
+    let how = if original_pieces == pieces { "kept" } else { "of degree 7, meeting up to jerk" };
+    let off = &report.largest_difference;
+    let mut text = format!(
+        "{name}: {original_pieces} pieces, {duration_s:.2} s\n\
+         stored: {pieces} pieces, {how}, {memory_bytes} of {MEMORY_BYTES} bytes\n\n\
+         largest difference, as stored in f32 and evaluated on board\n\
+         \x20 position       {:.2e} m\n\
+         \x20 velocity       {:.2e} m/s\n\
+         \x20 acceleration   {:.2e} m/s^2\n\
+         \x20 jerk           {:.2e} m/s^3\n\
+         \x20 heading        {:.2e} rad\n\
+         \x20 heading rate   {:.2e} rad/s\n\
+         \x20 attitude       {:.2e} rad\n\
+         \x20 thrust         {:.2e} m/s^2\n\
+         \x20 body rates     {:.2e} rad/s\n\n\
+         flown by the f32 core at {RATE_HZ} Hz, IAE in m s\n\
+         \x20                           original      refit   refit from the original\n",
+        off.position_m,
+        off.velocity_m_s,
+        off.acceleration_m_s2,
+        off.jerk_m_s3,
+        off.heading_rad,
+        off.heading_rate_rad_s,
+        off.attitude_rad,
+        off.thrust_m_s2,
+        off.body_rates_rad_s,
+    );
+    let cell = |iae: Option<f64>| iae.map_or_else(|| "lost".to_owned(), |iae| format!("{iae:.6}"));
+    for (law, iae) in [("LQR-E", &report.lqr_e), ("LQR-E, feed-forward", &report.lqr_e_feed_forward)] {
+        let [original, refit, across] =
+            [iae.original_iae_m_s, iae.refit_iae_m_s, iae.refit_from_original_iae_m_s].map(cell);
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {law:<24} {original:>10} {refit:>10} {across:>25}");
+    }
+    text
+}

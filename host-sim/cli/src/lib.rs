@@ -1,0 +1,12 @@
+//! What the `quatrack` command has below it and no other crate needs: the image on its processor, and figures.
+//!
+//! ```text
+//! the command: arguments and files in; tables, files and an exit code out
+//!   pil        the image on its processor, emulated or real: flown, compared, counted
+//!   figures    Figures 2 to 5, as SVG and PNG
+//! ```
+//!
+//! Below it are `quatrack_simulation`, `quatrack_plan` and `quatrack_design`.
+
+pub mod figures;
+pub mod pil;

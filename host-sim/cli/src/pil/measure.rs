@@ -1,0 +1,325 @@
+//! Instructions a step on the target: the paper's flights in; least, mean and most of each part out.
+//!
+//! Every state is counted as it was flown and at its worst (see `worst`), and every command that the target computes on the
+//! way is compared with the host's.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::fs;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use quatrack::{Command, State};
+use quatrack_plan::plan::paper::Course;
+use quatrack_simulation::reproduction::table::Controller;
+use serde::Serialize;
+
+use super::emulated::{self, Transport};
+use super::emulator::{Emulator, Folder};
+use super::flights::{COURSES, HostCore, Plans, fly};
+use super::image;
+use super::interrupt::Interrupt;
+use super::lock_step;
+use super::motors::MotorFlight;
+use super::worst::{
+    self,
+    motors::{self, Motors},
+};
+use super::{PilError, bits};
+
+/// Longest time for an emulator to count all flights.
+const LIMIT: Duration = Duration::from_secs(120);
+
+/// Instructions between the two loops with which the image checks its counter.
+const LOOP_INSTRUCTIONS: u32 = 2000;
+
+/// Counts over steps.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Count {
+    /// Least.
+    pub min: u32,
+    /// Mean.
+    pub mean: f64,
+    /// Most.
+    pub max: u32,
+}
+
+/// Counts as they come in.
+#[derive(Clone, Copy, Debug)]
+struct Tally {
+    min: u32,
+    sum: u64,
+    max: u32,
+    calls: u64,
+}
+
+impl Tally {
+    const NONE: Self = Self { min: u32::MAX, sum: 0, max: 0, calls: 0 };
+
+    fn add(&mut self, [min, sum, max]: [u32; 3], calls: u64) {
+        (self.min, self.max) = (self.min.min(min), self.max.max(max));
+        (self.sum, self.calls) = (self.sum + u64::from(sum), self.calls + calls);
+    }
+
+    fn count(&self) -> Count {
+        let mean = self.sum as f64 / self.calls.max(1) as f64;
+        Count { min: self.min.min(self.max), mean: (mean * 100.0).round() / 100.0, max: self.max }
+    }
+}
+
+/// What the control path costs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// A step of each law, with validation, sign handling and saturation: each controller's, `any E table` for a gain
+    /// without a zero, `actuator-aware` down to the motors, and `any actuator-aware table` for a gain that does not
+    /// decouple.
+    pub law: BTreeMap<String, Count>,
+    /// The reference of a tick: polynomial to jerk, and the flat map.
+    pub reference: Count,
+    /// The same on a trajectory that turns.
+    #[serde(rename = "reference turning")]
+    pub reference_turning: Count,
+    /// The reference down to motor forces and what commands them: polynomial to the fifth derivative, and the flat map
+    /// carried on.
+    #[serde(rename = "reference to motor forces")]
+    pub motor_reference: Count,
+    /// The same on a trajectory of degree 7 that turns, also where a piece begins.
+    #[serde(rename = "reference to motor forces turning")]
+    pub motor_reference_turning: Count,
+    /// A whole tick on a trajectory that does not turn.
+    pub tick: Count,
+    /// Steps flown.
+    pub steps: usize,
+    /// Code and tables of the control path, without stored trajectories: all that its own image puts in flash, start-up
+    /// code and vector table included.
+    pub flash_bytes: u32,
+    /// The same down to the motors: every law, the actuator-aware one included, to four forces.
+    pub flash_to_motors_bytes: u32,
+    /// Variables of the image that flies, uploads included.
+    pub ram_bytes: u32,
+    /// Most stack that it used in flight.
+    pub stack_bytes: u32,
+    /// All of its flash.
+    pub image_flash_bytes: u32,
+}
+
+/// The images that are measured.
+pub struct Images {
+    /// Counts on recorded states.
+    pub counting: PathBuf,
+    /// The control path alone.
+    pub control_path: PathBuf,
+    /// The same down to the motors.
+    pub motor_path: PathBuf,
+    /// Flies, over pipes.
+    pub flying: PathBuf,
+}
+
+/// One flight as recorded on the host.
+struct Recorded {
+    course: Course,
+    controller: Controller,
+    steps: Vec<(State, Command)>,
+}
+
+/// All flights, or the first `limit` steps of each.
+fn record(limit: Option<usize>) -> Result<Vec<Recorded>, PilError> {
+    let plans = Plans::solve()?;
+    let mut flights = Vec::new();
+    for course in COURSES {
+        for controller in Controller::ALL {
+            let mut core = HostCore::new(course, controller)?;
+            let mut steps = Vec::new();
+            fly(plans.of(course), |tick, state| {
+                if limit.is_some_and(|limit| steps.len() >= limit) {
+                    return Err("as far as was asked for".to_owned());
+                }
+                let command = core.step(tick, state)?;
+                steps.push((*state, command));
+                Ok(command)
+            });
+            flights.push(Recorded { course, controller, steps });
+        }
+    }
+    Ok(flights)
+}
+
+fn state_words(state: &State) -> [f32; 10] {
+    let (r, q, v) = (&state.position_m, &state.attitude, &state.velocity_m_s);
+    [r.x, r.y, r.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z]
+}
+
+/// What stands for the way to the motors in the place of a controller.
+const TO_MOTORS: usize = Controller::ALL.len() + 1;
+
+/// The flights of which the states are counted on the way to the motors.
+fn to_motors(flights: &[Recorded]) -> impl Iterator<Item = &Recorded> {
+    flights.iter().filter(|flight| flight.controller == Controller::LqrE)
+}
+
+fn states_file(flights: &[Recorded]) -> Vec<u8> {
+    let mut bytes = worst::head();
+    let of_paper = runs(flights).map(|(flight, controller, is_worst)| {
+        let controller = Controller::ALL.iter().position(|c| Some(*c) == controller).unwrap_or(Controller::ALL.len());
+        (flight, controller, is_worst)
+    });
+    for (flight, controller, is_worst) in of_paper.chain(to_motors(flights).map(|flight| (flight, TO_MOTORS, true))) {
+        for word in [flight.course as u32, controller as u32, u32::from(is_worst), flight.steps.len() as u32] {
+            bytes.extend(word.to_le_bytes());
+        }
+        for value in flight.steps.iter().flat_map(|(state, _)| state_words(state)) {
+            bytes.extend(value.to_le_bytes());
+        }
+    }
+    bytes
+}
+
+/// What the target flies, in order: each flight as recorded and at its worst, and those of LQR-E once more at the worst of
+/// the dense gain, which is no controller of the paper's.
+fn runs(flights: &[Recorded]) -> impl Iterator<Item = (&Recorded, Option<Controller>, bool)> {
+    flights.iter().flat_map(|flight| {
+        let dense = (flight.controller == Controller::LqrE).then_some((flight, None, true));
+        let own = Some(flight.controller);
+        [(flight, own, false), (flight, own, true)].into_iter().chain(dense)
+    })
+}
+
+/// Steps that are flown on the target for its stack.
+const STACK_STEPS: u32 = 500;
+
+/// Flies the paper's flights on the host and counts every step of them on the emulated target; the first `limit` steps of
+/// each flight where one is given.
+///
+/// # Errors
+/// [`PilError`].
+pub fn count(images: &Images, limit: Option<usize>) -> Result<Report, PilError> {
+    let (control_path, flying) = (image::size(&images.control_path)?, image::size(&images.flying)?);
+    image::size(&images.counting)?;
+    let interrupt = Interrupt::listen()?;
+    let flights = record(limit)?;
+    let folder = Folder::create()?;
+    let states = folder.path().join("states.bin");
+    fs::write(&states, states_file(&flights)).map_err(PilError::io("writing the recorded states"))?;
+    Emulator::start(&images.counting, folder.path(), &["-serial", "none"])?.wait(LIMIT, &interrupt)?;
+    let counts = fs::read(folder.path().join("counts.bin")).map_err(PilError::io("reading the counts"))?;
+    let (words, _) = counts.as_chunks::<4>();
+    let words: Vec<u32> = words.iter().copied().map(u32::from_le_bytes).collect();
+    let mut report = report(&flights, &words)?;
+    let mut client = emulated::connect(&images.flying, Transport::Pipes, None, interrupt)?;
+    report.stack_bytes = lock_step::fly_all(&mut client, Some(STACK_STEPS), &|| {})?.stack_bytes;
+    report.flash_bytes = control_path.flash_bytes;
+    report.flash_to_motors_bytes = image::size(&images.motor_path)?.flash_bytes;
+    (report.ram_bytes, report.image_flash_bytes) = (flying.ram_bytes, flying.flash_bytes);
+    Ok(report)
+}
+
+fn report(flights: &[Recorded], words: &[u32]) -> Result<Report, PilError> {
+    let too_short = || PilError::Answer("it counted fewer steps than were flown".to_owned());
+    let ([_, short, long], words) = words.split_first_chunk::<3>().ok_or_else(too_short)?;
+    if long.wrapping_sub(*short) != LOOP_INSTRUCTIONS {
+        return Err(PilError::Miscounts { counted: long.wrapping_sub(*short), instructions: LOOP_INSTRUCTIONS });
+    }
+    let of_paper = 10 * runs(flights).map(|(flight, ..)| flight.steps.len()).sum::<usize>();
+    let (words, words_to_motors) = words.split_at_checked(of_paper).ok_or_else(too_short)?;
+    let (rows, _) = words.as_chunks::<10>();
+    let mut rows = rows.iter();
+    let mut law = BTreeMap::<String, Tally>::new();
+    let [mut reference, mut turning, mut tick] = [Tally::NONE; 3];
+    for (flight, controller, is_worst) in runs(flights) {
+        let name = controller.map_or_else(|| worst::ANY_TABLE.to_owned(), |controller| controller.to_string());
+        let law = law.entry(name.clone()).or_insert(Tally::NONE);
+        let mut host = worst::Host::new(flight.course, controller)?;
+        for (step, (state, recorded)) in flight.steps.iter().enumerate() {
+            let [of_reference, least, sum, most, of_tick, t, p, q, r, hash] = *rows.next().ok_or_else(too_short)?;
+            let found = [t, p, q, r];
+            let is_same = if is_worst {
+                turning.add([of_reference; 3], 1);
+                law.add([least, sum, most], worst::CALLS);
+                let expected = host.step(step as u32, state)?;
+                hash == expected.hash && expected.command.is_none_or(|command| found == bits::words(&command))
+            } else {
+                reference.add([of_reference; 3], 1);
+                law.add([least, sum, most], 1);
+                found == bits::words(recorded)
+            };
+            if !is_same {
+                return Err(PilError::Answer(format!("{name}, step {step}: another command than the host's")));
+            }
+            if controller.is_some() {
+                tick.add([of_tick; 3], 1);
+            }
+        }
+    }
+    let [motor_reference, motor_reference_turning] = report_to_motors(flights, words_to_motors, &mut law)?;
+    Ok(Report {
+        law: law.into_iter().map(|(name, tally)| (name, tally.count())).collect(),
+        reference: reference.count(),
+        reference_turning: turning.count(),
+        motor_reference: motor_reference.count(),
+        motor_reference_turning: motor_reference_turning.count(),
+        tick: tick.count(),
+        steps: flights.iter().map(|flight| flight.steps.len()).sum(),
+        flash_bytes: 0,
+        flash_to_motors_bytes: 0,
+        ram_bytes: 0,
+        stack_bytes: 0,
+        image_flash_bytes: 0,
+    })
+}
+
+/// The laws' counts into `law`; those of the reference, stored and at its worst, out.
+fn report_to_motors(
+    flights: &[Recorded],
+    words: &[u32],
+    law: &mut BTreeMap<String, Tally>,
+) -> Result<[Tally; 2], PilError> {
+    let (rows, _) = words.as_chunks::<11>();
+    let mut rows = rows.iter();
+    let [mut stored, mut turning, mut designed, mut dense] = [Tally::NONE; 4];
+    let [of_laws, of_reference] = motors::CALLS;
+    for flight in to_motors(flights) {
+        let mut host = Motors::new(flight.course)?;
+        for (step, (state, _)) in flight.steps.iter().enumerate() {
+            let too_short = || PilError::Answer("it counted fewer steps to the motors than were flown".to_owned());
+            let [of_stored, a, b, c, d, e, f, g, h, i, hash] = *rows.next().ok_or_else(too_short)?;
+            stored.add([of_stored; 3], 1);
+            turning.add([a, b, c], of_reference);
+            designed.add([d, e, f], of_laws);
+            dense.add([g, h, i], of_laws);
+            if hash != host.step(step as u32, state)? {
+                return Err(PilError::Answer(format!("to the motors, step {step}: other forces than the host's")));
+            }
+        }
+    }
+    law.insert(MotorFlight::ActuatorAware.to_string(), designed);
+    law.insert(motors::ANY_TABLE.to_owned(), dense);
+    Ok([stored, turning])
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "Instructions on the emulated Cortex-M4F (target-cpu=cortex-m4, opt-level 3), {} steps of the paper's flights",
+            self.steps
+        )?;
+        writeln!(f, "\n{:<32}{:>8}{:>10}{:>8}", "", "min", "mean", "max")?;
+        let mut row =
+            |name: &str, count: &Count| writeln!(f, "{name:<32}{:>8}{:>10.1}{:>8}", count.min, count.mean, count.max);
+        for (name, count) in &self.law {
+            row(&format!("law, {name}"), count)?;
+        }
+        row("reference", &self.reference)?;
+        row("reference, turning", &self.reference_turning)?;
+        row("reference to motors", &self.motor_reference)?;
+        row("reference to motors, turning", &self.motor_reference_turning)?;
+        row("whole tick", &self.tick)?;
+        writeln!(f, "\ncontrol path   flash {:>6} bytes, without stored trajectories", self.flash_bytes)?;
+        writeln!(f, "to the motors  flash {:>6} bytes, the actuator-aware law included", self.flash_to_motors_bytes)?;
+        let Self { image_flash_bytes, ram_bytes, stack_bytes, .. } = self;
+        writeln!(
+            f,
+            "whole image    flash {image_flash_bytes:>6} bytes, RAM {ram_bytes} bytes, stack {stack_bytes} bytes"
+        )
+    }
+}

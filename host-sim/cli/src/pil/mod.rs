@@ -1,0 +1,136 @@
+//! The image on its processor, emulated or real: flights in; commands, instruction counts and verdicts out.
+//!
+//! ```text
+//! lock_step        the paper's flights under the target's commands, compared with the host's
+//!   motors         the same down to the motors, on a rigid craft
+//! measure          instructions a step, flash, RAM
+//! crazyflie        the same of the Crazyflie controller's object
+//!   worst          what makes a step cost most, on the host
+//!   flights        the paper's flights, flown by the core on the host
+//!     bits         what is compared, and its hash
+//!     emulated     a board in an emulator
+//!     client       a board behind its line
+//!       emulator   the process that runs an image
+//!       line       pipes or a serial port, with deadlines
+//!         image    built here, or given; what it takes in flash and RAM
+//! ```
+
+mod bits;
+pub mod client;
+pub mod crazyflie;
+pub mod emulated;
+pub mod emulator;
+pub mod flights;
+pub mod image;
+pub mod interrupt;
+pub mod line;
+pub mod lock_step;
+pub mod measure;
+pub mod motors;
+mod worst;
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// Why an image was not flown or counted.
+#[derive(Debug, Error)]
+pub enum PilError {
+    /// Nothing to build the image from.
+    #[error("not inside a checkout of quatrack, so there is no image to build; change there or give --image FILE")]
+    NoCheckout,
+    /// Cargo failed; it has said why.
+    #[error("the image was not built: {command} ended with {status}; its own messages are above")]
+    Build {
+        /// What was run.
+        command: String,
+        /// How it ended.
+        status: String,
+    },
+    /// No image.
+    #[error("{}: {reason}", path.display())]
+    Image {
+        /// The file.
+        path: PathBuf,
+        /// Why it cannot be run.
+        reason: String,
+    },
+    /// QEMU is not there.
+    #[error("{} is not installed; on Debian and Ubuntu: apt-get install qemu-system-arm", emulator::PROGRAM)]
+    NoEmulator,
+    /// The emulator stopped by itself.
+    #[error("the emulator ended with {status} before the image had answered{}", said(.output))]
+    EmulatorEnded {
+        /// How.
+        status: String,
+        /// What it said.
+        output: String,
+    },
+    /// The image does not get on.
+    #[error("no answer within {seconds} s: {waiting_for}")]
+    Silent {
+        /// How long.
+        seconds: u64,
+        /// From what.
+        waiting_for: String,
+    },
+    /// The emulator does not count as assumed.
+    #[error(
+        "the emulated timer counts {counted} for {instructions} instructions; it cannot measure with this emulator"
+    )]
+    Miscounts {
+        /// What it counted.
+        counted: u32,
+        /// What was executed.
+        instructions: u32,
+    },
+    /// The board does not do what it is asked for.
+    #[error("the board refuses {request}: {reason}")]
+    Refused {
+        /// What was asked.
+        request: String,
+        /// The board's words.
+        reason: String,
+    },
+    /// A flight has no command.
+    #[error("{flight}, step {step}: no command ({reason})")]
+    NoCommand {
+        /// Which flight.
+        flight: String,
+        /// Which step.
+        step: u32,
+        /// The board's words.
+        reason: String,
+    },
+    /// A signal.
+    #[error("interrupted")]
+    Interrupted,
+    /// What the image wrote is not what was asked of it.
+    #[error("the image's answer does not fit: {0}; build the image from this checkout")]
+    Answer(String),
+    /// The planner failed on the paper's own plans.
+    #[error("{0}")]
+    Plan(String),
+    /// The machine.
+    #[error("{doing}: {source}")]
+    Io {
+        /// At what.
+        doing: String,
+        /// What it said.
+        source: io::Error,
+    },
+}
+
+impl PilError {
+    /// Words for a failed system call.
+    pub(crate) fn io(doing: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
+        let doing = doing.into();
+        move |source| Self::Io { doing, source }
+    }
+}
+
+fn said(output: &str) -> String {
+    let text = output.trim();
+    if text.is_empty() { String::new() } else { format!(": {}", text.replace('\n', " ")) }
+}

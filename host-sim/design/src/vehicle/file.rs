@@ -1,0 +1,140 @@
+//! What a vehicle file holds, in any format that serde reads; a [`Vehicle`] whose figures are in range out.
+
+use nalgebra::{Matrix3, Vector3};
+use serde::Deserialize;
+
+use super::{Motors, Vehicle, VehicleError};
+use crate::model::GRAVITY_M_S2;
+
+/// Far beyond any multicopter; keeps products of figures in range.
+const LARGEST: f64 = 1e6;
+/// Likewise downwards.
+const SMALLEST: f64 = 1e-9;
+/// Longest name, bytes: fits the names that tables carry.
+const LONGEST_NAME: usize = 64;
+
+/// The figures of a vehicle as a file states them, not yet looked at; `Vehicle::try_from` does that.
+///
+/// Its entries are described in `gains/vehicles` of the repository, where each built-in figure has its source beside it:
+/// `name`; `body` with `mass_kg` and `inertia_kg_m2`, by rows; `motors` with `arm_m`, `thrust_min_n`, `thrust_max_n`,
+/// `torque_per_thrust_m`, `lag_s` and `published_lag_s`; `limits` with `body_rates_rad_s`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct VehicleFile {
+    name: String,
+    body: BodyEntry,
+    motors: MotorsEntry,
+    limits: LimitsEntry,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BodyEntry {
+    mass_kg: f64,
+    inertia_kg_m2: [[f64; 3]; 3],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MotorsEntry {
+    arm_m: f64,
+    thrust_min_n: f64,
+    thrust_max_n: f64,
+    torque_per_thrust_m: f64,
+    lag_s: f64,
+    published_lag_s: [f64; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LimitsEntry {
+    body_rates_rad_s: [f64; 3],
+}
+
+impl TryFrom<VehicleFile> for Vehicle {
+    type Error = VehicleError;
+
+    /// # Errors
+    /// [`VehicleError`] for a name that no table can carry or a figure out of range.
+    fn try_from(file: VehicleFile) -> Result<Self, VehicleError> {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-._".contains(c);
+        if file.name.is_empty() || file.name.len() > LONGEST_NAME || !file.name.chars().all(plain) {
+            return Err(VehicleError::Name { name: file.name, longest: LONGEST_NAME });
+        }
+        positive("body.mass_kg", file.body.mass_kg)?;
+        let (inertia_kg_m2, inverse_inertia) = inertia(&file.body.inertia_kg_m2)?;
+        let rates = file.limits.body_rates_rad_s;
+        rates.iter().try_for_each(|rate| positive("limits.body_rates_rad_s", *rate))?;
+        Ok(Self {
+            motors: motors(&file.motors, 0.25 * file.body.mass_kg * GRAVITY_M_S2)?,
+            name: file.name,
+            mass_kg: file.body.mass_kg,
+            inertia_kg_m2,
+            inverse_inertia,
+            body_rates_max_rad_s: Vector3::from(rates),
+        })
+    }
+}
+
+/// `Ok` if `holds`; a NaN makes every comparison false and so never passes.
+fn check(holds: bool, field: &str, value: f64, must: impl Into<String>) -> Result<(), VehicleError> {
+    if holds { Ok(()) } else { Err(VehicleError::Value { field: field.to_owned(), value, must: must.into() }) }
+}
+
+fn positive(field: &str, value: f64) -> Result<(), VehicleError> {
+    check((SMALLEST..=LARGEST).contains(&value), field, value, format!("positive, from {SMALLEST} to {LARGEST}"))
+}
+
+/// Symmetric, and that of a body: no principal moment above the sum of the two others. With its inverse.
+fn inertia(rows: &[[f64; 3]; 3]) -> Result<(Matrix3<f64>, Matrix3<f64>), VehicleError> {
+    let field = "body.inertia_kg_m2";
+    let matrix = Matrix3::from_fn(|i, j| rows[i][j]);
+    for i in 0..3 {
+        positive(field, matrix[(i, i)])?;
+        for j in 0..i {
+            let (value, mirrored) = (matrix[(i, j)], matrix[(j, i)]);
+            check(value == mirrored, field, value, format!("symmetric: the entry across the diagonal is {mirrored}"))?;
+        }
+    }
+    let moments = matrix.symmetric_eigenvalues();
+    let (least, most) = (moments.min(), moments.max());
+    let singular = || VehicleError::Value {
+        field: field.to_owned(),
+        value: least,
+        must: "positive definite; this is its least principal moment".to_owned(),
+    };
+    let inverse = matrix.cholesky().ok_or_else(singular)?.inverse();
+    // The sum of all three is the trace. A flat body reaches equality, up to rounding.
+    let others = matrix.trace() - most;
+    check(
+        most <= others * (1.0 + 1e-9),
+        field,
+        most,
+        format!("that of a body: this is its largest principal moment, the two others come to {others:e}"),
+    )?;
+    Ok((matrix, inverse))
+}
+
+fn motors(entry: &MotorsEntry, hover_n: f64) -> Result<Motors, VehicleError> {
+    let MotorsEntry { arm_m, thrust_min_n, thrust_max_n, torque_per_thrust_m, lag_s, published_lag_s } = *entry;
+    positive("motors.arm_m", arm_m)?;
+    positive("motors.torque_per_thrust_m", torque_per_thrust_m)?;
+    check(
+        (0.0..hover_n).contains(&thrust_min_n),
+        "motors.thrust_min_n",
+        thrust_min_n,
+        format!("from 0 to below {hover_n:.6} N, a quarter of the weight"),
+    )?;
+    check(
+        thrust_max_n > hover_n && thrust_max_n <= LARGEST,
+        "motors.thrust_max_n",
+        thrust_max_n,
+        format!("above {hover_n:.6} N, a quarter of the weight, to {LARGEST}"),
+    )?;
+    positive("motors.lag_s", lag_s)?;
+    let [shortest, longest] = published_lag_s;
+    positive("motors.published_lag_s", shortest)?;
+    let must = format!("the shortest, then the longest; the shortest is {shortest}");
+    check(shortest <= longest && longest <= LARGEST, "motors.published_lag_s", longest, must)?;
+    Ok(Motors { arm_m, thrust_min_n, thrust_max_n, torque_per_thrust_m, lag_s, published_lag_s })
+}

@@ -1,0 +1,11 @@
+//! What is flown: waypoints and bounds, or files, in; trajectories of the flat output out.
+//!
+//! ```text
+//! plan            waypoints and bounds -> B-spline, by second-order cone programming
+//!   trajectory    B-splines, polynomial pieces, their files, fits for the Crazyflie
+//! ```
+//!
+//! Below it is `quatrack_design`, of which it takes the flat output and gravity; conventions are those.
+
+pub mod plan;
+pub mod trajectory;

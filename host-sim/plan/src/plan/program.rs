@@ -1,0 +1,243 @@
+//! A plan as a cone program: a plan and the limits to relax in, objective and constraints on control points out.
+//!
+//! Variables, in this order: the `n` x coordinates of the control points, m, then y, then z; one `zeta`, m/s^2, for each
+//! span if the body rate is bounded; one slack for each relaxed limit.
+
+use quatrack_design::model::GRAVITY_M_S2;
+
+use super::{Limit, Plan};
+use crate::trajectory::bspline::UniformBasis;
+
+/// A sum of variables times coefficients, and a constant.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Affine {
+    pub(super) terms: Vec<(usize, f64)>,
+    pub(super) constant: f64,
+}
+
+impl Affine {
+    fn constant(constant: f64) -> Self {
+        Self { terms: Vec::new(), constant }
+    }
+
+    fn plus(mut self, constant: f64) -> Self {
+        self.constant += constant;
+        self
+    }
+
+    fn plus_variable(mut self, variable: usize, coefficient: f64) -> Self {
+        self.terms.push((variable, coefficient));
+        self
+    }
+
+    fn scaled(mut self, factor: f64) -> Self {
+        self.constant *= factor;
+        for (_, coefficient) in &mut self.terms {
+            *coefficient *= factor;
+        }
+        self
+    }
+}
+
+/// What must hold of a variable vector.
+pub(super) enum Constraint {
+    /// Zero.
+    Zero(Affine),
+    /// Zero or more.
+    NonNegative(Affine),
+    /// The length of the second is the first at the most.
+    Cone(Affine, Vec<Affine>),
+}
+
+/// A cone program: minimise `1/2 x' P x + q' x` subject to constraints.
+pub(super) struct Program {
+    /// All variables.
+    pub(super) variables: usize,
+    /// Upper triangle of `P`, as (row, column, value); the same for each axis is repeated here.
+    pub(super) quadratic: Vec<(usize, usize, f64)>,
+    /// `q`.
+    pub(super) linear: Vec<f64>,
+    /// What must hold.
+    pub(super) constraints: Vec<Constraint>,
+}
+
+impl Program {
+    /// The program of the plan. With `relaxed` empty the objective is the plan's own; else every bound of those limits
+    /// has a slack added, and the weighted sum of the slacks is all that is minimised.
+    pub(super) fn new(plan: &Plan, relaxed: &[(Limit, f64)]) -> Self {
+        let basis = plan.basis;
+        let control_points = basis.control_points();
+        let zetas = if plan.bounds.body_rate_max_rad_s.is_some() { plan.spans() } else { 0 };
+        let first_slack = 3 * control_points + zetas;
+        let variables = first_slack + relaxed.len();
+        let slacks = relaxed.iter().zip(first_slack..).map(|((limit, _), variable)| (*limit, variable)).collect();
+        let mut builder = Builder { plan, basis, slacks, constraints: Vec::new() };
+        builder.ends();
+        builder.waypoints();
+        builder.speed();
+        builder.thrust_and_tilt();
+        builder.body_rate();
+        builder.corridors();
+
+        let mut linear = vec![0.0; variables];
+        let mut quadratic = Vec::new();
+        if relaxed.is_empty() {
+            linear[3 * control_points..].fill(-plan.body_rate_slack_reward);
+            quadratic = snap(plan, &basis);
+        } else {
+            for (value, (_, weight)) in linear[first_slack..].iter_mut().zip(relaxed) {
+                *value = *weight;
+            }
+        }
+        Self { variables, quadratic, linear, constraints: builder.constraints }
+    }
+}
+
+/// `P` of `sum_k |sigma''''(k T)|^2`: twice the Gram matrix of the sampled snap, for each axis.
+fn snap(plan: &Plan, basis: &UniformBasis) -> Vec<(usize, usize, f64)> {
+    let n = basis.control_points();
+    let width = plan.degree() + 1;
+    let mut band = vec![0.0; n * width];
+    let samples = (plan.duration_s() / plan.snap_sample_period_s * (1.0 + 1e-12)).floor() as usize;
+    for k in 0..=samples {
+        let t_s = (k as f64 * plan.snap_sample_period_s).min(plan.duration_s());
+        let (first, weights) = basis.derivative_at(4, t_s);
+        for (i, a) in weights.iter().enumerate() {
+            for (j, b) in weights.iter().enumerate().skip(i) {
+                band[(first + i) * width + j - i] += 2.0 * a * b;
+            }
+        }
+    }
+    let entries = band.iter().enumerate().filter(|(_, value)| **value != 0.0);
+    let one: Vec<_> = entries.map(|(at, value)| (at / width, at / width + at % width, *value)).collect();
+    (0..3).flat_map(|axis| one.iter().map(move |(i, j, value)| (axis * n + i, axis * n + j, *value))).collect()
+}
+
+/// Writes down the constraints of a plan.
+struct Builder<'a> {
+    plan: &'a Plan,
+    basis: UniformBasis,
+    slacks: Vec<(Limit, usize)>,
+    constraints: Vec<Constraint>,
+}
+
+impl Builder<'_> {
+    /// `bound`, with the slack of its limit if that one is relaxed.
+    fn relaxed(&self, limit: Limit, bound: Affine) -> Affine {
+        match self.slacks.iter().find(|(relaxed, _)| *relaxed == limit) {
+            Some((_, variable)) => bound.plus_variable(*variable, 1.0),
+            None => bound,
+        }
+    }
+
+    /// Coordinate `axis` of control point `j` of the derivative whose weights are given.
+    fn point(&self, weights: &[Vec<f64>], j: usize, axis: usize) -> Affine {
+        let first = axis * self.basis.control_points() + j;
+        Affine { terms: weights[j].iter().enumerate().map(|(i, weight)| (first + i, *weight)).collect(), constant: 0.0 }
+    }
+
+    /// All three coordinates of it.
+    fn vector(&self, weights: &[Vec<f64>], j: usize) -> Vec<Affine> {
+        (0..3).map(|axis| self.point(weights, j, axis)).collect()
+    }
+
+    /// Where the flight starts and ends; with rest, four control points each, so that velocity, acceleration and jerk
+    /// are zero there.
+    fn ends(&mut self) {
+        let n = self.basis.control_points();
+        let count = self.plan.points_at_an_end();
+        let (Some(start), Some(end)) = (self.plan.waypoints.first(), self.plan.waypoints.last()) else { return };
+        for axis in 0..3 {
+            for i in 0..count {
+                for (j, waypoint) in [(i, start), (n - 1 - i, end)] {
+                    let coordinate = Affine::constant(-waypoint.position_m[axis]);
+                    self.constraints.push(Constraint::Zero(coordinate.plus_variable(axis * n + j, 1.0)));
+                }
+            }
+        }
+    }
+
+    fn waypoints(&mut self) {
+        let n = self.basis.control_points();
+        let relaxed = self.slacks.iter().any(|(limit, _)| *limit == Limit::Waypoints);
+        for waypoint in self.plan.inner_waypoints() {
+            let (first, weights) = self.basis.derivative_at(0, waypoint.time_s);
+            let miss = (0..3).map(|axis| Affine {
+                terms: weights.iter().enumerate().map(|(i, weight)| (axis * n + first + i, *weight)).collect(),
+                constant: -waypoint.position_m[axis],
+            });
+            if waypoint.tolerance_m == 0.0 && !relaxed {
+                self.constraints.extend(miss.map(Constraint::Zero));
+            } else {
+                let miss = miss.collect();
+                let tolerance = self.relaxed(Limit::Waypoints, Affine::constant(waypoint.tolerance_m));
+                self.constraints.push(Constraint::Cone(tolerance, miss));
+            }
+        }
+    }
+
+    fn speed(&mut self) {
+        let Some(bound) = self.plan.bounds.speed_max_m_s else { return };
+        let weights = self.basis.derivative_weights(1);
+        for j in 0..weights.len() {
+            let head = self.relaxed(Limit::Speed, Affine::constant(bound));
+            self.constraints.push(Constraint::Cone(head, self.vector(&weights, j)));
+        }
+    }
+
+    fn thrust_and_tilt(&mut self) {
+        let weights = self.basis.derivative_weights(2);
+        let bounds = self.plan.bounds;
+        for j in 0..weights.len() {
+            let acceleration = self.vector(&weights, j);
+            let lift = acceleration[2].clone().plus(GRAVITY_M_S2);
+            if let Some(tilt_rad) = bounds.tilt_max_rad {
+                let head = self.relaxed(Limit::Tilt, lift.clone().scaled(tilt_rad.tan()));
+                self.constraints.push(Constraint::Cone(head, acceleration[..2].to_vec()));
+            }
+            if let Some(bound) = bounds.thrust_max_m_s2 {
+                let head = self.relaxed(Limit::ThrustMax, Affine::constant(bound));
+                let thrust = vec![acceleration[0].clone(), acceleration[1].clone(), lift.clone()];
+                self.constraints.push(Constraint::Cone(head, thrust));
+            }
+            if let Some(bound) = bounds.thrust_min_m_s2 {
+                self.constraints.push(Constraint::NonNegative(self.relaxed(Limit::ThrustMin, lift.plus(-bound))));
+            }
+        }
+    }
+
+    fn body_rate(&mut self) {
+        let Some(bound) = self.plan.bounds.body_rate_max_rad_s else { return };
+        let acceleration = self.basis.derivative_weights(2);
+        let jerk = self.basis.derivative_weights(3);
+        let degree = self.plan.degree();
+        for span in 0..self.plan.spans() {
+            let zeta = 3 * self.basis.control_points() + span;
+            self.constraints.push(Constraint::NonNegative(Affine::default().plus_variable(zeta, 1.0)));
+            for j in span..=span + degree - 2 {
+                let lift = self.point(&acceleration, j, 2).plus(GRAVITY_M_S2);
+                self.constraints.push(Constraint::NonNegative(lift.plus_variable(zeta, -1.0)));
+            }
+            for j in span..=span + degree - 3 {
+                let head = self.relaxed(Limit::BodyRate, Affine::default().plus_variable(zeta, bound));
+                self.constraints.push(Constraint::Cone(head, self.vector(&jerk, j)));
+            }
+        }
+    }
+
+    fn corridors(&mut self) {
+        let n = self.basis.control_points();
+        for (index, corridor) in self.plan.corridors.iter().enumerate() {
+            for j in self.plan.points_of(corridor) {
+                for axis in 0..3 {
+                    let above = Affine::constant(-corridor.min_m[axis]).plus_variable(axis * n + j, 1.0);
+                    let below = Affine::constant(corridor.max_m[axis]).plus_variable(axis * n + j, -1.0);
+                    for bound in [above, below] {
+                        let bound = self.relaxed(Limit::Corridor(index), bound);
+                        self.constraints.push(Constraint::NonNegative(bound));
+                    }
+                }
+            }
+        }
+    }
+}

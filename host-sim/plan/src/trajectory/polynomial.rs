@@ -1,0 +1,275 @@
+//! Piecewise polynomials: coefficients per piece in, position, heading and their derivatives at a time out.
+//!
+//! This is what flies on board (degree at most 7, the piece's own time); a B-spline of such a degree becomes one
+//! without loss. The text form that other tools write is in [`csv`].
+
+pub mod csv;
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use nalgebra::Vector3;
+use quatrack_design::model::flat::FlatSample;
+
+use super::bspline::BSpline;
+
+use super::Trajectory;
+
+/// Coefficients per coordinate: degree 7, what the on-board pieces carry.
+pub const COEFFICIENTS: usize = 8;
+
+/// Largest gap between the end of a piece and the start of the next, m in position and rad in heading.
+///
+/// Files in the wild have 6 decimals: a piece of 1 s then meets its neighbour to `9 * 0.5e-6` at worst, the public
+/// figure8.csv to 1.1e-6; a piece of 2.7 s, to 1e-3 at worst. So rounding passes at the durations that such pieces have, while
+/// 1 mm and 0.06 degrees are less than what any quadcopter can hold: a larger step was not meant to be flown.
+pub const JOINT_TOLERANCE: f64 = 1e-3;
+
+/// The four polynomials of a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinate {
+    /// Position, m.
+    X,
+    /// Position, m.
+    Y,
+    /// Position, m.
+    Z,
+    /// Heading, rad.
+    Yaw,
+}
+
+impl Coordinate {
+    /// In the order of [`Piece::coefficients`].
+    pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::Z, Self::Yaw];
+
+    /// SI unit of its value.
+    pub fn unit(self) -> &'static str {
+        if self == Self::Yaw { "rad" } else { "m" }
+    }
+}
+
+impl fmt::Display for Coordinate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+            Self::Yaw => "yaw",
+        })
+    }
+}
+
+/// One polynomial per coordinate over `0 <= t <= duration_s`, t counted from the start of the piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// Length in time, s; positive and finite.
+    pub duration_s: f64,
+    /// Of x, y, z and heading; ascending powers: entry k in m/s^k, for the heading rad/s^k.
+    pub coefficients: [[f64; COEFFICIENTS]; 4],
+}
+
+impl Piece {
+    /// The `order`-th derivative of a coordinate at `t_s` from the piece's start; SI.
+    pub fn derivative(&self, coordinate: Coordinate, order: usize, t_s: f64) -> f64 {
+        // Horner; factor k (k-1) .. (k-order+1) of the k-th power.
+        let coefficients = &self.coefficients[coordinate as usize];
+        (order..COEFFICIENTS).rev().fold(0.0, |sum, k| {
+            let factor: f64 = (k - order + 1..=k).map(|i| i as f64).product();
+            sum * t_s + factor * coefficients[k]
+        })
+    }
+}
+
+/// Pieces flown one after the other, without gaps in position or heading.
+///
+/// The heading is the model's psi in `q = q_tilt(n) q_z(psi)`; other tools' yaw is the same at hover.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PiecewisePolynomial {
+    pieces: Vec<Piece>,
+    /// Start of each piece, then the end of the last, s.
+    boundaries_s: Vec<f64>,
+}
+
+/// Why pieces do not make a trajectory. Pieces count from 1.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum PolynomialError {
+    /// There is nothing to fly.
+    #[error("no pieces: a trajectory needs at least one")]
+    Empty,
+    /// Zero, negative or not a number.
+    #[error("piece {piece}: duration = {value} s; must be positive and finite")]
+    Duration {
+        /// Which piece, from 1.
+        piece: usize,
+        /// Its duration, s.
+        value: f64,
+    },
+    /// The durations add up to more than a number can hold.
+    #[error("the durations add up to more than 1e308 s; shorten the pieces")]
+    TotalDuration,
+    /// Not a number.
+    #[error("piece {piece}: {coordinate}^{power} = {value}; must be a finite number")]
+    Coefficient {
+        /// Which piece, from 1.
+        piece: usize,
+        /// Which polynomial.
+        coordinate: Coordinate,
+        /// Which power.
+        power: usize,
+        /// The coefficient.
+        value: f64,
+    },
+    /// A piece does not start where the one before it ends.
+    #[error(
+        "{coordinate} jumps by {jump:.6} {} from the end of piece {piece} ({end:.6}) to the start of piece {} \
+         ({start:.6}); at most {JOINT_TOLERANCE} {0} can be flown: correct {coordinate}^0 of piece {1} or the duration \
+         of piece {piece}",
+        coordinate.unit(), piece + 1
+    )]
+    Jump {
+        /// The piece before the jump, from 1.
+        piece: usize,
+        /// What jumps.
+        coordinate: Coordinate,
+        /// Value at the end of that piece, m or rad.
+        end: f64,
+        /// Value at the start of the next piece, m or rad.
+        start: f64,
+        /// Size of the jump, m or rad; for the heading without whole turns.
+        jump: f64,
+    },
+}
+
+impl PiecewisePolynomial {
+    /// A trajectory of these pieces. A heading that starts whole turns from where the piece before it ends is the same
+    /// attitude: the turns are taken off the piece, so that the trajectory's heading is continuous.
+    ///
+    /// # Errors
+    /// [`PolynomialError`] for the first thing that cannot be flown. Jumps in velocity and above are not judged here.
+    pub fn new(mut pieces: Vec<Piece>) -> Result<Self, PolynomialError> {
+        validate(&pieces)?;
+        let mut boundaries_s = vec![0.0];
+        let mut end_s = 0.0;
+        for piece in &pieces {
+            end_s += piece.duration_s;
+            boundaries_s.push(end_s);
+        }
+        if !end_s.is_finite() {
+            return Err(PolynomialError::TotalDuration);
+        }
+        for i in 1..pieces.len() {
+            let before = pieces[i - 1];
+            for coordinate in Coordinate::ALL {
+                let end = before.derivative(coordinate, 0, before.duration_s);
+                let constant = &mut pieces[i].coefficients[coordinate as usize][0];
+                let start = *constant;
+                let turns = if coordinate == Coordinate::Yaw { ((start - end) / TAU).round() } else { 0.0 };
+                let jump = (start - end - TAU * turns).abs();
+                if jump.is_nan() || jump > JOINT_TOLERANCE {
+                    return Err(PolynomialError::Jump { piece: i, coordinate, end, start, jump });
+                }
+                if turns != 0.0 {
+                    *constant = start - TAU * turns;
+                }
+            }
+        }
+        Ok(Self { pieces, boundaries_s })
+    }
+
+    /// The same curve as `spline`, to rounding: one piece per span, heading 0. It takes exactly as long.
+    ///
+    /// # Errors
+    /// [`PolynomialError::Coefficient`] if the spline is so large or so short that a coefficient overflows.
+    pub fn from_bspline(spline: &BSpline) -> Result<Self, PolynomialError> {
+        let spans = spline.spans();
+        let duration_s = spline.duration_s() / spans as f64;
+        // Added up, the durations would miss the spline's end by a rounding error or more; so may `d * n / n`.
+        let starts_s = (0..spans).map(|span| spline.duration_s() * span as f64 / spans as f64);
+        let boundaries_s: Vec<f64> = starts_s.chain([spline.duration_s()]).collect();
+        let mut pieces = vec![Piece { duration_s, coefficients: [[0.0; COEFFICIENTS]; 4] }; spans];
+        let mut factorial = 1.0;
+        for power in 0..=spline.degree() {
+            // Taylor: the coefficient is the derivative at the span's start over the factorial.
+            factorial *= power.max(1) as f64;
+            let points = spline.derivative_control_points(power);
+            for (span, piece) in pieces.iter_mut().enumerate() {
+                let basis = spline.basis(power, span, boundaries_s[span]);
+                let derivative: Vector3<f64> = basis.iter().zip(&points[span..]).map(|(b, p)| p * *b).sum();
+                for (coefficients, value) in piece.coefficients.iter_mut().zip(derivative.iter()) {
+                    coefficients[power] = value / factorial;
+                }
+            }
+        }
+        // A spline is continuous however large it is: its joints need no judgement against a length in metres.
+        validate(&pieces)?;
+        Ok(Self { pieces, boundaries_s })
+    }
+
+    /// The pieces, in the order of flight.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// Start of each piece, then the end of the last, s.
+    pub fn boundaries_s(&self) -> &[f64] {
+        &self.boundaries_s
+    }
+
+    /// The `order`-th derivative of a coordinate at a time, SI; at rest outside the trajectory's duration.
+    pub fn derivative(&self, coordinate: Coordinate, order: usize, t_s: f64) -> f64 {
+        let at_rest = !(0.0..=self.duration_s()).contains(&t_s);
+        if at_rest && order > 0 {
+            return 0.0;
+        }
+        let (piece, start_s) = self.piece_at(t_s);
+        // Rounding of the boundaries never takes a piece past its own end.
+        piece.derivative(coordinate, order, (t_s - start_s).max(0.0).min(piece.duration_s))
+    }
+
+    /// The piece flown at `t_s` and its start, s; at a joint the later piece, at and after the end the last.
+    fn piece_at(&self, t_s: f64) -> (&Piece, f64) {
+        let last = self.pieces.len() - 1;
+        let index = self.boundaries_s[1..=last].partition_point(|end_s| *end_s <= t_s);
+        (&self.pieces[index], self.boundaries_s[index])
+    }
+}
+
+/// Whether there are pieces, and each has a duration and coefficients that are numbers.
+fn validate(pieces: &[Piece]) -> Result<(), PolynomialError> {
+    if pieces.is_empty() {
+        return Err(PolynomialError::Empty);
+    }
+    for (index, piece) in pieces.iter().enumerate() {
+        let value = piece.duration_s;
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(PolynomialError::Duration { piece: index + 1, value });
+        }
+        for coordinate in Coordinate::ALL {
+            let coefficients = &piece.coefficients[coordinate as usize];
+            if let Some(power) = coefficients.iter().position(|c| !c.is_finite()) {
+                let value = coefficients[power];
+                return Err(PolynomialError::Coefficient { piece: index + 1, coordinate, power, value });
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Trajectory for PiecewisePolynomial {
+    fn duration_s(&self) -> f64 {
+        self.boundaries_s[self.pieces.len()]
+    }
+
+    fn at(&self, t_s: f64) -> FlatSample {
+        let value = |coordinate, order| self.derivative(coordinate, order, t_s);
+        let vector = |order| Vector3::from([Coordinate::X, Coordinate::Y, Coordinate::Z].map(|c| value(c, order)));
+        FlatSample {
+            position_m: vector(0),
+            velocity_m_s: vector(1),
+            acceleration_m_s2: vector(2),
+            jerk_m_s3: vector(3),
+            heading_rad: value(Coordinate::Yaw, 0),
+            heading_rate_rad_s: value(Coordinate::Yaw, 1),
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! One flight: a course, a craft and what is wrong with it in; how far it strayed out.
+//!
+//! What moves at its start is known by then: the craft is carried along it for a second before, setpoints and all, as if
+//! it had flown there. What is recorded begins as switched on.
+
+use std::collections::VecDeque;
+
+use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::trajectory::fifth_order::FifthOrder;
+use serde::Serialize;
+
+use super::course::Course;
+use super::firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
+use super::recording::Recording;
+use crate::flight::motor_loop;
+use crate::flight::noise::{Noise, Source};
+use crate::plant::{Craft, Ground, RigidState};
+
+/// Farther than this from its course a craft counts as lost, m.
+const LOST_M: f64 = 5.0;
+
+/// Steps between two samples of the error: 100 Hz.
+const SAMPLE_STEPS: u32 = 10;
+
+/// Steps for which a craft is carried along a course that moves at its start; a whole number of setpoints.
+const CARRIED_STEPS: u32 = 1000;
+
+/// What is not as the controller thinks, and how it is spoken to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Case {
+    /// True lag of the motors, s.
+    pub lag_s: f64,
+    /// True mass over the assumed one.
+    pub mass_factor: f64,
+    /// True inertia over the assumed one.
+    pub inertia_factor: f64,
+    /// Steps of the firmware by which commands act late.
+    pub late_steps: usize,
+    /// What the estimate is off by, where it is.
+    pub noise: Option<Noise>,
+    /// Sensors.
+    pub sensors: Sensors,
+    /// How setpoints come.
+    pub setpoints: Setpoints,
+}
+
+impl Case {
+    /// Motors of a lag, everything else as it should be.
+    pub const fn of_lag(lag_s: f64) -> Self {
+        Self {
+            lag_s,
+            mass_factor: 1.0,
+            inertia_factor: 1.0,
+            late_steps: 0,
+            noise: None,
+            sensors: Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 },
+            setpoints: Setpoints::HighLevel,
+        }
+    }
+}
+
+/// How a flight went.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Flown {
+    /// Integral of the position error over time, m s; nothing where the craft was lost.
+    pub iae: Option<f64>,
+    /// Largest position error, m.
+    pub max_error_m: f64,
+    /// Position error at the end, m.
+    pub end_error_m: f64,
+    /// Largest tilt, degrees.
+    pub max_tilt_deg: f64,
+}
+
+/// Flies a course from its start in the air, or from the ground where it begins there.
+pub fn fly(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case) -> Flown {
+    let mut firmware = Firmware::start(vehicle, tune, case.sensors);
+    carry(&mut firmware, vehicle, course, case);
+    fly_with(&mut firmware, vehicle, course, case, None)
+}
+
+/// How much of a flight is recorded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recorded {
+    /// So many steps.
+    pub steps: u32,
+    /// Halfway another table is asked for.
+    pub then: Option<u8>,
+}
+
+/// Flies a course and keeps what passed between firmware and controller.
+pub fn fly_recorded(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case, recorded: Recorded) -> Recording {
+    let mut firmware = Firmware::start_recorded(vehicle, tune, case.sensors);
+    fly_with(&mut firmware, vehicle, course, case, Some(recorded));
+    firmware.recorded().unwrap_or_default()
+}
+
+/// To the start of a course that comes from somewhere.
+fn carry(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case: &Case) {
+    for steps_left in (1..=CARRIED_STEPS).rev() {
+        let t_s = -f64::from(steps_left) / f64::from(STEPS_HZ);
+        let Some(state) = course.coming_from(t_s).and_then(|point| on_course(&point, vehicle)) else { return };
+        firmware.command(course, t_s, case.setpoints);
+        firmware.step(&state, None);
+    }
+}
+
+fn fly_with(
+    firmware: &mut Firmware,
+    vehicle: &Vehicle,
+    course: &Course,
+    case: &Case,
+    recorded: Option<Recorded>,
+) -> Flown {
+    let mut craft = Craft::new(vehicle);
+    craft.body = craft.body.scaled(case.mass_factor, case.inertia_factor);
+    craft.motors = craft.motors.with_lag(case.lag_s, case.lag_s);
+    let start = course.position_m(0.0).unwrap_or_default();
+    let hovering = RigidState::at_rest(start, vehicle.hover_thrust_n());
+    let mut state = course.coming_from(0.0).and_then(|point| on_course(&point, vehicle)).unwrap_or(hovering);
+    if matches!(course, Course::Hop(..)) {
+        craft = craft.with_load(Ground::under(vehicle));
+        state = RigidState::at_rest(start, 0.0);
+    }
+    let mut source = Source::new(case.noise.map_or(0, |noise| noise.seed));
+    let mut on_their_way = VecDeque::from(vec![state.thrusts_n; case.late_steps]);
+
+    let whole = (course.duration_s() * f64::from(STEPS_HZ)).round() as u32;
+    let mut flown = Flown { iae: Some(0.0), max_error_m: 0.0, end_error_m: 0.0, max_tilt_deg: 0.0 };
+    for step in 0..recorded.map_or(whole + 1, |recorded| recorded.steps) {
+        match recorded {
+            Some(Recorded { steps, then: Some(table) }) if step == steps / 2 => firmware.ask_for(table),
+            _ => {}
+        }
+        let t_s = f64::from(step) / f64::from(STEPS_HZ);
+        firmware.command(course, t_s, case.setpoints);
+        let error_m = (state.position_m - course.position_m(t_s).unwrap_or(start)).norm();
+        if step % SAMPLE_STEPS == 0 {
+            flown.iae = flown.iae.map(|iae| iae + error_m * f64::from(SAMPLE_STEPS) / f64::from(STEPS_HZ));
+        }
+        flown.max_error_m = flown.max_error_m.max(error_m);
+        flown.end_error_m = error_m;
+        flown.max_tilt_deg = flown.max_tilt_deg.max(state.thrust_axis().z.clamp(-1.0, 1.0).acos().to_degrees());
+        if !state.is_finite() || error_m > LOST_M {
+            return Flown { iae: None, ..flown };
+        }
+        let measured = case.noise.map_or(state, |noise| source.measured(&state, &noise));
+        on_their_way.push_back(firmware.step(&measured, None));
+        let commands_n = on_their_way.pop_front().unwrap_or_default();
+        state = craft.hold(&state, &commands_n, t_s, 1.0 / f64::from(STEPS_HZ));
+    }
+    flown
+}
+
+/// The state that flies a point of a course: attitude, body rates and forces from its derivatives.
+fn on_course(point: &FifthOrder, vehicle: &Vehicle) -> Option<RigidState> {
+    let airframe = motor_loop::airframe(vehicle, vehicle.motors().lag_s).ok()?;
+    motor_loop::state_on(point, &airframe).ok()
+}

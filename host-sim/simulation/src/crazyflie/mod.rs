@@ -1,0 +1,23 @@
+//! The Crazyflie's firmware around our controller, in simulation: courses flown through the controller's C interface on
+//! the rigid plant; tracking errors out.
+//!
+//! ```text
+//! report        rows of flights
+//!   flight      a course, a craft and what is wrong with it -> errors
+//!     firmware  the stabilizer at 1 kHz: commander, gyroscope, controller, power distribution
+//!       course  what the high-level commander evaluates
+//! ```
+
+mod codegen;
+mod course;
+mod firmware;
+mod flight;
+mod recording;
+mod report;
+
+pub use codegen::{CodegenError, Design, Stated, motor_gains};
+pub use course::{Course, CourseError, Septics};
+pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune, platform};
+pub use flight::{Case, Flown, Recorded, fly, fly_recorded};
+pub use recording::{CONTROL_BYTES, Recording};
+pub use report::{Report, Row};

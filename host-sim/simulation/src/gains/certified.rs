@@ -1,0 +1,134 @@
+//! A design carried out: design in; gains, certificate and table out, or the figure that fails.
+
+use quatrack::gains::table::{ActuatorTable, GainTable, Hash, Name, ScheduleRows, TableError, TableHead, Vehicle};
+use quatrack_design::certify::{Certificate, Minimum, RegionCertificate, certify_region, motor_lag_limit, require};
+use serde::Serialize;
+
+use super::GainsError;
+use super::design::{Design, Problem};
+use super::designed::{Designed, TableRows};
+use super::statement::{Statement, sha256};
+use super::table::Table;
+use crate::vehicles;
+
+/// A design with its gains, and what they promise.
+#[derive(Debug, Clone)]
+pub struct Certified {
+    /// The design.
+    pub design: Design,
+    /// SHA-256 of what the design asks for.
+    pub design_hash: Hash,
+    /// Its gains in f64.
+    pub designed: Designed,
+    /// Every figure of the gains as rounded to f32.
+    pub certificate: Certificate,
+    /// Over the region that an actuator-aware design asks for.
+    pub region: Option<RegionCertificate>,
+    /// What the table says of them.
+    pub statement: Statement,
+    /// The table; none where no law on board flies the gains, as those that remember past commands.
+    pub table: Option<Table>,
+}
+
+/// What the hash of a design is taken of: all that its gains, its limits and its acceptance depend on.
+#[derive(Debug, Serialize)]
+pub(super) struct Essence<'a> {
+    vehicle: String,
+    vehicle_id: String,
+    linearisation: &'static str,
+    method: &'static str,
+    parameters: &'a Problem,
+    control_rate_hz: u32,
+    rate_loop_gain_1_s: Option<f64>,
+    thrust_m_s2: [f32; 2],
+    body_rates_max_rad_s: [f32; 3],
+    minimum: &'a Minimum,
+}
+
+impl Design {
+    /// Computes the gains, certifies them as rounded to f32 and holds them against the design's own minimum.
+    ///
+    /// # Errors
+    /// [`GainsError::Design`] and [`GainsError::Certify`] where there is nothing to certify; [`GainsError::Minimum`]
+    /// with the first figure that falls short; [`GainsError::Table`] for gains that the core refuses.
+    pub fn certify(&self) -> Result<Certified, GainsError> {
+        let designed = Designed::of(self)?;
+        let mut certificate = designed.certify(self)?;
+        let mut region = None;
+        if let (Problem::ActuatorAware { motor_lag_s, region: bounds, .. }, Some(gain)) =
+            (&self.problem, &designed.gain_in_parts)
+        {
+            let period_s = 1.0 / f64::from(self.rate.hz());
+            let found = certify_region(&self.vehicle, gain, *motor_lag_s, period_s, &bounds.grid())?;
+            if found.spectral_radius.is_nan() || found.spectral_radius >= 1.0 {
+                return Err(GainsError::Region { spectral_radius: found.spectral_radius, worst: found.worst });
+            }
+            region = Some(found);
+            // The plant has its motors' lag already: what is told is the whole of it, not what may come on top.
+            certificate.lag = vec![motor_lag_limit(&self.vehicle, gain, *motor_lag_s, period_s)?];
+        }
+        require(&certificate, &self.minimum)?;
+        let design_hash = sha256(&self.essence());
+        let statement = Statement::new(self, &design_hash, &designed, &certificate);
+        let head = TableHead {
+            name: self.name,
+            vehicle: self.table_vehicle()?,
+            rate: self.rate,
+            limits: self.limits,
+            design_hash,
+            certificate: statement.on_board(),
+        };
+        let table = if designed.past_command_gains.is_empty() {
+            Some(self.table(head, &designed.gains.rows()).map_err(GainsError::Table)?)
+        } else {
+            None
+        };
+        Ok(Certified { design: self.clone(), design_hash, designed, certificate, region, statement, table })
+    }
+
+    fn table(&self, head: TableHead, rows: &TableRows) -> Result<Table, TableError> {
+        match rows {
+            TableRows::Fixed(rows) => GainTable::new(head, rows).map(|table| Table::Gains(Box::new(table))),
+            TableRows::Motors(rows) => {
+                let lag_s = self.problem.motor_lag_s().unwrap_or_default();
+                ActuatorTable::new(head, lag_s as f32, rows).map(|table| Table::Actuator(Box::new(table)))
+            }
+            TableRows::OverTime(gains) => {
+                let (trajectory, steps_per_knot) = self.problem.schedule().unwrap_or_default();
+                Table::over_time(head, &ScheduleRows { trajectory, steps_per_knot, gains })
+            }
+        }
+    }
+
+    pub(super) fn essence(&self) -> Essence<'_> {
+        let rates = self.limits.body_rates_max_rad_s();
+        let (linearisation, method) = self.problem.named();
+        Essence {
+            vehicle: self.vehicle.name().to_owned(),
+            vehicle_id: format!("{:08x}", vehicles::id(&self.vehicle)),
+            linearisation,
+            method,
+            parameters: &self.problem,
+            control_rate_hz: self.rate.hz(),
+            rate_loop_gain_1_s: self.rate_loop_gain_1_s,
+            thrust_m_s2: [self.limits.thrust_min_m_s2(), self.limits.thrust_max_m_s2()],
+            body_rates_max_rad_s: [rates.x, rates.y, rates.z],
+            minimum: &self.minimum,
+        }
+    }
+
+    fn table_vehicle(&self) -> Result<Vehicle, GainsError> {
+        let name = Name::new(self.vehicle.name()).map_err(|error| GainsError::Vehicle {
+            vehicle: self.vehicle.name().to_owned(),
+            reason: error.to_string(),
+        })?;
+        Ok(Vehicle { name, id: vehicles::id(&self.vehicle) })
+    }
+}
+
+impl Certified {
+    /// The table as a file; nothing where there is none.
+    pub fn to_bytes(&self) -> Option<Vec<u8>> {
+        self.table.as_ref()?.to_bytes()
+    }
+}

@@ -1,0 +1,22 @@
+//! Flights: vehicles, plants, gains and trajectories in; what is flown and how well out. In f64, and with the `f32` core and
+//! the Crazyflie controller as they are on board.
+//!
+//! ```text
+//! crazyflie            the Crazyflie's firmware around our controller
+//! reproduction         Table I, and past it
+//!   flight             plants under laws in f64 and under the f32 core, metrics
+//!     plant            a rigid body with motors that lag and saturate, and what else pushes it
+//!       integrator     one-step methods
+//!   gains              design files -> certified tables, their check, exchange with other tools
+//!     vehicles         vehicles by name or from TOML files; their limits and number
+//! ```
+//!
+//! Below it are `quatrack_plan` and `quatrack_design`; conventions are those of the latter.
+
+pub mod crazyflie;
+pub mod flight;
+pub mod gains;
+pub mod integrator;
+pub mod plant;
+pub mod reproduction;
+pub mod vehicles;

@@ -1,0 +1,80 @@
+//! Motors: commanded thrusts in; thrusts that follow with a lag, and the force and torque of all, out.
+
+use nalgebra::{Vector3, Vector4};
+use quatrack_design::vehicle::{ROTOR_SIDES, ROTOR_TORQUE_SIGNS, Vehicle};
+
+use super::Wrench;
+
+/// One motor with its rotor, whose axis is the body's z axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motor {
+    /// Where the rotor stands, body frame, m.
+    pub position_m: Vector3<f64>,
+    /// Torque about body z per thrust, with its sign, m.
+    pub torque_per_thrust_m: f64,
+    /// Time constant while the thrust grows, s.
+    pub rise_lag_s: f64,
+    /// Time constant while it falls, s.
+    pub fall_lag_s: f64,
+    /// Least thrust, N.
+    pub thrust_min_n: f64,
+    /// Most thrust, N.
+    pub thrust_max_n: f64,
+}
+
+/// The four motors of a craft, in the order of its vehicle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MotorBank {
+    /// Each motor.
+    pub motors: [Motor; 4],
+}
+
+impl Motor {
+    /// `f' = (u - f) / tau`, N/s, with the command within the motor's limits.
+    fn thrust_rate_n_s(&self, thrust_n: f64, command_n: f64) -> f64 {
+        let missing_n = command_n.max(self.thrust_min_n).min(self.thrust_max_n) - thrust_n;
+        missing_n / if missing_n > 0.0 { self.rise_lag_s } else { self.fall_lag_s }
+    }
+}
+
+impl MotorBank {
+    /// The vehicle's, which rise and fall alike.
+    pub fn of(vehicle: &Vehicle) -> Self {
+        let all = vehicle.motors();
+        let a = all.half_arm_m();
+        let motor = |i: usize| Motor {
+            position_m: Vector3::new(a * ROTOR_SIDES[i][0], a * ROTOR_SIDES[i][1], 0.0),
+            torque_per_thrust_m: all.torque_per_thrust_m * ROTOR_TORQUE_SIGNS[i],
+            rise_lag_s: all.lag_s,
+            fall_lag_s: all.lag_s,
+            thrust_min_n: all.thrust_min_n,
+            thrust_max_n: all.thrust_max_n,
+        };
+        Self { motors: [0, 1, 2, 3].map(motor) }
+    }
+
+    /// The same with other time constants, s.
+    pub fn with_lag(mut self, rise_lag_s: f64, fall_lag_s: f64) -> Self {
+        for motor in &mut self.motors {
+            (motor.rise_lag_s, motor.fall_lag_s) = (rise_lag_s, fall_lag_s);
+        }
+        self
+    }
+
+    /// Rates of the thrusts under commands, N/s.
+    pub(super) fn thrust_rates_n_s(&self, thrusts_n: &Vector4<f64>, commands_n: &Vector4<f64>) -> Vector4<f64> {
+        Vector4::from_fn(|i, _| self.motors[i].thrust_rate_n_s(thrusts_n[i], commands_n[i]))
+    }
+
+    /// Force and torque of all, body frame.
+    pub(super) fn wrench(&self, thrusts_n: &Vector4<f64>) -> Wrench {
+        self.motors.iter().zip(thrusts_n.iter()).fold(Wrench::default(), |sum, (motor, thrust_n)| {
+            let force_n = Vector3::new(0.0, 0.0, *thrust_n);
+            let reaction = Vector3::new(0.0, 0.0, motor.torque_per_thrust_m * thrust_n);
+            Wrench {
+                force_n: sum.force_n + force_n,
+                torque_n_m: sum.torque_n_m + motor.position_m.cross(&force_n) + reaction,
+            }
+        })
+    }
+}

@@ -1,0 +1,37 @@
+//! Why a vehicle cannot be had, in one line that names the file or the field and the remedy.
+
+use std::path::PathBuf;
+
+use quatrack_design::vehicle::VehicleError;
+
+/// Why a vehicle cannot be had by its name or from its file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum VehicleFileError {
+    /// Not one of the built-in names.
+    #[error("vehicle {name}: unknown; the built-in ones are {known}, others are files ending in .toml")]
+    Unknown {
+        /// The name as given.
+        name: String,
+        /// The built-in names.
+        known: String,
+    },
+    /// The file cannot be read.
+    #[error("{}: cannot be read ({reason})", path.display())]
+    Unreadable {
+        /// Which file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
+    #[error("vehicle, line {line}: {reason}")]
+    Syntax {
+        /// Where, from 1.
+        line: usize,
+        /// What the parser says, in one line.
+        reason: String,
+    },
+    /// A name or a figure that no vehicle has.
+    #[error(transparent)]
+    Refused(#[from] VehicleError),
+}

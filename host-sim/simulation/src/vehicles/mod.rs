@@ -1,0 +1,90 @@
+//! Vehicles by name or from TOML files, and what the core keeps of them: limits in f32 and a number that tells them apart.
+//!
+//! The built-in ones are in `gains/vehicles`, each figure with its source beside it.
+
+mod error;
+
+use std::path::Path;
+
+use quatrack::Limits;
+use quatrack::checksum::crc32c;
+use quatrack_design::vehicle::{Vehicle, VehicleError, VehicleFile};
+
+pub use error::VehicleFileError;
+
+/// The built-in vehicles: what they are asked for by, and their file.
+const BUILT_IN: [(&str, &str); 3] = [
+    ("crazyflie-2.1", include_str!("../../../../gains/vehicles/crazyflie-2.1.toml")),
+    ("crazyflie-2.1-upgrade-kit", include_str!("../../../../gains/vehicles/crazyflie-2.1-upgrade-kit.toml")),
+    ("crazyflie-2.1-brushless", include_str!("../../../../gains/vehicles/crazyflie-2.1-brushless.toml")),
+];
+
+/// Names of the built-in vehicles.
+pub fn names() -> [&'static str; 3] {
+    BUILT_IN.map(|(name, _)| name)
+}
+
+/// A built-in vehicle, by one of [`names`] or by its own name, which is shorter for the upgrade kit.
+///
+/// # Errors
+/// [`VehicleFileError::Unknown`].
+pub fn by_name(name: &str) -> Result<Vehicle, VehicleFileError> {
+    let (_, text) = BUILT_IN
+        .iter()
+        .find(|(held, _)| *held == name || held.strip_suffix("-kit") == Some(name))
+        .ok_or_else(|| VehicleFileError::Unknown { name: name.to_owned(), known: names().join(", ") })?;
+    from_toml(text)
+}
+
+/// A vehicle from the text of a file.
+///
+/// # Errors
+/// [`VehicleFileError::Syntax`] for what is not TOML of this form; [`VehicleFileError::Refused`] for a figure out of
+/// range.
+pub fn from_toml(text: &str) -> Result<Vehicle, VehicleFileError> {
+    let file: VehicleFile = toml::from_str(text).map_err(|error| syntax(text, &error))?;
+    Ok(Vehicle::try_from(file)?)
+}
+
+/// A vehicle from a file.
+///
+/// # Errors
+/// As [`from_toml`], and [`VehicleFileError::Unreadable`].
+pub fn from_file(path: &Path) -> Result<Vehicle, VehicleFileError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| VehicleFileError::Unreadable { path: path.to_owned(), reason: error.to_string() })?;
+    from_toml(&text)
+}
+
+/// What commands of thrust and body rates are cut to on board.
+///
+/// # Errors
+/// [`VehicleError::Value`] where a limit vanishes in the rounding to f32.
+pub fn limits(vehicle: &Vehicle) -> Result<Limits, VehicleError> {
+    let [min, max] = vehicle.thrust_limits_m_s2().map(|value| value as f32);
+    let body_rates_rad_s = vehicle.body_rates_max_rad_s();
+    Limits::new(min, max, body_rates_rad_s.map(|value| value as f32)).map_err(|_| VehicleError::Value {
+        field: "limits.body_rates_rad_s".to_owned(),
+        value: body_rates_rad_s.min(),
+        must: "large enough for an f32".to_owned(),
+    })
+}
+
+/// CRC-32C of a vehicle's name and figures, each rounded to f32, lowest byte first: mass; inertia xx, xy, xz, yy, yz, zz;
+/// arm, least and most thrust, torque per thrust, lag; body rates. It tells a table whether it was made for this vehicle.
+pub fn id(vehicle: &Vehicle) -> u32 {
+    let (i, m, rates) = (vehicle.inertia_kg_m2(), vehicle.motors(), vehicle.body_rates_max_rad_s());
+    let inertia = [i.m11, i.m12, i.m13, i.m22, i.m23, i.m33];
+    let motors = [m.arm_m, m.thrust_min_n, m.thrust_max_n, m.torque_per_thrust_m, m.lag_s];
+    let figures = [vehicle.mass_kg()].into_iter().chain(inertia).chain(motors).chain(rates.iter().copied());
+    let mut bytes = vehicle.name().as_bytes().to_vec();
+    bytes.extend(figures.flat_map(|figure| (figure as f32).to_le_bytes()));
+    crc32c(&bytes)
+}
+
+fn syntax(text: &str, error: &toml::de::Error) -> VehicleFileError {
+    let start = error.span().map_or(0, |span| span.start);
+    let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
+    let words: Vec<&str> = error.message().split_whitespace().collect();
+    VehicleFileError::Syntax { line, reason: words.join(" ") }
+}
