@@ -7,6 +7,7 @@ use super::estimate::{Carried, HeldVelocity, Now};
 use super::force_observer::Disturbance;
 use super::ground::Ground;
 use super::torque_observer::Imbalance;
+use super::yield_learner::MotorYield;
 use crate::mixer::Parts;
 use crate::motor_lag::MotorForces;
 use crate::quaternion::Quaternion;
@@ -21,6 +22,7 @@ pub struct CascadeMemory {
     pub(super) disturbance: Disturbance,
     pub(super) imbalance: Imbalance,
     pub(super) air: SeenAir,
+    pub(super) motors: MotorYield,
     pub(super) ground: Ground,
     /// Mean of the forces over the step that has begun, in parts, N.
     pub(super) coming: Parts,
@@ -63,6 +65,7 @@ impl CascadeMemory {
             disturbance: Disturbance::NONE,
             imbalance: Imbalance::NONE,
             air,
+            motors: MotorYield::TOLD,
             ground: if stands { Ground::STANDING } else { Ground::FLYING },
             coming: forces,
             before: Before { velocity: zero, axis: up, answer: [0.0; 2] },

@@ -14,6 +14,7 @@
 //! force_observer  d^ across and its slope, d^_z along the thrust
 //! torque_observer t^ about each axis
 //! air_learner     d, c_x, c_y; the wind's moment
+//! yield_learner   what the motors give of what they are told
 //! ground          whether the craft stands, and the observers with it
 //! ```
 //!
@@ -36,6 +37,7 @@ mod memory;
 mod outer;
 mod reference;
 mod torque_observer;
+mod yield_learner;
 
 use nalgebra::Vector3;
 
@@ -52,6 +54,7 @@ use self::memory::{Before, Seen};
 use self::outer::OuterLoop;
 use self::reference::{InAir, Surroundings};
 use self::torque_observer::TorqueObserver;
+use self::yield_learner::MotorYield;
 use crate::airframe::Airframe;
 use crate::clock::Rate;
 use crate::error::{Field, StateError, StepError};
@@ -217,9 +220,10 @@ impl Cascade {
         let moved = drag_apart * (axis.x * v.x + axis.y * v.y + axis.z * v.z);
         let thrust = self.airframe.mixing.quarter_mass_kg * (along - disturbance.along + moved);
         let asked = self.inner.commands(thrust, [&reference.forces, &reference.commands], &memory.forces, &errors);
-        let (commands, limited) = self.allocation.allocate(asked)?;
+        let MotorYield { share, inverse } = memory.motors;
+        let (commands, limited) = self.allocation.allocate(turned(&asked, inverse))?;
 
-        after.forces = self.next(&memory.forces, &commands);
+        after.forces = self.next(&memory.forces, &turned(&commands, share));
         after.coming = middle(&memory.forces, &after.forces);
         let far = position.x * position.x + position.y * position.y + position.z * position.z > FAR_M * FAR_M;
         after.seen = Seen {
@@ -254,6 +258,9 @@ impl Cascade {
             drag,
         };
         self.force_observer.step(&mut memory.disturbance, &pushed);
+        if seen.undisturbed {
+            memory.motors.step(thrust, memory.disturbance.along, period_s);
+        }
         let ([rx, ry], [sx, sy]) = (before.answer, seen.answer);
         let (rates, answer) = (&seen.now.body_rates, [0.5 * (rx + sx), 0.5 * (ry + sy)]);
         self.torque_observer.step(&mut memory.imbalance, rates, &seen.mean_forces, answer);
@@ -297,6 +304,13 @@ fn mean(a: &Vector3<f32>, b: &Vector3<f32>) -> Vector3<f32> {
 
 /// Distance from the reference beyond which nothing is learned, m.
 const FAR_M: f32 = 0.4;
+
+/// The same with the torques' parts times a factor.
+#[inline(always)]
+fn turned(parts: &Parts, factor: f32) -> Parts {
+    let Parts { thrust, roll, pitch, yaw } = *parts;
+    Parts { thrust, roll: factor * roll, pitch: factor * pitch, yaw: factor * yaw }
+}
 
 #[inline(always)]
 fn middle(a: &Parts, b: &Parts) -> Parts {
