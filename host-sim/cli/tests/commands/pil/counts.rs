@@ -1,0 +1,73 @@
+//! Instructions a step: what the control path may cost at its worst.
+
+use quatrack_cli::pil::image::{self, Image};
+use quatrack_cli::pil::measure::{Images, Report, count};
+
+use super::emulated::pipes_image;
+use super::support::has_emulator;
+
+/// Steps of each flight: the costs do not depend on the values, but for what is limited and which sign a quaternion has.
+const STEPS: usize = 200;
+
+fn report() -> Report {
+    let build = |image| image::build(&image::checkout().unwrap(), image).unwrap();
+    let images = Images {
+        counting: build(Image::Measure),
+        control_path: build(Image::ControlPath),
+        motor_path: build(Image::MotorPath),
+        flying: pipes_image(),
+    };
+    count(&images, Some(STEPS)).unwrap()
+}
+
+#[test]
+fn every_part_stays_within_its_bound_when_everything_is_turned_fed_forward_and_limited() {
+    if !has_emulator() {
+        return;
+    }
+    let report = report();
+    assert_eq!(report.steps, 8 * STEPS);
+    let most = |name: &str| report.law[name].max;
+    // Peers on the same processor, without a check: Mellinger's controller 468, a quaternion LQR in C 608.
+    for name in ["LYAP-E", "LQR-E"] {
+        assert!(most(name) <= 200, "{name}: {}", most(name));
+    }
+    for name in ["LYAP-F", "LQR-F"] {
+        assert!(most(name) <= 320, "{name}: {}", most(name));
+    }
+    // 27 more products than the paper's tables have, each with a load and an addition.
+    let (dense, structured) = (report.law["any E table"], report.law["LQR-E"]);
+    assert!(dense.max <= structured.max + 3 * 27, "{dense:?}, {structured:?}");
+    // What is not limited, in the heading frame or not, costs less: the counts do depend on the case.
+    assert!(structured.min + 30 <= structured.max, "{structured:?}");
+    assert!(report.reference.max <= 300, "{:?}", report.reference);
+    assert!(report.reference_turning.max <= report.reference.max + 130, "{:?}", report.reference_turning);
+    assert!(report.tick.max <= 800, "{:?}", report.tick);
+    assert!(report.flash_bytes <= 16 * 1024, "{} bytes", report.flash_bytes);
+    assert!(report.flash_to_motors_bytes > report.flash_bytes, "{} bytes", report.flash_to_motors_bytes);
+    // Down to the motors: by a table whose gain decouples, and by any. Nothing cut, and every motor in turn.
+    let (decoupled, any) = (&report.law["actuator-aware"], &report.law["any actuator-aware table"]);
+    assert!(decoupled.max <= 340 && decoupled.min < decoupled.max, "{decoupled:?}");
+    assert!(any.max <= 450, "{any:?}");
+    assert!(report.motor_reference.max <= 500, "{:?}", report.motor_reference);
+    // Of degree 7, with a heading in every quarter, where a piece begins.
+    assert!(report.motor_reference_turning.max <= 700, "{:?}", report.motor_reference_turning);
+}
+
+#[test]
+fn every_call_of_the_crazyflies_stabilizer_stays_within_what_its_own_controllers_take() {
+    if !has_emulator() {
+        return;
+    }
+    // Every bit is compared on the way.
+    let counts = quatrack_cli::pil::crazyflie::count(&image::checkout().unwrap()).unwrap();
+    let (change, rows) = counts.rows.split_last().unwrap();
+    assert_eq!((rows.len(), change.table), (5 * 4, "a change"));
+    // The stabilizer's task has 450 words, of which a task switch takes 51 and the task's own frame 22.
+    assert!((500..=4 * (450 - 51 - 22)).contains(&counts.stack_bytes), "{} bytes", counts.stack_bytes);
+    for row in rows {
+        // Mellinger's controller takes 590 for an attitude that is sent to it, without a check; Lee's 2,794.
+        let bound = if row.table == "actuator-aware" { 1_200 } else { 600 };
+        assert!(row.control_step.max <= bound && row.other_step.max <= bound, "{row:?}");
+    }
+}

@@ -1,0 +1,12 @@
+//! Section III and Section IV of the paper, and what lies past them: equations solved, gains designed and certified.
+
+mod analysis_section_three;
+mod analysis_structure;
+mod carex;
+mod certify;
+mod lyapunov;
+mod paper;
+mod paper_tables;
+mod riccati;
+mod sampled;
+mod sampled_equations;

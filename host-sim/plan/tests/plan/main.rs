@@ -1,0 +1,9 @@
+//! Plans against their waypoints and bounds, and trajectory files.
+
+mod bounds;
+mod files;
+mod on_board_trajectory;
+mod paper;
+mod polynomial;
+mod trajectory_csv;
+mod trajectory_file;

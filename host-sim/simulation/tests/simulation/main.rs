@@ -1,0 +1,16 @@
+//! Design files to tables, and flights in simulation: the paper's and those down to the motors.
+
+mod actuator_aware_certificate;
+mod actuator_aware_design;
+mod actuator_aware_gains;
+mod gains_along;
+mod gains_design;
+mod gains_export;
+mod gains_tables;
+mod reproduction;
+mod reproduction_beyond;
+mod rigid;
+mod robustness;
+mod sampled_along;
+mod trajectory_refit;
+mod vehicle;

@@ -1,0 +1,88 @@
+//! Vehicles: the built-in files, what their figures come to, and what is refused.
+
+use quatrack_design::vehicle::VehicleError;
+use quatrack_simulation::vehicles::{self, VehicleFileError};
+
+const TEXT: &str = include_str!("../../../../gains/vehicles/crazyflie-2.1.toml");
+
+#[test]
+fn the_board_flies_tables_for_the_vehicle_that_they_are_designed_for() {
+    let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
+    // The image is built for the target alone, so its source is read.
+    let laws = include_str!("../../../../firmware/src/laws.rs");
+    let declared = laws.lines().find(|line| line.starts_with("pub const VEHICLE: Vehicle")).expect("declared");
+    assert!(declared.contains(&format!("Name::literal(\"{}\")", vehicle.name())), "{declared}");
+    let id = declared.split_once("id: 0x").and_then(|(_, rest)| rest.split_once(' ')).expect("an id").0;
+    assert_eq!(
+        u32::from_str_radix(&id.replace('_', ""), 16),
+        Ok(vehicles::id(&vehicle)),
+        "gains/vehicles/crazyflie-2.1.toml"
+    );
+}
+
+#[test]
+fn built_in_vehicles_hover_between_their_limits() {
+    for name in vehicles::names() {
+        let vehicle = vehicles::by_name(name).expect("built in");
+        assert_eq!(vehicle.name(), name.strip_suffix("-kit").unwrap_or(name));
+        assert_eq!(vehicles::by_name(vehicle.name()), Ok(vehicle.clone()));
+        let [min, max] = vehicle.thrust_limits_m_s2();
+        assert!(min < 9.81 && max > 1.5 * 9.81, "{name}: {min} to {max} m/s^2");
+        assert!(vehicles::limits(&vehicle).is_ok());
+        let [shortest, longest] = vehicle.motors().published_lag_s;
+        assert!((shortest..=longest).contains(&vehicle.motors().lag_s), "{name}");
+    }
+}
+
+#[test]
+fn the_crazyflie_has_the_firmware_s_figures() {
+    let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
+    // 0.029 kg * 9.81 m/s^2 / 4.
+    assert!((vehicle.hover_thrust_n() - 0.071_122_5).abs() < 1e-15);
+    let mixing = vehicle.motors().mixing();
+    let (a, c) = (0.046 / 2.0_f64.sqrt(), 0.006_992_894_899_247_056_5);
+    // Rows: thrust, and the signs of the firmware's motor mixing for roll, pitch and yaw.
+    let signs = [[1.0; 4], [-1.0, -1.0, 1.0, 1.0], [-1.0, 1.0, 1.0, -1.0], [-1.0, 1.0, -1.0, 1.0]];
+    for (row, size) in [1.0, a, a, c].into_iter().enumerate() {
+        for motor in 0..4 {
+            assert!((mixing[(row, motor)] - size * signs[row][motor]).abs() < 1e-17, "({row}, {motor})");
+        }
+    }
+}
+
+#[test]
+fn the_id_tells_figures_and_names_apart_and_ignores_comments() {
+    let id = |text: &str| vehicles::id(&vehicles::from_toml(text).expect("valid"));
+    let known = id(TEXT);
+    assert_eq!(known, id(&format!("# another comment\n{TEXT}")));
+    assert_ne!(known, id(&TEXT.replace("mass_kg = 0.029", "mass_kg = 0.0291")));
+    assert_ne!(known, id(&TEXT.replace("name = \"crazyflie-2.1\"", "name = \"mine\"")));
+    assert_ne!(known, id(&TEXT.replace("\nlag_s = 0.126", "\nlag_s = 0.1")));
+    let all = vehicles::names().map(|name| vehicles::id(&vehicles::by_name(name).expect("built in")));
+    assert!(all[0] != all[1] && all[1] != all[2] && all[0] != all[2]);
+}
+
+#[test]
+fn refusals_name_the_field() {
+    let refused = |from: &str, to: &str| {
+        assert!(TEXT.contains(from), "{from}");
+        vehicles::from_toml(&TEXT.replace(from, to)).expect_err("refused")
+    };
+    let field = |from: &str, to: &str| match refused(from, to) {
+        VehicleFileError::Refused(VehicleError::Value { field, .. }) => field,
+        other => panic!("{other}"),
+    };
+    assert_eq!(field("mass_kg = 0.029", "mass_kg = -0.029"), "body.mass_kg");
+    assert_eq!(field("mass_kg = 0.029", "mass_kg = nan"), "body.mass_kg");
+    assert_eq!(field("thrust_max_n = 0.12", "thrust_max_n = 0.07"), "motors.thrust_max_n");
+    assert_eq!(field("thrust_min_n = 0.0128", "thrust_min_n = 0.128"), "motors.thrust_min_n");
+    assert_eq!(field("[16.571710e-6, 0.0,", "[16.571710e-6, 1e-6,"), "body.inertia_kg_m2");
+    // A body cannot be heavier about one axis than about the two others together.
+    assert_eq!(field("29.261652e-6", "34e-6"), "body.inertia_kg_m2");
+    assert_eq!(field("[0.0635, 0.126]", "[0.126, 0.0635]"), "motors.published_lag_s");
+    assert_eq!(field("[20.0, 20.0, 10.0]", "[20.0, 0.0, 10.0]"), "limits.body_rates_rad_s");
+    let at = 1 + TEXT.lines().position(|line| line.starts_with("arm_m")).expect("is there");
+    assert!(matches!(refused("\narm_m", "\narm_mm"), VehicleFileError::Syntax { line, .. } if line == at));
+    let unknown = vehicles::by_name("crazyflie").expect_err("refused").to_string();
+    assert!(unknown.contains("crazyflie-2.1-upgrade-kit"), "{unknown}");
+}
