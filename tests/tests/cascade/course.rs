@@ -10,13 +10,24 @@ pub type Motion = ([Vector3<f64>; 4], [f64; 3]);
 pub enum Course {
     Hover,
     /// At rest at a place from a time on, after hover.
-    Step { to: Vector3<f64>, yaw: f64, at_s: f64 },
+    Step {
+        to: Vector3<f64>,
+        yaw: f64,
+        at_s: f64,
+    },
     /// `x = sin wt, y = sin(2 wt)/2` behind 2 s of hover and 3 s of ramp; turning with a rate.
-    Eight { w: f64, turn: f64 },
+    Eight {
+        w: f64,
+        turn: f64,
+    },
     /// The paper's W behind 2 s of hover.
     W,
     /// At a place on the ground, then up.
-    TakeOff { from: Vector3<f64>, at_s: f64, in_s: f64 },
+    TakeOff {
+        from: Vector3<f64>,
+        at_s: f64,
+        in_s: f64,
+    },
 }
 
 include!("../../../plans/aggressive.rs");
@@ -31,7 +42,11 @@ impl Course {
         match *self {
             Self::Hover => ([home, zero, zero, zero], [0.0; 3]),
             Self::Step { to, yaw, at_s } => {
-                if t < at_s { ([home, zero, zero, zero], [0.0; 3]) } else { ([home + to, zero, zero, zero], [yaw, 0.0, 0.0]) }
+                if t < at_s {
+                    ([home, zero, zero, zero], [0.0; 3])
+                } else {
+                    ([home + to, zero, zero, zero], [yaw, 0.0, 0.0])
+                }
             }
             Self::Eight { w, turn } => eight(w, turn, t),
             Self::W => ([w(t - 2.0)[0] + home, w(t - 2.0)[1], w(t - 2.0)[2], w(t - 2.0)[3]], [0.0; 3]),

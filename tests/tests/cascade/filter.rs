@@ -74,8 +74,7 @@ impl Filter {
             3..6 => acceleration[i - 3] * h,
             _ => gyro * h,
         });
-        self.covariance =
-            f * self.covariance * f.transpose() + SMatrix::from_diagonal(&noise.component_mul(&noise));
+        self.covariance = f * self.covariance * f.transpose() + SMatrix::from_diagonal(&noise.component_mul(&noise));
         for axis in 0..3 {
             let column = self.covariance.column(axis).into_owned();
             let gain = column / (column[axis] + 0.01 * 0.01);

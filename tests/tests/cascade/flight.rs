@@ -158,7 +158,8 @@ impl<'a> Flight<'a> {
             let heading = Heading::from_angle(sample.flat.heading_rad);
             let input = CascadeInput { state: &state, sample: &sample, heading };
             let felt = felt.cast();
-            let Ok((forces, limited)) = self.cascade.step(&mut memory, &input, self.accelerometer.then_some(&felt)) else {
+            let Ok((forces, limited)) = self.cascade.step(&mut memory, &input, self.accelerometer.then_some(&felt))
+            else {
                 figures.lost = true;
                 break;
             };
