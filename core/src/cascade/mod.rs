@@ -172,24 +172,14 @@ impl Cascade {
         memory: &mut CascadeMemory,
         input: &CascadeInput<'_>,
     ) -> Result<(MotorForces, MotorLimited), StepError> {
-        match self.stepped(memory, input) {
-            Some((after, forces, limited)) => {
-                *memory = after;
-                Ok((forces, limited))
-            }
-            None => Err(refusal(input)),
-        }
+        self.stepped(memory, input).ok_or_else(|| refusal(input))
     }
 
     #[inline(always)]
-    fn stepped(
-        &self,
-        memory: &CascadeMemory,
-        input: &CascadeInput<'_>,
-    ) -> Option<(CascadeMemory, MotorForces, MotorLimited)> {
-        let (mut after, period_s) = (*memory, self.lag.period_s());
-        let mut now = after.carried.at_step(input.state, period_s)?;
-        after.held.step(&mut now, period_s);
+    fn stepped(&self, memory: &mut CascadeMemory, input: &CascadeInput<'_>) -> Option<(MotorForces, MotorLimited)> {
+        let (mut carried, mut held, period_s) = (memory.carried, memory.held, self.lag.period_s());
+        let mut now = carried.at_step(input.state, period_s)?;
+        held.step(&mut now, period_s);
 
         let (standing, disturbance, air) = (memory.ground.is_standing(), &memory.disturbance, memory.air.now);
         let around = Surroundings {
@@ -223,10 +213,10 @@ impl Cascade {
         let MotorYield { share, inverse } = memory.motors;
         let (commands, limited) = self.allocation.allocate(turned(&asked, inverse))?;
 
-        after.forces = self.next(&memory.forces, &turned(&commands, share));
-        after.coming = middle(&memory.forces, &after.forces);
+        // Nothing has been remembered so far; from here on nothing fails.
+        let forces_next = self.next(&memory.forces, &turned(&commands, share));
         let far = position.x * position.x + position.y * position.y + position.z * position.z > FAR_M * FAR_M;
-        after.seen = Seen {
+        memory.seen = Seen {
             now,
             axis,
             mean_forces: memory.coming,
@@ -234,14 +224,15 @@ impl Cascade {
             body_velocity: reference.body_velocity,
             undisturbed: !(far || limited.any()),
         };
-        let forces = commands.forces().map(|force| self.allocation.cut(force));
-        Some((after, forces, limited))
+        memory.coming = middle(&memory.forces, &forces_next);
+        (memory.carried, memory.held, memory.forces) = (carried, held, forces_next);
+        Some((commands.forces().map(|force| self.allocation.cut(force)), limited))
     }
 
     /// What follows a step: the observers, the air, the ground.
     pub fn observe(&self, memory: &mut CascadeMemory, accelerometer: Option<&Vector3<f32>>) {
-        let CascadeMemory { seen, before, ground, .. } = *memory;
-        let (flew, period_s) = (ground.is_flying(), self.lag.period_s());
+        let (seen, before) = (memory.seen, memory.before);
+        let (flew, period_s) = (memory.ground.is_flying(), self.lag.period_s());
         memory.before = Before { velocity: seen.now.velocity, axis: seen.axis, answer: seen.answer };
         let push = memory.disturbance.along;
         memory.ground.step(&seen.now, memory.disturbance.is_on_bound(), push, period_s);
