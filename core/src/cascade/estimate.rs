@@ -107,7 +107,7 @@ pub(super) struct HeldVelocity {
 impl HeldVelocity {
     /// Nothing known: the first position is taken as it is.
     pub(super) const NONE: Self = Self {
-        position: Vector3::new(f32::INFINITY, 0.0, 0.0),
+        position: Vector3::new(f32::INFINITY, f32::INFINITY, f32::INFINITY),
         bias: Vector3::new(0.0, 0.0, 0.0),
         last: Vector3::new(0.0, 0.0, 0.0),
     };
