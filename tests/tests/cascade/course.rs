@@ -1,13 +1,11 @@
 //! What is flown: position, velocity, acceleration, jerk and heading over time.
 
 use nalgebra::Vector3;
-use quatrack::Piece;
-
 /// Position and its derivatives to the jerk; heading, its rate and acceleration.
-pub type Motion = ([Vector3<f64>; 4], [f64; 3]);
+pub(crate) type Motion = ([Vector3<f64>; 4], [f64; 3]);
 
 #[derive(Clone, Copy, Debug)]
-pub enum Course {
+pub(crate) enum Course {
     Hover,
     /// At rest at a place from a time on, after hover.
     Step {
@@ -30,13 +28,20 @@ pub enum Course {
     },
 }
 
-include!("../../../plans/aggressive.rs");
+mod aggressive {
+    #![allow(unreachable_pub, reason = "written for the crates that fly it")]
+    use quatrack::Piece;
+
+    include!("../../../plans/aggressive.rs");
+}
+
+use self::aggressive::AGGRESSIVE;
 
 /// Height of hover, m.
-pub const HEIGHT: f64 = 1.0;
+pub(crate) const HEIGHT: f64 = 1.0;
 
 impl Course {
-    pub fn at(&self, t: f64) -> Motion {
+    pub(crate) fn at(&self, t: f64) -> Motion {
         let zero = Vector3::zeros();
         let home = Vector3::new(0.0, 0.0, HEIGHT);
         match *self {

@@ -7,7 +7,7 @@ use quatrack::{Airframe, Rate};
 use crate::plant::Craft;
 
 /// Brushless at 50 ms.
-pub const BRUSHLESS_50: CascadeGains = CascadeGains::table([
+pub(crate) const BRUSHLESS_50: CascadeGains = CascadeGains::table([
     0.3125298,
     0.1481258,
     0.5846881,
@@ -27,7 +27,7 @@ pub const BRUSHLESS_50: CascadeGains = CascadeGains::table([
 ]);
 
 /// 2.1 at 63.5 ms.
-pub const BRUSHED_63: CascadeGains = CascadeGains::table([
+pub(crate) const BRUSHED_63: CascadeGains = CascadeGains::table([
     0.3118597,
     0.1436846,
     0.8771016,
@@ -47,7 +47,7 @@ pub const BRUSHED_63: CascadeGains = CascadeGains::table([
 ]);
 
 /// Identified from flights (arXiv 2512.14450): with decks and guards.
-pub const BRUSHLESS: Craft = Craft {
+pub(crate) const BRUSHLESS: Craft = Craft {
     mass_kg: 0.045,
     inertia: [3.36e-5, 3.87e-5, 5.9e-5],
     lever_m: 0.035_355_34,
@@ -62,7 +62,7 @@ pub const BRUSHLESS: Craft = Craft {
 };
 
 /// Identified from flights (arXiv 2603.09908).
-pub const BRUSHED: Craft = Craft {
+pub(crate) const BRUSHED: Craft = Craft {
     mass_kg: 0.027,
     inertia: [1.6e-5, 1.75e-5, 2.93e-5],
     lever_m: 0.032_526_91,
@@ -76,19 +76,19 @@ pub const BRUSHED: Craft = Craft {
     torque_bias: [0.0; 3],
 };
 
-pub fn airframe(base: &Airframe, mass_kg: f32, lag_s: f32) -> Airframe {
+pub(crate) fn airframe(base: &Airframe, mass_kg: f32, lag_s: f32) -> Airframe {
     let figures = AirframeFigures { mass_kg, motor_lag_s: lag_s, ..*base.figures() };
     Airframe::new(figures).unwrap()
 }
 
-pub fn brushless(air: &Air) -> Cascade {
+pub(crate) fn brushless(air: &Air) -> Cascade {
     told(&BRUSHLESS_50, &airframe(&Airframe::CRAZYFLIE_2_1_BRUSHLESS, 0.045, 0.05), air)
 }
 
-pub fn brushed(air: &Air) -> Cascade {
+pub(crate) fn brushed(air: &Air) -> Cascade {
     told(&BRUSHED_63, &airframe(&Airframe::CRAZYFLIE_2_1, 0.027, 0.0635), air)
 }
 
-pub fn told(gains: &CascadeGains, airframe: &Airframe, air: &Air) -> Cascade {
+pub(crate) fn told(gains: &CascadeGains, airframe: &Airframe, air: &Air) -> Cascade {
     Cascade::new(gains, airframe, Rate::from_hz(500).unwrap(), &CascadeLimits::STANDARD, air).unwrap()
 }

@@ -9,10 +9,10 @@ use crate::plant::GRAVITY;
 
 const PERIOD_S: f64 = 0.01;
 
-pub struct Filter {
-    pub p: Vector3<f64>,
+pub(crate) struct Filter {
+    pub(crate) p: Vector3<f64>,
     v: Vector3<f64>,
-    pub q: UnitQuaternion<f64>,
+    pub(crate) q: UnitQuaternion<f64>,
     covariance: SMatrix<f64, 9, 9>,
     /// Drag over mass across, 1/s.
     drag: f64,
@@ -26,26 +26,26 @@ fn cross(v: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 impl Filter {
-    pub fn at(p: Vector3<f64>, drag: f64) -> Self {
+    pub(crate) fn at(p: Vector3<f64>, drag: f64) -> Self {
         let covariance = SMatrix::from_diagonal(&SVector::<f64, 9>::from_fn(|i, _| if i < 6 { 1e-4 } else { 1e-5 }));
         let zero = Vector3::zeros();
         Self { p, v: zero, q: UnitQuaternion::identity(), covariance, drag, gyro: zero, felt: 0.0, count: 0.0 }
     }
 
     /// World velocity.
-    pub fn velocity(&self) -> Vector3<f64> {
+    pub(crate) fn velocity(&self) -> Vector3<f64> {
         self.q * self.v
     }
 
     /// Gathers the sensors between predictions.
-    pub fn sense(&mut self, gyro: &Vector3<f64>, felt: &Vector3<f64>) {
+    pub(crate) fn sense(&mut self, gyro: &Vector3<f64>, felt: &Vector3<f64>) {
         self.gyro += gyro;
         self.felt += felt.z;
         self.count += 1.0;
     }
 
     /// Predicts over the period and takes a position.
-    pub fn update(&mut self, measured: &Vector3<f64>) {
+    pub(crate) fn update(&mut self, measured: &Vector3<f64>) {
         let h = PERIOD_S;
         let w = self.gyro / self.count;
         let thrust = Vector3::new(0.0, 0.0, self.felt / self.count);

@@ -11,40 +11,40 @@ use crate::plant::{Craft, GRAVITY, Plant, STEP_S};
 
 /// Where estimates come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Estimates {
+pub(crate) enum Estimates {
     /// Of each step: the truth with noise of position, velocity, body rates and specific force.
     Noisy([f64; 4]),
     /// Of the firmware's filter, with its drag over mass (1/s): positions of 1 mm at 100 Hz.
     Filtered(f64),
 }
 
-pub const NOISE: Estimates = Estimates::Noisy([1e-3, 1e-2, 0.02, 0.0]);
-pub const EXACT: Estimates = Estimates::Noisy([0.0; 4]);
+pub(crate) const NOISE: Estimates = Estimates::Noisy([1e-3, 1e-2, 0.02, 0.0]);
+pub(crate) const EXACT: Estimates = Estimates::Noisy([0.0; 4]);
 
 /// What happens around a flight.
 #[derive(Clone)]
-pub struct Flight<'a> {
-    pub cascade: Cascade,
-    pub craft: Craft,
-    pub course: Course,
-    pub estimates: Estimates,
-    pub seed: u64,
+pub(crate) struct Flight<'a> {
+    pub(crate) cascade: Cascade,
+    pub(crate) craft: Craft,
+    pub(crate) course: Course,
+    pub(crate) estimates: Estimates,
+    pub(crate) seed: u64,
     /// From when on and how long errors are summed, s.
-    pub from_s: f64,
-    pub for_s: f64,
-    pub wind: &'a dyn Fn(f64) -> Vector3<f64>,
+    pub(crate) from_s: f64,
+    pub(crate) for_s: f64,
+    pub(crate) wind: &'a dyn Fn(f64) -> Vector3<f64>,
     /// Force from outside over mass, m/s^2.
-    pub push: &'a dyn Fn(f64, &Plant) -> Vector3<f64>,
-    pub setpoint_s: &'a dyn Fn(u32) -> f64,
-    pub start: Start,
+    pub(crate) push: &'a dyn Fn(f64, &Plant) -> Vector3<f64>,
+    pub(crate) setpoint_s: &'a dyn Fn(u32) -> f64,
+    pub(crate) start: Start,
     /// Setpoints of each step with the course's own snap and crackle.
-    pub to_fifth: bool,
-    pub accelerometer: bool,
-    pub accelerometer_bias: Vector3<f64>,
+    pub(crate) to_fifth: bool,
+    pub(crate) accelerometer: bool,
+    pub(crate) accelerometer_bias: Vector3<f64>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-pub enum Start {
+pub(crate) enum Start {
     Hovering,
     /// At some rotation (axis times angle), in hover's place.
     Tilted(Vector3<f64>),
@@ -52,29 +52,29 @@ pub enum Start {
 }
 
 #[derive(Clone, Debug, Default)]
-pub struct Figures {
-    pub iae: f64,
-    pub largest: f64,
-    pub tilt_deg: f64,
-    pub speed: f64,
-    pub lowest: f64,
+pub(crate) struct Figures {
+    pub(crate) iae: f64,
+    pub(crate) largest: f64,
+    pub(crate) tilt_deg: f64,
+    pub(crate) speed: f64,
+    pub(crate) lowest: f64,
     /// Farthest along +x relative to the goal at the end.
-    pub beyond: f64,
-    pub activity: f64,
-    pub lost: bool,
-    pub final_error: f64,
-    pub drag: f64,
-    pub moment: [f64; 2],
-    pub limited: u32,
-    pub across: f64,
+    pub(crate) beyond: f64,
+    pub(crate) activity: f64,
+    pub(crate) lost: bool,
+    pub(crate) final_error: f64,
+    pub(crate) drag: f64,
+    pub(crate) moment: [f64; 2],
+    pub(crate) limited: u32,
+    pub(crate) across: f64,
 }
 
-pub fn still(_: f64) -> Vector3<f64> {
+pub(crate) fn still(_: f64) -> Vector3<f64> {
     Vector3::zeros()
 }
 
 impl<'a> Flight<'a> {
-    pub fn of(cascade: Cascade, craft: Craft, course: Course) -> Self {
+    pub(crate) fn of(cascade: Cascade, craft: Craft, course: Course) -> Self {
         let (from_s, for_s) = match course {
             Course::Hover => (2.0, 10.0),
             Course::Step { at_s, .. } => (at_s, 5.0),
@@ -100,11 +100,11 @@ impl<'a> Flight<'a> {
         }
     }
 
-    pub fn fly(&self) -> Figures {
+    pub(crate) fn fly(&self) -> Figures {
         self.fly_with(&mut |_, _, _| {})
     }
 
-    pub fn fly_with(&self, look: &mut dyn FnMut(f64, &Plant, &CascadeMemory)) -> Figures {
+    pub(crate) fn fly_with(&self, look: &mut dyn FnMut(f64, &Plant, &CascadeMemory)) -> Figures {
         let mut random = Random::new(self.seed);
         let home = if self.start == Start::Ground { Vector3::zeros() } else { self.course.at(0.0).0[0] };
         let mut plant = Plant::at(self.craft, home, self.start != Start::Ground);

@@ -2,48 +2,48 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-pub const GRAVITY: f64 = 9.81;
+pub(crate) const GRAVITY: f64 = 9.81;
 /// Step of the integration, s.
-pub const STEP_S: f64 = 0.0005;
+pub(crate) const STEP_S: f64 = 0.0005;
 
 /// What a craft really is.
 #[derive(Clone, Copy, Debug)]
-pub struct Craft {
-    pub mass_kg: f64,
-    pub inertia: [f64; 3],
-    pub lever_m: f64,
-    pub torque_per_thrust_m: f64,
-    pub force_max_n: f64,
+pub(crate) struct Craft {
+    pub(crate) mass_kg: f64,
+    pub(crate) inertia: [f64; 3],
+    pub(crate) lever_m: f64,
+    pub(crate) torque_per_thrust_m: f64,
+    pub(crate) force_max_n: f64,
     /// Time constants of a rising and a falling force, s.
-    pub lag_s: [f64; 2],
-    pub delay_s: f64,
+    pub(crate) lag_s: [f64; 2],
+    pub(crate) delay_s: f64,
     /// Linear drag over mass, body frame, 1/s.
-    pub drag: [f64; 3],
+    pub(crate) drag: [f64; 3],
     /// Moment per velocity, N s.
-    pub moment: [f64; 2],
+    pub(crate) moment: [f64; 2],
     /// Force of each motor over its command.
-    pub motors: [f64; 4],
+    pub(crate) motors: [f64; 4],
     /// Torque that is not the motors', N m.
-    pub torque_bias: [f64; 3],
+    pub(crate) torque_bias: [f64; 3],
 }
 
 /// Where it is.
 #[derive(Clone, Debug)]
-pub struct Plant {
-    pub craft: Craft,
-    pub p: Vector3<f64>,
-    pub v: Vector3<f64>,
-    pub q: UnitQuaternion<f64>,
-    pub w: Vector3<f64>,
-    pub forces: [f64; 4],
+pub(crate) struct Plant {
+    pub(crate) craft: Craft,
+    pub(crate) p: Vector3<f64>,
+    pub(crate) v: Vector3<f64>,
+    pub(crate) q: UnitQuaternion<f64>,
+    pub(crate) w: Vector3<f64>,
+    pub(crate) forces: [f64; 4],
     /// Specific force in the body frame, m/s^2.
-    pub felt: Vector3<f64>,
+    pub(crate) felt: Vector3<f64>,
     waiting: std::collections::VecDeque<[f64; 4]>,
-    pub on_ground: bool,
+    pub(crate) on_ground: bool,
 }
 
 impl Plant {
-    pub fn at(craft: Craft, p: Vector3<f64>, flying: bool) -> Self {
+    pub(crate) fn at(craft: Craft, p: Vector3<f64>, flying: bool) -> Self {
         let hover = if flying { craft.mass_kg * GRAVITY / 4.0 } else { 0.0 };
         let waiting = vec![[hover / craft.motors[0]; 4]; (craft.delay_s / STEP_S).round() as usize].into();
         Self {
@@ -60,7 +60,7 @@ impl Plant {
     }
 
     /// Moves on by a step of the integration, in a wind and with a force over mass from outside.
-    pub fn step(&mut self, commands: &[f64; 4], wind: &Vector3<f64>, push: &Vector3<f64>) {
+    pub(crate) fn step(&mut self, commands: &[f64; 4], wind: &Vector3<f64>, push: &Vector3<f64>) {
         self.waiting.push_back(*commands);
         let commands = self.waiting.pop_front().unwrap_or(*commands);
         let c = self.craft;

@@ -75,9 +75,9 @@ pub struct CascadeVariation {
     pub lag_s: f64,
     /// Mass over that told.
     pub mass_factor: f64,
-    /// Inertia over that told.
+    /// Inertia over that told; over mass, where the craft has seen what its motors give.
     pub inertia_factor: f64,
-    /// Force of the motors over their command.
+    /// Force of the motors over their command; of torques over what the craft has seen of it.
     pub command_factor: f64,
     /// How late a command acts, s.
     pub delay_s: f64,

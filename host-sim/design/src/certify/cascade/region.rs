@@ -8,6 +8,9 @@ use crate::certify::CertifyError;
 /// Spectral radii closer than this are the same but for rounding.
 const SAME: f64 = 1e-9;
 
+/// Largest drag that the core's force observer believes, 1/s.
+const BELIEVED_DRAG_MAX_PER_S: f64 = 0.6;
+
 /// Values of each quantity; every value is tried with every value of the others that a chain feels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CascadeRegion {
@@ -15,10 +18,12 @@ pub struct CascadeRegion {
     pub lags_s: Vec<f64>,
     /// Masses over that told.
     pub mass_factors: Vec<f64>,
-    /// Inertias over those told.
+    /// Inertias over those told; of roll, pitch and yaw over what the craft has seen of its motors, which is inertia over mass.
     pub inertia_factors: Vec<f64>,
-    /// Forces over commands.
+    /// Forces over commands, of the thrust.
     pub command_factors: Vec<f64>,
+    /// Forces over commands of roll, pitch and yaw, over what the craft has seen of its motors: 1 after some seconds of flight.
+    pub torque_factors: Vec<f64>,
     /// How late commands act, s.
     pub delays_s: Vec<f64>,
     /// Drag, 1/s.
@@ -46,20 +51,27 @@ pub struct CascadeCertificate {
 
 impl CascadeRegion {
     /// Motors between two lags, in five even steps of ratio, and all that a Crazyflie in air may have otherwise: mass off by 20 %,
-    /// inertia by 30 %, 70 to 105 % of the force told, up to 10 ms of delay, drag to 0.6 1/s, moment to 1.2 times the identified one,
-    /// any air believed that the learner's bounds allow.
+    /// inertia over mass by 30 %, 70 to 105 % of the force told, up to 10 ms of delay, drag to 0.6 1/s, moment to 1.2 times the
+    /// identified one, any air believed that the bounds of the core allow. The craft has flown for some seconds and seen what its
+    /// motors give.
     pub fn in_air(shortest_s: f64, longest_s: f64) -> Self {
         Self {
             mass_factors: vec![0.8, 1.0, 1.2],
             inertia_factors: vec![0.7, 1.0, 1.3],
             command_factors: vec![0.7, 0.85, 1.05],
+            torque_factors: vec![1.0],
             delays_s: vec![0.0, 0.010],
             drags_per_s: vec![0.0, 0.3, 0.6],
             moment_factors: vec![0.0, 0.6, 1.2],
-            believed_drags_per_s: vec![0.0, 0.35, 1.0],
+            believed_drags_per_s: vec![0.0, 0.3, BELIEVED_DRAG_MAX_PER_S],
             believed_ratio_factors: vec![0.0, 1.0, 1.5],
             ..Self::of_lags(shortest_s, longest_s)
         }
+    }
+
+    /// The same before the craft has seen what its motors give: torques are 70 to 105 % of what is asked, the inertia is as told.
+    pub fn before_its_motors_are_seen(&self) -> Self {
+        Self { inertia_factors: vec![1.0], torque_factors: vec![0.7, 0.85, 1.05], ..self.clone() }
     }
 
     /// Motors between two lags, and nothing else.
@@ -72,6 +84,7 @@ impl CascadeRegion {
             mass_factors: one.clone(),
             inertia_factors: one.clone(),
             command_factors: one.clone(),
+            torque_factors: one.clone(),
             delays_s: vec![0.0],
             drags_per_s: vec![0.0],
             moment_factors: vec![0.0],
@@ -111,7 +124,9 @@ impl CascadeRegion {
         vary(&self.lags_s, |point, value| point.lag_s = value);
         vary(masses, |point, value| point.mass_factor = value);
         vary(inertias, |point, value| point.inertia_factor = value);
-        vary(&self.command_factors, |point, value| point.command_factor = value);
+        vary(if height { &self.command_factors } else { &self.torque_factors }, |point, value| {
+            point.command_factor = value
+        });
         vary(&self.delays_s, |point, value| point.delay_s = value);
         vary(drags, |point, value| point.drag_per_s = value);
         vary(moments, |point, value| point.moment_factor = value);
