@@ -5,18 +5,17 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 /// What computes commands, seen from the workspace's root.
-const CONTROL_PATH: [&str; 11] = [
+const CONTROL_PATH: [&str; 10] = [
     "core/src",
     "plans",
     "gains/generated/actuator-aware.rs",
-    "firmware/src/control.rs",
     "firmware/src/flight.rs",
     "firmware/src/flight",
     "firmware/src/laws.rs",
-    "firmware/src/motor_control.rs",
     "firmware/src/playback.rs",
     "firmware/src/playback",
     "firmware/src/rates.rs",
+    "firmware/src/vehicle.rs",
 ];
 
 fn main() -> io::Result<()> {

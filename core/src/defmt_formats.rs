@@ -4,10 +4,10 @@ use defmt::{Format, Formatter, write};
 use nalgebra::Vector3;
 
 use crate::command::Command;
+use crate::control::Step;
 use crate::reference::FlatSample;
 use crate::rigid_state::RigidState;
 use crate::state::State;
-use crate::tracker::Step;
 
 fn xyz(v: &Vector3<f32>) -> [f32; 3] {
     [v.x, v.y, v.z]

@@ -2,6 +2,8 @@
 
 use core::fmt;
 
+use nalgebra::Vector3;
+
 /// A group of numbers in a state or a flat sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -114,6 +116,21 @@ pub enum StepError {
     /// State and reference are sound, but the law asks for an attitude at which the flat map is singular (free fall,
     /// thrust downwards, heading half a turn off), or for numbers beyond the range of f32.
     Singular,
+    /// What was measured has no body rates, and motor forces take them.
+    NoBodyRates,
+    /// The law gives motor forces, and the target has none.
+    NoForces,
+    /// Nothing is known of the motors that a command is to be carried to.
+    NoActuation,
+}
+
+impl StateError {
+    /// What is wrong with measured body rates.
+    #[cold]
+    pub(crate) fn of_body_rates(body_rates_rad_s: &Vector3<f32>) -> Option<Self> {
+        let bad = body_rates_rad_s.iter().find(|rate| !rate.is_finite())?;
+        Some(Self::NonFinite { field: Field::BodyRates, value: *bad })
+    }
 }
 
 impl fmt::Display for StateError {
@@ -148,10 +165,20 @@ impl fmt::Display for StepError {
         match self {
             Self::State(error) => error.fmt(f),
             Self::Singular => f.write_str("law: the asked acceleration has no attitude; stop or level"),
+            Self::NoBodyRates => f.write_str("controller: motor forces take body rates; measure them"),
+            Self::NoForces => f.write_str("controller: the law gives motor forces; make the target with them"),
+            Self::NoActuation => f.write_str("controller: nothing is known of the motors; give it an actuation"),
         }
     }
 }
 
 impl core::error::Error for StateError {}
 impl core::error::Error for ReferenceError {}
-impl core::error::Error for StepError {}
+impl core::error::Error for StepError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::State(error) => Some(error),
+            _ => None,
+        }
+    }
+}

@@ -5,12 +5,16 @@
 //! [`gains`].
 //!
 //! ```
-//! use quatrack::{Equilibrium, Limits, Rate, Reference, State, Tracker, gains, nalgebra::Vector3};
+//! use quatrack::{Controller, Equilibrium, Limits, Measured, Memory, Output, Reference, State, Target};
+//! use quatrack::{gains, nalgebra::Vector3};
 //!
 //! let limits = Limits::new(1.8, 16.5, Vector3::new(20.0, 20.0, 5.0))?;
-//! let tracker = Tracker::new(Equilibrium::new(&gains::paper::LQR_E), limits);
+//! let controller = Controller::new(Equilibrium::new(&gains::paper::LQR_E), limits);
+//! let mut memory = Memory::at_rest();
+//! let state = State::at_rest(Vector3::new(0.0, 0.0, 0.9));
 //! let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0)?;
-//! let step = tracker.step(&State::at_rest(Vector3::new(0.0, 0.0, 0.9)), &reference)?;
+//! let output = controller.step(&mut memory, Measured::new(&state), Target::new(&reference))?;
+//! let Output::Command(step) = output else { unreachable!("the law gives thrust and body rates") };
 //! // 10 cm too low: 100 m/s^2 per metre on top of gravity, cut to what the motors can do.
 //! assert_eq!(step.command.thrust_m_s2, 16.5);
 //! assert!(step.limited.thrust());
@@ -21,23 +25,22 @@
 //!
 //! ```text
 //! link                        frames, uploads (feature `link`)
-//!   crossfade                 from one tracker to another
-//!     motor_tracker           any law, down to four motor forces
-//!     controller              any law, and what it remembers
-//!       tracker, supervisor   one step: normalise, law, saturate; whether its command may pass
-//!     law                     equilibrium (E), flat output (F), integral action, gains along a trajectory, actuator-aware
-//!       trajectory, gains     pieces played by ticks; tables
-//!         motor_reference     flat output -> motor forces and commands
-//!           body_rate, mixer  command -> wrench -> motor forces
-//!             airframe        mass, inertia, levers, range and lag of the motors
-//!         reference           flat output -> state and input, checked
-//!           flatness          the flat map and its inverse
-//!             state, rigid_state, command, gain, motor_lag, clock
-//!               quaternion, error
-//!                 math        square root, sine and cosine; checksum
+//!   gains                     tables of every kind
+//!     control                 any law down to command or motor forces; what it remembers; from one to the next
+//!       supervisor            whether its output may pass
+//!       law                   equilibrium (E), flat output (F), integral action, gains along a trajectory, actuator-aware
+//!         trajectory          pieces played by ticks
+//!           motor_reference   flat output -> motor forces and commands
+//!             body_rate, mixer  command -> wrench -> motor forces
+//!               airframe      mass, inertia, levers, range and lag of the motors
+//!           reference         flat output -> state and input, checked
+//!             flatness        the flat map and its inverse
+//!               state, rigid_state, command, gain, motor_lag, clock
+//!                 quaternion, error
+//!                   math      square root, sine and cosine; checksum
 //! ```
 //!
-//! Features: `link` (default) for the serial link's frames; `serde` and `defmt` for plain data to be stored or logged.
+//! Features, none of them default: `link` for the serial link's frames; `serde` and `defmt` for plain data to be stored or logged.
 //!
 //! Conventions: world frame z up; quaternion scalar first, Hamilton product, body to world; thrust divided by mass, in
 //! m/s^2; body rates in rad/s.
@@ -53,8 +56,7 @@ pub mod cascade;
 pub mod checksum;
 pub mod clock;
 pub mod command;
-pub mod controller;
-pub mod crossfade;
+pub mod control;
 #[cfg(feature = "defmt")]
 mod defmt_formats;
 pub mod error;
@@ -68,13 +70,11 @@ pub mod math;
 pub mod mixer;
 pub mod motor_lag;
 pub mod motor_reference;
-pub mod motor_tracker;
 pub mod quaternion;
 pub mod reference;
 pub mod rigid_state;
 pub mod state;
 pub mod supervisor;
-pub mod tracker;
 pub mod trajectory;
 
 pub use nalgebra;
@@ -84,20 +84,19 @@ pub use body_rate::BodyRateLoop;
 pub use cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};
-pub use controller::{Controller, Memory};
-pub use crossfade::Crossfade;
+pub use control::{
+    Actuation, Controller, ControllerError, Handover, Law, Leash, Measured, Memory, MotorStep, Output, Settings, Step,
+    Target,
+};
 pub use error::{ReferenceError, StateError, StepError};
 pub use law::{
-    ActuatorAware, ActuatorAwareGain, ActuatorMemory, AlongTrajectory, AnyLaw, Equilibrium, ErrorForm, FeedForward,
-    FlatOutput, FlightLaw, IntegralAction,
+    ActuatorAware, ActuatorAwareGain, AlongTrajectory, Equilibrium, ErrorForm, FeedForward, FlatOutput, IntegralAction,
 };
 pub use mixer::{MotorLimited, Wrench};
 pub use motor_lag::{MotorForces, MotorLag};
 pub use motor_reference::{FifthOrderSample, MotorReference};
-pub use motor_tracker::{ByBodyRates, MotorLaw, MotorStep, MotorTracker};
 pub use quaternion::{Heading, Quaternion};
 pub use reference::{FlatSample, Reference};
 pub use rigid_state::RigidState;
 pub use state::State;
-pub use tracker::{Step, Tracker};
 pub use trajectory::{Bookmark, Piece, Player, Progress, Trajectory};

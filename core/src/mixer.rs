@@ -93,6 +93,12 @@ impl MotorLimited {
         Self { bits: self.bits | Self::YAW }
     }
 
+    /// What was cut of a command, and nothing beside.
+    #[inline]
+    pub const fn of_command(limited: Limited) -> Self {
+        Self::NOTHING.with_command(limited)
+    }
+
     /// The same with what was cut of a command.
     #[inline]
     pub(crate) const fn with_command(self, limited: Limited) -> Self {
@@ -122,6 +128,12 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
+    // Signs with which M1 to M4 have each part: the rows of the table of [`mod@crate::airframe`].
+    pub(crate) const SIGNS_OF_THRUST: [f32; 4] = [1.0, 1.0, 1.0, 1.0];
+    pub(crate) const SIGNS_OF_ROLL: [f32; 4] = [-1.0, -1.0, 1.0, 1.0];
+    pub(crate) const SIGNS_OF_PITCH: [f32; 4] = [-1.0, 1.0, 1.0, -1.0];
+    pub(crate) const SIGNS_OF_YAW: [f32; 4] = [-1.0, 1.0, -1.0, 1.0];
+
     /// `[t - r - p - y, t - r + p + y, t + r + p - y, t + r - p + y]`.
     #[inline(always)]
     pub(crate) fn forces(self) -> MotorForces {

@@ -46,10 +46,10 @@ impl State {
     ///
     /// Only the norm is looked at: a position or velocity that is not finite shows in the command, which is checked.
     #[inline]
-    pub fn measured(&self) -> Option<Measured<'_>> {
+    pub fn normalized(&self) -> Option<NormalizedState<'_>> {
         let norm_squared = self.attitude.dot(self.attitude);
         let near = is_near_one(norm_squared);
-        near.then(|| Measured { state: self, scale: inverse_norm(norm_squared) })
+        near.then(|| NormalizedState { state: self, scale: inverse_norm(norm_squared) })
     }
 
     /// The first component that is not finite, else a quaternion's norm that is off.
@@ -67,13 +67,13 @@ impl State {
 
 /// A state whose quaternion is an attitude: its norm is known, and divided out of what is computed from it.
 #[derive(Clone, Copy, Debug)]
-pub struct Measured<'a> {
+pub struct NormalizedState<'a> {
     state: &'a State,
     /// One over the quaternion's norm.
     scale: f32,
 }
 
-impl Measured<'_> {
+impl NormalizedState<'_> {
     /// Position in the world frame, m.
     pub fn position_m(&self) -> &Vector3<f32> {
         &self.state.position_m

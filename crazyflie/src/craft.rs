@@ -1,7 +1,7 @@
 //! The crafts that there are tables for: the figures that the firmware was built with in, the craft out.
 
 use quatrack::gains::table::{Name, Vehicle};
-use quatrack::{Airframe, BodyRateLoop, Rate};
+use quatrack::{Actuation, Airframe, AirframeFigures, BodyRateLoop, Rate};
 
 use crate::builtin::IDS;
 
@@ -37,10 +37,8 @@ pub struct Platform {
 /// A craft, with what the steps need of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Craft {
-    /// Its figures.
-    pub airframe: Airframe,
-    /// From body rates to torque.
-    pub body_rates: BodyRateLoop,
+    /// Its way to the motors, with the lag that is published.
+    pub actuation: Actuation,
     /// Who it is for a gain table.
     pub vehicle: Vehicle,
     /// Which of [`KNOWN`] it is.
@@ -92,27 +90,36 @@ impl Craft {
                 && is_near(platform.torque_per_thrust_m, figures.torque_per_thrust_m, TOLERANCE)
         })?;
         // The mass as the owner has set it: the weight is fed forward.
-        let figures = quatrack::AirframeFigures { mass_kg: platform.mass_kg, ..*known.airframe.figures() };
+        let figures = AirframeFigures { mass_kg: platform.mass_kg, ..*known.airframe.figures() };
         let airframe = Airframe::new(figures).ok()?;
-        Some(Self::with(airframe, known.vehicle, index))
+        Self::with(airframe, known.vehicle, index)
     }
 
-    /// From its parts.
-    pub const fn with(airframe: Airframe, vehicle: Vehicle, index: usize) -> Self {
+    /// From its parts; nothing where its motors are faster than two control periods.
+    pub const fn with(airframe: Airframe, vehicle: Vehicle, index: usize) -> Option<Self> {
         let figures = airframe.figures();
         let (motor_lag_s, per_force_max_1_n) = (figures.motor_lag_s, 1.0 / figures.force_max_n);
-        let body_rates = BodyRateLoop::behind_lag(&airframe);
-        Self { airframe, body_rates, vehicle, index, motor_lag_s, stated_lag_s: None, per_force_max_1_n }
+        match Actuation::new(&airframe, RATE) {
+            Ok(actuation) => {
+                Some(Self { actuation, vehicle, index, motor_lag_s, stated_lag_s: None, per_force_max_1_n })
+            }
+            Err(_) => None,
+        }
+    }
+
+    /// Its figures, checked.
+    pub const fn airframe(&self) -> &Airframe {
+        self.actuation.airframe()
     }
 
     /// The same whose owner knows the time constant of the motors; 0 for the longest that is published.
     pub fn with_motor_lag(&self, motor_lag_s: f32) -> Self {
         let stated_lag_s = Some(motor_lag_s).filter(|lag_s| *lag_s > 0.0);
-        let motor_lag_s = stated_lag_s.unwrap_or(self.airframe.figures().motor_lag_s);
-        let figures = quatrack::AirframeFigures { motor_lag_s, ..*self.airframe.figures() };
-        match Airframe::new(figures) {
+        let motor_lag_s = stated_lag_s.unwrap_or(self.airframe().figures().motor_lag_s);
+        match self.airframe().with_motor_lag(motor_lag_s) {
             Ok(airframe) => {
-                Self { body_rates: BodyRateLoop::behind_lag(&airframe), motor_lag_s, stated_lag_s, ..*self }
+                let actuation = self.actuation.with_body_rates(BodyRateLoop::behind_lag(&airframe));
+                Self { actuation, motor_lag_s, stated_lag_s, ..*self }
             }
             Err(_) => *self,
         }

@@ -8,7 +8,7 @@
 use quatrack::flatness::GRAVITY_M_S2;
 use quatrack::math::sqrt;
 use quatrack::nalgebra::Vector3;
-use quatrack::{FifthOrderSample, Heading, State};
+use quatrack::{FifthOrderSample, Heading, Leash, State};
 
 use crate::demand::{Flight, Horizontal, Turn, Vertical};
 use crate::stream::Stream;
@@ -21,8 +21,8 @@ pub struct Bounds {
     pub speed_m_s: f32,
     /// Largest acceleration of a velocity demand, m/s^2.
     pub acceleration_m_s2: f32,
-    /// Farthest that a position is asked for from the measured one, m, and a velocity, m/s.
-    pub leash_m: f32,
+    /// Farthest that a position or a velocity is asked for from the measured one.
+    pub leash: Leash,
 }
 
 /// How fast a velocity demand is taken up, 1/s.
@@ -64,7 +64,7 @@ impl Along<'_> {
     pub fn put(&self, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) -> Heading {
         self.stream.at(self.now_ms, self.to_fifth, sample);
         let heading = self.turning.at(self.now_ms, sample);
-        leash(sample, state, bounds.leash_m);
+        bounds.leash.draw(&mut sample.flat.position_m, &mut sample.flat.velocity_m_s, state);
         heading
     }
 }
@@ -96,7 +96,7 @@ impl Guide {
         if !matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position)) {
             self.fill(sample, &heading, along, state, bounds);
         }
-        leash(sample, state, bounds.leash_m);
+        bounds.leash.draw(&mut sample.flat.position_m, &mut sample.flat.velocity_m_s, state);
         heading
     }
 
@@ -199,22 +199,6 @@ impl Guide {
         self.velocity_m_s.x += ax * self.period_s;
         self.velocity_m_s.y += ay * self.period_s;
         (ax, ay)
-    }
-}
-
-/// Draws position and velocity that are too far away towards the craft, a metre a second counting like a metre: the laws
-/// are linear, and would turn it over for a goal metres away, or for a stop in full flight.
-#[inline]
-fn leash(sample: &mut FifthOrderSample, state: &State, leash_m: f32) {
-    let (p, r) = (&sample.flat.position_m, &state.position_m);
-    let (v, w) = (&sample.flat.velocity_m_s, &state.velocity_m_s);
-    let (dx, dy, dz) = (p.x - r.x, p.y - r.y, p.z - r.z);
-    let (ex, ey, ez) = (v.x - w.x, v.y - w.y, v.z - w.z);
-    let squared = (dx * dx + dy * dy + dz * dz) + (ex * ex + ey * ey + ez * ez);
-    if squared > leash_m * leash_m {
-        let share = leash_m / sqrt(squared);
-        sample.flat.position_m = Vector3::new(r.x + dx * share, r.y + dy * share, r.z + dz * share);
-        sample.flat.velocity_m_s = Vector3::new(w.x + ex * share, w.y + ey * share, w.z + ez * share);
     }
 }
 

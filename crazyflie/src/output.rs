@@ -3,8 +3,6 @@
 use quatrack::MotorForces;
 use quatrack::mixer::Wrench;
 
-use crate::craft::Craft;
-
 /// What a step puts out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Output {
@@ -17,12 +15,4 @@ pub enum Output {
 impl Output {
     /// Motors off.
     pub const OFF: Self = Self::Forces([0.0; 4]);
-
-    /// As forces, N.
-    pub fn forces_n(&self, craft: &Craft) -> MotorForces {
-        match self {
-            Self::Forces(forces) => *forces,
-            Self::Wrench(wrench) => craft.airframe.mix(wrench).map_or([0.0; 4], |(forces, _)| forces),
-        }
-    }
 }

@@ -3,8 +3,10 @@
 
 use core::sync::atomic::Ordering::Relaxed;
 
+use quatrack::gains::Scales;
+use quatrack::gains::table::GainTable;
 use quatrack::nalgebra::Vector3;
-use quatrack::{FeedForward, Limits};
+use quatrack::{FeedForward, Leash, Limits};
 
 use crate::abi;
 use crate::control::{Controller, Settings};
@@ -13,9 +15,9 @@ use crate::edge;
 use crate::guide::Bounds;
 use crate::output::Output;
 use crate::shared::{AtomicF32, Shared};
-use crate::tables::{Refusal, Scales, Table, limits_within};
+use crate::tables::{Refusal, Table};
 use crate::try_cell::TryCell;
-use crate::upload::{Packet, Sent, Status, Uploads};
+use crate::upload::{Packet, Status, Uploads};
 
 /// What the app's task keeps.
 pub struct Service {
@@ -23,7 +25,7 @@ pub struct Service {
     /// The craft is new, and has to be handed over.
     is_new: bool,
     uploads: Uploads,
-    uploaded: Option<Sent>,
+    uploaded: Option<GainTable<'static>>,
     uploads_taken: u8,
     asked: Option<Asked>,
     /// Of the table in the air.
@@ -110,6 +112,7 @@ impl Service {
             }
             None if answer.bytes[1] == Status::Table as u8 => refuse(shared, Refusal::Table),
             None if answer.bytes[1] == Status::Vehicle as u8 => refuse(shared, Refusal::Vehicle),
+            None if answer.bytes[1] == Status::Along as u8 => refuse(shared, Refusal::Law),
             None => {}
         }
         answer
@@ -189,11 +192,11 @@ fn settings(shared: &Shared, craft: &Craft, table: &Limits) -> Settings {
     let yaw = within(&parameters.yaw_rate_rad_s, 0.5, 100.0);
     Settings {
         bounds: Bounds {
-            leash_m: within(&parameters.leash_m, 0.1, 10.0),
+            leash: Leash { length_m: within(&parameters.leash_m, 0.1, 10.0) },
             speed_m_s: within(&parameters.speed_m_s, 0.1, 5.0),
             acceleration_m_s2: within(&parameters.acceleration_m_s2, 0.5, 10.0),
         },
-        limits: limits_within(&craft.airframe, Vector3::new(roll_pitch, roll_pitch, yaw), table),
+        limits: Limits::of(craft.airframe(), Vector3::new(roll_pitch, roll_pitch, yaw)).within(table),
         feed_forward: if parameters.feed_forward.load(Relaxed) == 0 { FeedForward::Without } else { FeedForward::With },
     }
 }
@@ -214,7 +217,7 @@ pub fn log_errors(shared: &Shared, controller: &Controller, state: &abi::State) 
 #[inline(never)]
 pub fn log_counters(shared: &Shared, controller: &Controller) {
     let (log, outcome) = (&shared.log, controller.outcome());
-    let scale = 1e3 / controller.craft().airframe.figures().force_max_n;
+    let scale = 1e3 / controller.craft().airframe().figures().force_max_n;
     let forces = match &outcome.output {
         Output::Forces(forces) => *forces,
         Output::Wrench(_) => [0.0; 4],
@@ -234,6 +237,6 @@ fn show_table(shared: &Shared, table: &Table) {
     shared.log.table.store(table.id as u8, Relaxed);
     shared.gains.scale_min.set(1.0 / table.margin);
     shared.gains.scale_max.set(table.margin);
-    let shown = table.gains.shown();
+    let shown = table.shown();
     shared.gains.entries.iter().zip(shown).for_each(|(to, entry)| to.set(entry));
 }

@@ -6,13 +6,11 @@
 //! 3                                  all sent: check it and make it the uploaded table
 //! ```
 //!
-//! Little-endian. Every packet is answered with its own first byte, a [`Status`] and the offset of the next bytes (u16).
+//! Little-endian. Every packet is answered with its own first byte, a [`Status`] and the offset of the next bytes (u16); a
+//! refusal in words behind.
 //! The table is the file of docs/gain-tables.md; nothing of it is used before all of it has come and been checked.
 
-use quatrack::gains::table::{
-    ACTUATOR_TABLE_BYTES, AcceptedActuatorTable, AcceptedTable, ActuatorTable, LoadError, TableError, TableKind,
-    Vehicle,
-};
+use quatrack::gains::table::{CONSTANT_TABLE_BYTES_MAX, GainTable, LoadError, TABLE_BYTES_MAX, TableKind, Vehicle};
 use quatrack::link::{BlobKind, BlobReceiver, Chunk, UploadBegin, UploadError};
 
 use crate::craft::RATE;
@@ -57,21 +55,33 @@ pub enum Status {
     Vehicle = 8,
     /// The controller is busy, or has not been told which craft this is: again.
     Busy = 9,
+    /// A table of gains along a trajectory: setpoints do not say which trajectory they are on, or where on it.
+    Along = 10,
 }
 
-/// A table as it has come, for this craft.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[allow(clippy::large_enum_variant, reason = "nothing is allocated: the largest has to have its place anyway")]
-pub enum Sent {
-    /// For thrust and body rates.
-    BodyRates(AcceptedTable),
-    /// For motor forces.
-    Motors(AcceptedActuatorTable),
+impl Status {
+    /// What an answer says of a refusal, in words.
+    const fn words(self) -> &'static [u8] {
+        match self {
+            Self::Taken | Self::Busy => b"",
+            Self::Unknown => b"no such packet",
+            Self::NotBegun => b"announce the table first",
+            Self::Length => b"longer than any table",
+            Self::Offset => b"not the next bytes",
+            Self::Incomplete => b"not all has been sent",
+            Self::Checksum => b"damaged, begin again",
+            Self::Table => b"no certified gain table",
+            Self::Vehicle => b"for another craft or rate",
+            Self::Along => b"gains along a trajectory",
+        }
+    }
 }
+
+const _: () = assert!(CONSTANT_TABLE_BYTES_MAX <= TABLE_BYTES_MAX);
 
 /// The receiving end.
 pub struct Uploads {
-    receiver: BlobReceiver<ACTUATOR_TABLE_BYTES>,
+    receiver: BlobReceiver<CONSTANT_TABLE_BYTES_MAX>,
 }
 
 impl Uploads {
@@ -81,14 +91,17 @@ impl Uploads {
     }
 
     /// Takes a packet; with the last one comes the table.
-    pub fn take(&mut self, packet: &Packet, vehicle: &Vehicle) -> (Packet, Option<Sent>) {
+    pub fn take(&mut self, packet: &Packet, vehicle: &Vehicle) -> (Packet, Option<GainTable<'static>>) {
         let bytes = packet.bytes.get(..usize::from(packet.length)).unwrap_or_default();
         let (status, table) = match bytes {
             [1, l0, l1, c0, c1, c2, c3] => {
                 let checksum = u32::from_le_bytes([*c0, *c1, *c2, *c3]);
                 let length = u32::from(u16::from_le_bytes([*l0, *l1]));
                 let begin = UploadBegin { kind: BlobKind::GainTable, id: checksum, length, checksum: RESIDUE };
-                (self.receiver.begin(&begin).map_or_else(status_of, |_| Status::Taken), None)
+                let begun = self.receiver.begin(&begin).map_or_else(status_of, |_| Status::Taken);
+                // Only gains along a trajectory are as long as that.
+                let is_along = begun == Status::Length && (1..=TABLE_BYTES_MAX as u32).contains(&length);
+                (if is_along { Status::Along } else { begun }, None)
             }
             [2, o0, o1, bytes @ ..] => (self.chunk(u16::from_le_bytes([*o0, *o1]), bytes), None),
             [3] => self.commit(vehicle),
@@ -103,9 +116,11 @@ impl Uploads {
         let wanted = self.receiver.progress().map_or(0, |progress| progress.wanted_offset);
         let [w0, w1] = u16::try_from(wanted).unwrap_or(u16::MAX).to_le_bytes();
         let mut bytes = [0; PACKET_BYTES];
-        let [b0, b1, b2, b3, ..] = &mut bytes;
+        let [b0, b1, b2, b3, rest @ ..] = &mut bytes;
         (*b0, *b1, *b2, *b3) = (kind, status as u8, w0, w1);
-        Packet { length: 4, bytes }
+        let words = status.words();
+        rest.iter_mut().zip(words).for_each(|(to, byte)| *to = *byte);
+        Packet { length: 4 + words.len() as u8, bytes }
     }
 
     fn chunk(&mut self, offset: u16, bytes: &[u8]) -> Status {
@@ -114,28 +129,29 @@ impl Uploads {
         self.receiver.chunk(&chunk).map_or_else(status_of, |_| Status::Taken)
     }
 
-    fn commit(&mut self, vehicle: &Vehicle) -> (Status, Option<Sent>) {
+    fn commit(&mut self, vehicle: &Vehicle) -> (Status, Option<GainTable<'static>>) {
         let Ok(progress) = self.receiver.progress() else { return (Status::NotBegun, None) };
         let blob = match self.receiver.finish(progress.id) {
             Ok((_, blob)) => blob,
             Err(error) => return (status_of(error), None),
         };
         match read(blob, vehicle) {
-            Ok(table) => (Status::Taken, Some(table)),
-            Err(LoadError::Table(_)) => (Status::Table, None),
+            Ok(Some(table)) => (Status::Taken, Some(table)),
+            Ok(None) => (Status::Along, None),
             Err(LoadError::Accept(_)) => (Status::Vehicle, None),
+            Err(_) => (Status::Table, None),
         }
     }
 }
 
-fn read(blob: &[u8], vehicle: &Vehicle) -> Result<Sent, LoadError> {
-    match AcceptedTable::from_bytes(blob, vehicle, RATE) {
-        Err(LoadError::Table(TableError::OtherKind { kind: TableKind::ActuatorAware })) => {
-            let table = ActuatorTable::from_bytes(blob)?.accept_for(vehicle, RATE)?;
-            Ok(Sent::Motors(table))
-        }
-        other => other.map(Sent::BodyRates),
+/// A table for this craft; nothing for gains along a trajectory.
+fn read(blob: &[u8], vehicle: &Vehicle) -> Result<Option<GainTable<'static>>, LoadError> {
+    if TableKind::of(blob)? == TableKind::AlongTrajectory {
+        return Ok(None);
     }
+    let table = GainTable::from_bytes(blob)?;
+    table.accept_for(vehicle, RATE)?;
+    Ok(table.owned())
 }
 
 fn status_of(error: UploadError) -> Status {

@@ -2,46 +2,32 @@
 
 #[cfg(not(feature = "motors"))]
 #[path = "flight/commands_only.rs"]
-mod motors;
+pub(crate) mod motors;
 #[cfg(feature = "motors")]
-mod motors;
+pub(crate) mod motors;
 
+#[cfg(feature = "motors")]
+use quatrack::body_rate::BandwidthError;
 use quatrack::command::LimitsError;
 use quatrack::gains::table::AcceptedTable;
 use quatrack::link::{
-    CommandOut, FromBoard, GainStore, LawChoice, LimitsSetting, NoCommand, RigidStateIn, StateIn, Table,
+    CommandOut, ForcesOut, FromBoard, GainStore, LawChoice, LimitsSetting, NoCommand, RigidStateIn, StateIn,
 };
 use quatrack::supervisor::{ArmError, Conditions, Config, Fault, Mode, StepReport, Supervisor, Verdict};
-use quatrack::{Command, Limited, Limits, MotorForces, Rate, RigidState, State, Step, Tick};
+use quatrack::{Command, Limits, MotorForces, Output, Rate, RigidState, Tick};
 
-use crate::control::{self, Clock, CommandSink, StateSource};
 use crate::craft::BodyRates;
 use crate::laws::{FADE_STEPS, Laws, Refused};
-use crate::motor_control::STOPPED;
 use crate::playback::{self, Playback};
+use crate::vehicle::{AIRFRAME, BODY_RATES_MAX_RAD_S, STOPPED};
 
-use self::motors::StepInput;
 pub use self::motors::ToMotors;
+#[cfg(feature = "motors")]
+pub use self::motors::table;
 pub use crate::rates::{DECIMATION, LOCK_STEP, TICK_RATE, TICK_RATE_HZ};
 
 /// Bounds of a flight unless they are set otherwise: 50 ms without a state, half a second without a frame.
 pub const CONFIG: Config = Config { state_age_max_ticks: 50, link_silence_max_ticks: 500, overruns_tolerated: 2 };
-
-/// Crazyflie 2.1: four motors from 0.012818 to 0.12 N at 0.029 kg, and what its rate loop follows.
-const LIMITS: LimitsSetting =
-    LimitsSetting { thrust_min_m_s2: 1.768, thrust_max_m_s2: 16.55, body_rates_max_rad_s: [20.0, 20.0, 10.0] };
-
-/// The command that passes.
-struct Passed {
-    command: Command,
-}
-
-impl CommandSink for Passed {
-    #[inline]
-    fn put(&mut self, command: &Command) {
-        self.command = *command;
-    }
-}
 
 /// The newest state and when it came.
 struct Arrived {
@@ -50,24 +36,11 @@ struct Arrived {
     answered: bool,
 }
 
-/// The newest state, for the step.
-struct Newest<'a>(Option<&'a Arrived>);
-
-impl StateSource for Newest<'_> {
-    #[inline]
-    fn newest(&self) -> Option<&State> {
-        self.0.map(|arrived| &arrived.state.state)
-    }
-}
-
-/// The clock of a step: the board's own, or that of the states in lock-step.
-struct StepClock(Tick);
-
-impl Clock for StepClock {
-    #[inline]
-    fn now(&self) -> Tick {
-        self.0
-    }
+/// A step and its result.
+struct Answer {
+    tick: Tick,
+    state_tick: Tick,
+    result: Result<Output, NoCommand>,
 }
 
 /// What is uploaded, too large for the stack on which everything begins; all zeros, so that a static costs no flash.
@@ -98,15 +71,16 @@ pub struct Flight {
     pub playback: Playback,
     /// The bounds of a flight.
     pub config: Config,
-    /// What carries the law to the motors.
+    /// What is known of the motors.
     pub motors: ToMotors,
     supervisor: Supervisor,
     decimation: u32,
     last_report: StepReport,
     fault: Option<Fault>,
-    passed: Passed,
+    /// The command that passes.
+    passed: Command,
     /// The last step and its result, kept in place: it is as large as a command may be.
-    answer: CommandOut,
+    answer: Answer,
     is_answer_new: bool,
     steps: u32,
     steps_failed: u32,
@@ -116,15 +90,13 @@ impl Flight {
     /// Disarmed, nothing to follow; faulted where the board restarted because of a fault.
     #[cold]
     pub fn new(store: &'static mut Store, fault: Option<Fault>) -> Self {
-        let checked_limits = LIMITS.check().unwrap_or(Limits::NONE);
-        // Nobody reads it: no answer is new.
-        let nothing = Step { command: Command::ZERO, limited: Limited::NOTHING };
+        let limits = Limits::of(&AIRFRAME, BODY_RATES_MAX_RAD_S);
         let mut supervisor = Supervisor::new();
         let step = StepReport::NoReference;
         let at_start = Conditions { link_silence_ticks: None, state_age_ticks: None, step, overrun: false, fault };
         supervisor.tick(&CONFIG, &at_start);
         Self {
-            laws: Laws::new(&mut store.gains, checked_limits, step_rate(DECIMATION)),
+            laws: Laws::new(&mut store.gains, limits, step_rate(DECIMATION)),
             arrived: None,
             heard_at: None,
             playback: Playback::new(&mut store.trajectories),
@@ -134,8 +106,8 @@ impl Flight {
             last_report: StepReport::NoReference,
             fault,
             motors: ToMotors::new(),
-            passed: Passed { command: Command::ZERO },
-            answer: CommandOut { tick: 0, state_tick: 0, result: Ok(nothing) },
+            passed: Command::ZERO,
+            answer: Answer { tick: 0, state_tick: 0, result: Err(NoCommand::NoReference) },
             is_answer_new: false,
             steps: 0,
             steps_failed: 0,
@@ -175,39 +147,24 @@ impl Flight {
         self.decimation
     }
 
-    /// Sets the ticks for one step. Gain tables for another rate are dropped, the actuator-aware one too.
+    /// Sets the ticks for one step. Gain tables for another rate are dropped, that for motor forces in the image too.
     pub fn set_decimation(&mut self, decimation: u32) {
         self.decimation = decimation;
         self.laws.set_rate(step_rate(decimation));
-        if !self.is_actuator_aware_rate() {
-            self.motors.follow_commands();
-        }
-    }
-
-    /// Whether the steps come at the rate that the actuator-aware table is made for.
-    fn is_actuator_aware_rate(&self) -> bool {
-        step_rate(self.decimation) == step_rate(DECIMATION)
     }
 
     /// The law in force.
     pub fn law(&self) -> LawChoice {
-        if self.motors.is_straight() { LawChoice::new(Table::ActuatorAware) } else { self.laws.choice() }
+        self.laws.choice()
     }
 
-    /// Chooses a law, from the next step on; in flight over [`FADE_STEPS`], but to and from the actuator-aware one at once:
-    /// the motors' lag takes the edge off.
+    /// Chooses a law, from the next step on; in flight over [`FADE_STEPS`].
     ///
     /// # Errors
     /// As [`Laws::select`].
     #[cold]
     pub fn select(&mut self, law: LawChoice) -> Result<(), Refused> {
-        if law.table == Table::ActuatorAware {
-            let is_its_rate = self.is_actuator_aware_rate();
-            return if self.motors.go_straight(is_its_rate) { Ok(()) } else { Err(Refused::NoTable) };
-        }
-        self.laws.select(law, self.fade_steps())?;
-        self.motors.follow_commands();
-        Ok(())
+        self.laws.select(law, self.fade_steps())
     }
 
     /// The rate of the steps that gain tables must be certified at, if there are any for it. In lock-step the states are
@@ -222,13 +179,28 @@ impl Flight {
     /// # Errors
     /// As [`Laws::load`].
     #[cold]
-    pub fn load(&mut self, table: &AcceptedTable) -> Result<(), Refused> {
+    pub fn load(&mut self, table: &AcceptedTable<'_>) -> Result<(), Refused> {
         self.laws.load(table, self.fade_steps())
     }
 
-    /// On the ground there is nothing to jump, and nothing to fade out of what is not flown.
+    /// On the ground there is nothing to jump.
     fn fade_steps(&self) -> u16 {
-        if self.mode().motors_allowed() && !self.motors.is_straight() { FADE_STEPS } else { 0 }
+        if self.mode().motors_allowed() { FADE_STEPS } else { 0 }
+    }
+
+    /// Bandwidth of the body-rate loop, rad/s.
+    #[cfg(feature = "motors")]
+    pub fn bandwidth_rad_s(&self) -> [f32; 3] {
+        self.laws.actuations.bandwidth_rad_s()
+    }
+
+    /// Sets it.
+    ///
+    /// # Errors
+    /// As [`quatrack::BodyRateLoop::new`]; what was set stays.
+    #[cfg(feature = "motors")]
+    pub fn set_bandwidth(&mut self, bandwidth_rad_s: [f32; 3]) -> Result<(), BandwidthError> {
+        self.laws.actuations.set_bandwidth(bandwidth_rad_s)
     }
 
     /// The limits in force.
@@ -260,8 +232,7 @@ impl Flight {
         self.last_report = StepReport::NoReference;
         // Asked again in flight, nothing changes.
         if !self.mode().motors_allowed() {
-            self.laws.settle();
-            self.motors.begin();
+            self.laws.begin();
         }
         self.supervisor.arm(&self.config, age(self.heard_at, now))
     }
@@ -279,7 +250,7 @@ impl Flight {
 
     /// The command that passes; zero under a law that gives none.
     pub fn command(&self) -> &Command {
-        &self.passed.command
+        &self.passed
     }
 
     /// The motor forces that pass, N.
@@ -302,13 +273,28 @@ impl Flight {
     /// The answer to the last state, once.
     pub fn take_message(&mut self) -> Option<FromBoard> {
         let is_new = core::mem::take(&mut self.is_answer_new);
-        is_new.then(|| self.motors.message().unwrap_or(FromBoard::Command(self.answer)))
+        is_new.then(|| self.message())
+    }
+
+    fn message(&self) -> FromBoard {
+        let Answer { tick, state_tick, result } = &self.answer;
+        let (tick, state_tick) = (*tick, *state_tick);
+        match result {
+            Ok(Output::Command(step)) => FromBoard::Command(CommandOut { tick, state_tick, result: Ok(*step) }),
+            Ok(Output::Forces(step)) => FromBoard::Forces(ForcesOut { tick, state_tick, result: Ok(*step) }),
+            Err(reason) if self.motors.answers_by_forces() => {
+                FromBoard::Forces(ForcesOut { tick, state_tick, result: Err(*reason) })
+            }
+            Err(reason) => FromBoard::Command(CommandOut { tick, state_tick, result: Err(*reason) }),
+        }
     }
 
     /// The same, if it is a command.
     pub fn take_answer(&mut self) -> Option<CommandOut> {
-        let is_new = core::mem::take(&mut self.is_answer_new);
-        (is_new && self.motors.message().is_none()).then_some(self.answer)
+        match self.take_message()? {
+            FromBoard::Command(command) => Some(command),
+            _ => None,
+        }
     }
 
     /// Steps taken, and those without a command.
@@ -329,35 +315,26 @@ impl Flight {
     pub fn step(&mut self, now: Tick, overrun: bool, rates: BodyRates) {
         self.steps = self.steps.wrapping_add(1);
         let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
-        let clock = StepClock(if self.is_lock_step() { state_tick } else { now });
-        self.answer.result = if !self.supervisor.mode().motors_allowed() {
-            Err(NoCommand::Mode(self.supervisor.mode()))
-        } else if self.motors.is_straight() {
-            Err(if self.arrived.is_some() { NoCommand::NoBodyRates } else { NoCommand::NoReference })
+        let tick = if self.is_lock_step() { state_tick } else { now };
+        self.motors.look_at(rates);
+        self.answer.result = if self.supervisor.mode().motors_allowed() {
+            let state = self.arrived.as_ref().map(|arrived| &arrived.state.state);
+            self.motors.step(&mut self.laws, &mut self.playback, tick, state, rates)
         } else {
-            control::step(&clock, &Newest(self.arrived.as_ref()), &mut self.playback, &mut self.laws)
+            Err(NoCommand::Mode(self.supervisor.mode()))
         };
-        let input = StepInput {
-            now,
-            state_tick,
-            reference_tick: clock.now(),
-            mode: self.supervisor.mode(),
-            rates,
-            state: self.arrived.as_ref().map(|arrived| &arrived.state.state),
-            command: &self.answer.result,
-        };
-        self.motors.step(&input, &mut self.playback);
-        let report = match self.motors.refusal(&self.answer.result) {
-            None => StepReport::Command,
-            Some(NoCommand::NoReference | NoCommand::Mode(_)) => StepReport::NoReference,
-            Some(NoCommand::Reference(_) | NoCommand::Step(_) | NoCommand::NoBodyRates) => StepReport::Failed,
+        let report = match &self.answer.result {
+            Ok(_) => StepReport::Command,
+            Err(NoCommand::NoReference | NoCommand::Mode(_)) => StepReport::NoReference,
+            Err(NoCommand::Reference(_) | NoCommand::Step(_) | NoCommand::NoBodyRates) => StepReport::Failed,
         };
         let verdict = self.supervise(now, report, overrun);
-        if report == StepReport::Command && verdict.mode.command_passes() {
-            self.passed.put(self.answer.result.as_ref().map_or(&Command::ZERO, |step| &step.command));
-            self.motors.pass();
-        } else {
-            self.stand_still(verdict.mode);
+        match &self.answer.result {
+            Ok(output) if verdict.mode.command_passes() => {
+                self.passed = output.command().map_or(Command::ZERO, |step| step.command);
+                self.motors.pass(output);
+            }
+            _ => self.stand_still(verdict.mode),
         }
         (self.answer.tick, self.answer.state_tick) = (now, state_tick);
         if let Some(arrived) = &mut self.arrived {
@@ -371,7 +348,6 @@ impl Flight {
         if self.answer.result.is_ok() {
             self.answer.result = Err(NoCommand::Mode(mode));
         }
-        self.motors.withdraw(mode);
         self.steps_failed = self.steps_failed.wrapping_add(1);
         self.stop();
     }
@@ -379,7 +355,7 @@ impl Flight {
     /// Nothing passes.
     #[inline]
     fn stop(&mut self) {
-        self.passed.put(&Command::ZERO);
+        self.passed = Command::ZERO;
         self.motors.stop();
     }
 

@@ -1,17 +1,22 @@
-//! Which law is flown: choices and accepted gain tables in, the command of a step out; from one law to the next without a
+//! Which law is flown: choices and accepted gain tables in, the output of a step out; from one law to the next without a
 //! jump.
 //!
 //! A table in flash is stepped as it is. A loaded one lies in a store that the next upload changes, so that nothing can
-//! borrow it for longer than a step: its tracker is made anew for each. What is loaded stays until the power goes, or the
+//! borrow it for longer than a step: its controller is made anew for each. What is loaded stays until the power goes, or the
 //! rate of the steps changes.
 
 use quatrack::gains::paper;
-use quatrack::gains::table::{AcceptError, AcceptedTable, Name, TableKind, Vehicle};
+use quatrack::gains::table::{AcceptError, AcceptedTable};
 use quatrack::link::{GainStore, LawChoice, Table};
-use quatrack::{Crossfade, Equilibrium, Limits, Rate, Reference, State, Step, StepError, Tracker};
+#[cfg(feature = "motors")]
+use quatrack::{Airframe, MotorStep};
+use quatrack::{
+    Controller, Equilibrium, Handover, Limits, Measured, Memory, Output, Rate, Settings, StepError, Target,
+};
 
-/// Whose tables are flown: the Crazyflie 2.1 by its figures in `gains/vehicles/crazyflie-2.1.toml`.
-pub const VEHICLE: Vehicle = Vehicle { name: Name::literal("crazyflie-2.1"), id: 0x8983_3c06 };
+use crate::flight::motors::{Actuations, BUILT_IN_TO_MOTORS, loaded, step};
+use crate::rates::TICK_RATE;
+use crate::vehicle::{STEP_RATE, VEHICLE};
 
 /// Steps from one law to another in flight: a tenth of a second at 500 Hz.
 pub const FADE_STEPS: u16 = 50;
@@ -23,22 +28,23 @@ pub enum Refused {
     NoTable,
     /// The last change of the law is still on its way, or the table that would make room is flown.
     Busy,
-    /// The table remembers from step to step, which this loop does not.
-    Kind(TableKind),
     /// The table is for another board.
     Accept(AcceptError),
 }
 
-/// The law in force, and the way to it from the one before.
+/// The law in force, the way to it from the one before, and what both remember.
 pub struct Laws {
     choice: LawChoice,
     limits: Limits,
+    memory: Memory,
     /// Of the choice, if its table is in flash.
-    tracker: Tracker<'static>,
+    controller: Controller<'static>,
     /// Whether it is all there is to step: the choice is in flash, and no other law on its way out.
-    alone: bool,
+    is_alone: bool,
     before: LawChoice,
-    fade: Crossfade,
+    handover: Handover,
+    /// What carries commands to the motors.
+    pub actuations: Actuations,
     store: &'static mut GainStore,
 }
 
@@ -49,10 +55,18 @@ impl Laws {
     /// LQR-E within these limits, nothing loaded.
     #[inline(always)]
     pub fn new(store: &'static mut GainStore, limits: Limits, rate: Option<Rate>) -> Self {
-        let tracker = Tracker::new(Equilibrium::new(&paper::LQR_E), limits);
-        let fade = Crossfade::over(0);
         store.assign(rate.map(|rate| (VEHICLE, rate)));
-        Self { choice: DEFAULT, limits, tracker, alone: true, before: DEFAULT, fade, store }
+        Self {
+            choice: DEFAULT,
+            limits,
+            memory: Memory::at_rest(),
+            controller: Controller::new(Equilibrium::new(&paper::LQR_E), limits),
+            is_alone: true,
+            before: DEFAULT,
+            handover: Handover::OVER,
+            actuations: Actuations::new(),
+            store,
+        }
     }
 
     /// The law in force, or on its way there.
@@ -65,25 +79,26 @@ impl Laws {
         self.store.board().map(|(_, rate)| *rate)
     }
 
-    /// Sets the rate of the steps. At another one nothing that was loaded is flown: it is dropped.
+    /// Sets the rate of the steps. At another one nothing that was made for the one before is flown: what was loaded is
+    /// dropped.
     #[cold]
     pub fn set_rate(&mut self, rate: Option<Rate>) {
         if rate == self.rate() {
             return;
         }
         self.store.assign(rate.map(|rate| (VEHICLE, rate)));
-        if matches!(self.choice.table, Table::Loaded(_)) {
+        if matches!(self.choice.table, Table::Loaded(_) | Table::ActuatorAware) {
             self.choice = DEFAULT;
         }
         self.settle();
     }
 
-    /// The limits of every law.
+    /// The limits of the board.
     pub fn limits(&self) -> &Limits {
         &self.limits
     }
 
-    /// Sets the limits of every law, from the next step on.
+    /// Sets them, from the next step on.
     #[cold]
     pub fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;
@@ -99,7 +114,7 @@ impl Laws {
         if choice == self.choice && steps > 0 {
             return Ok(());
         }
-        self.tracker_of(&choice).ok_or(Refused::NoTable)?;
+        self.controller_of(&choice).ok_or(Refused::NoTable)?;
         self.change(choice, self.choice, steps)
     }
 
@@ -109,22 +124,20 @@ impl Laws {
     /// # Errors
     /// [`Refused`]; nothing changes then.
     #[cold]
-    pub fn load(&mut self, table: &AcceptedTable, steps: u16) -> Result<(), Refused> {
+    pub fn load(&mut self, table: &AcceptedTable<'_>, steps: u16) -> Result<(), Refused> {
         let in_flight = steps > 0;
-        if in_flight && (!self.fade.is_over() || self.choice.table == Table::Loaded(1)) {
+        if in_flight && (!self.handover.is_over() || self.choice.table == Table::Loaded(1)) {
             return Err(Refused::Busy);
         }
-        if !matches!(table.kind(), TableKind::Equilibrium | TableKind::FlatOutput) {
-            return Err(Refused::Kind(table.kind()));
-        }
         self.store.activate(table).map_err(Refused::Accept)?;
+        self.actuations.load(table);
         match self.choice.table {
             Table::Loaded(0) => self.change(self.choice, LawChoice { table: Table::Loaded(1), ..self.choice }, steps),
             _ => Ok(()),
         }
     }
 
-    /// Ends the way from one law to another where it is: for the start of a flight.
+    /// Ends the way from one law to another where it is.
     #[cold]
     #[inline(never)]
     pub fn settle(&mut self) {
@@ -132,56 +145,141 @@ impl Laws {
         let _ = self.change(self.choice, self.choice, 0);
     }
 
+    /// Before a flight: the motors have been off.
+    #[cold]
+    pub fn begin(&mut self) {
+        self.settle();
+        self.memory = Memory::at_rest();
+    }
+
     #[inline(never)]
     fn change(&mut self, choice: LawChoice, before: LawChoice, steps: u16) -> Result<(), Refused> {
-        if steps > 0 && !self.fade.is_over() {
+        if steps > 0 && !self.handover.is_over() {
             return Err(Refused::Busy);
         }
-        let built_in = built_in(&choice, self.limits);
-        if let Some(tracker) = built_in {
-            self.tracker = tracker;
+        let handover = self.begin_handover(&choice, &before, steps);
+        let built_in = self.built_in(&choice);
+        if let Some(controller) = built_in {
+            self.controller = controller;
         }
-        (self.choice, self.before, self.fade) = (choice, before, Crossfade::over(steps));
-        self.alone = built_in.is_some() && self.fade.is_over();
+        (self.choice, self.before, self.handover) = (choice, before, handover);
+        self.is_alone = built_in.is_some() && self.handover.is_over();
         Ok(())
     }
 
-    /// The command of a step.
+    #[cfg(not(feature = "motors"))]
+    fn begin_handover(&mut self, _choice: &LawChoice, _before: &LawChoice, steps: u16) -> Handover {
+        Handover::of_commands(steps)
+    }
+
+    #[cfg(feature = "motors")]
+    fn begin_handover(&mut self, choice: &LawChoice, before: &LawChoice, steps: u16) -> Handover {
+        let mut memory = self.memory;
+        let (Some(old), Some(new)) = (self.controller_of(before), self.controller_of(choice)) else {
+            return Handover::OVER;
+        };
+        let handover = Handover::begin(steps, old.law(), new.law(), &mut memory);
+        self.memory = memory;
+        handover
+    }
+
+    /// Whether a law that is stepped gives motor forces, and is to be given targets with them.
+    #[cfg(feature = "motors")]
+    #[inline]
+    pub fn follows_forces(&self) -> bool {
+        self.controller.law().follows_forces() || (!self.is_alone && self.is_any_to_motors())
+    }
+
+    #[cfg(feature = "motors")]
+    #[cold]
+    #[inline(never)]
+    fn is_any_to_motors(&self) -> bool {
+        let gives_forces =
+            |choice| self.controller_of(choice).is_some_and(|controller| controller.law().follows_forces());
+        gives_forces(&self.choice) || (!self.handover.is_over() && gives_forces(&self.before))
+    }
+
+    /// The craft as the law in force reckons with it, for targets with motor forces.
+    #[cfg(feature = "motors")]
+    pub fn airframe(&self) -> Option<&Airframe> {
+        Some(self.actuations.of(self.choice.table)?.airframe())
+    }
+
+    /// The output of a step.
     ///
     /// # Errors
-    /// As [`Tracker::step`].
+    /// As [`Controller::step`].
     #[inline]
-    pub fn step(&mut self, state: &State, reference: &Reference) -> Result<Step, StepError> {
-        if self.alone { self.tracker.step(state, reference) } else { self.otherwise(state, reference) }
+    pub fn step(&mut self, measured: Measured<'_>, target: Target<'_>) -> Result<Output, StepError> {
+        if self.is_alone {
+            step(&self.controller, &mut self.memory, measured, target)
+        } else {
+            self.otherwise(measured, target)
+        }
+    }
+
+    /// Motor forces for what a step gave.
+    ///
+    /// # Errors
+    /// As [`Controller::carry`].
+    #[cfg(feature = "motors")]
+    #[inline(never)]
+    pub fn carry(&mut self, output: &Output, measured: Measured<'_>) -> Result<MotorStep, StepError> {
+        let actuation = self.actuations.of(self.choice.table).ok_or(StepError::NoActuation)?;
+        self.controller.with_actuation(actuation).carry(&mut self.memory, output, measured)
     }
 
     /// A step of a loaded table, or on the way from one law to another.
     #[cold]
     #[inline(never)]
-    fn otherwise(&mut self, state: &State, reference: &Reference) -> Result<Step, StepError> {
+    fn otherwise(&mut self, measured: Measured<'_>, target: Target<'_>) -> Result<Output, StepError> {
+        let (mut memory, mut handover) = (self.memory, self.handover);
         // What is chosen is on board; were it not, there would be no command.
-        let Some(new) = self.tracker_of(&self.choice) else { return Err(StepError::Singular) };
-        if self.fade.is_over() {
-            return new.step(state, reference);
-        }
-        let old = self.tracker_of(&self.before).unwrap_or(new);
-        let mut fade = self.fade;
-        let step = fade.step(&old, &new, state, reference);
-        self.fade = fade;
-        self.alone = self.fade.is_over() && !matches!(self.choice.table, Table::Loaded(_));
-        step
+        let Some(new) = self.controller_of(&self.choice) else { return Err(StepError::Singular) };
+        let output = if handover.is_over() {
+            step_apart(&new, &mut memory, measured, target)
+        } else {
+            let old = self.controller_of(&self.before).unwrap_or(new);
+            let to = |memory: &mut Memory| step_apart(&new, memory, measured, target);
+            let from = |memory: &mut Memory| step_apart(&old, memory, measured, target);
+            handover.step_with(&mut memory, self.actuations.of(self.choice.table), measured, to, from)
+        };
+        (self.memory, self.handover) = (memory, handover);
+        self.is_alone = self.handover.is_over() && !matches!(self.choice.table, Table::Loaded(_));
+        output
     }
 
     #[inline(never)]
-    fn tracker_of(&self, choice: &LawChoice) -> Option<Tracker<'_>> {
-        match choice.table {
-            Table::Loaded(_) => Some(Tracker::new(self.store.law(choice)?, self.limits)),
-            _ => built_in(choice, self.limits),
-        }
+    fn controller_of(&self, choice: &LawChoice) -> Option<Controller<'_>> {
+        let Table::Loaded(slot) = choice.table else { return self.built_in(choice) };
+        let settings = Settings {
+            limits: self.limits,
+            actuation: self.actuations.of(choice.table),
+            feed_forward: choice.feed_forward,
+            error_form: choice.error_form,
+            player_rate: TICK_RATE,
+        };
+        loaded(&self.store.table(slot)?, &settings)
+    }
+
+    /// The controller of a table in flash, if it is made for the rate of the steps.
+    #[inline(never)]
+    fn built_in(&self, choice: &LawChoice) -> Option<Controller<'static>> {
+        let law = match choice.table {
+            Table::ActuatorAware if self.rate() == Some(STEP_RATE) => BUILT_IN_TO_MOTORS?.into(),
+            _ => choice.built_in()?,
+        };
+        Some(Controller::new(law, self.limits))
     }
 }
 
+/// A step where one call more does not count.
 #[inline(never)]
-fn built_in(choice: &LawChoice, limits: Limits) -> Option<Tracker<'static>> {
-    choice.built_in().map(|law| Tracker::new(law, limits))
+fn step_apart(
+    controller: &Controller<'_>,
+    memory: &mut Memory,
+    measured: Measured<'_>,
+    target: Target<'_>,
+) -> Result<Output, StepError> {
+    step(controller, memory, measured, target)
 }

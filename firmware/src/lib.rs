@@ -12,9 +12,8 @@
 //!     flight                  states, orders, ticks in; gated commands and motor forces out
 //!       laws                  which law is flown: built in, or of a loaded table
 //!       playback, stored      what is followed; the trajectories in flash
-//!         motor_control       laws carried to the motors
-//!         control, timing     the step against traits; overruns, jitter, the longest step
-//!           rates             how often the loop ticks and steps
+//!         vehicle             the craft: its tables' name, its way to the motors
+//!           rates, timing     how often the loop ticks and steps; overruns, jitter, the longest step
 //!     craft                   a flight's gyroscope and motors
 //!       drivers               BMI088, brushed motors, battery, against the traits of `embedded-hal`
 //! ```
@@ -23,18 +22,17 @@
 #![cfg_attr(not(test), no_std)]
 #![warn(clippy::unwrap_used, clippy::expect_used)]
 
-pub mod control;
 pub mod craft;
 pub mod drivers;
 pub mod flight;
 pub mod laws;
-pub mod motor_control;
 pub mod playback;
 pub mod rates;
 #[cfg(feature = "motors")]
 pub mod session;
 pub mod stored;
 pub mod timing;
+pub mod vehicle;
 
 #[cfg(target_os = "none")]
 pub mod board;

@@ -2,12 +2,13 @@
 
 mod motors;
 
+#[cfg(feature = "motors")]
+use quatrack::Progress;
 use quatrack::link::{TRAJECTORY_PIECES, TrajectoryStore};
 use quatrack::nalgebra::Vector3;
 use quatrack::trajectory::Bookmark;
 use quatrack::{FlatSample, Player, Reference, ReferenceError, Tick};
 
-use crate::control::ReferenceSource;
 use crate::rates::TICK_RATE;
 
 /// Uploaded trajectories: the one in use and the one that is being checked.
@@ -21,6 +22,9 @@ pub struct Playback {
     /// The tick of the clock at which the trajectory would have begun, had it never been paused.
     base: Option<Tick>,
     moving: bool,
+    /// Checksum of the trajectory, for gains along it.
+    #[cfg(feature = "motors")]
+    checksum: u32,
     /// Too large for the stack on which everything begins.
     store: &'static mut Store,
 }
@@ -38,7 +42,15 @@ enum Source {
 impl Playback {
     /// Nothing to follow, nothing uploaded.
     pub const fn new(store: &'static mut Store) -> Self {
-        Self { source: Source::Nothing, elapsed: 0, base: None, moving: false, store }
+        Self {
+            source: Source::Nothing,
+            elapsed: 0,
+            base: None,
+            moving: false,
+            #[cfg(feature = "motors")]
+            checksum: 0,
+            store,
+        }
     }
 
     /// Follows what came with a state.
@@ -49,12 +61,20 @@ impl Playback {
     /// Plays a trajectory in flash from its start, which is the next step.
     pub fn start(&mut self, player: Player<'static>) {
         self.begin(Source::Flash(player));
+        #[cfg(feature = "motors")]
+        {
+            self.checksum = player.trajectory().checksum();
+        }
     }
 
     /// Plays the uploaded trajectory from its start, which is the next step; whether there is one.
     pub fn start_uploaded(&mut self) -> bool {
         let Some(trajectory) = self.store.active().trajectory() else { return false };
         let bookmark = Player::new(trajectory, TICK_RATE).bookmark();
+        #[cfg(feature = "motors")]
+        {
+            self.checksum = trajectory.checksum();
+        }
         self.begin(Source::Uploaded(bookmark));
         true
     }
@@ -98,25 +118,33 @@ impl Playback {
         }
         self.elapsed
     }
-}
 
-impl ReferenceSource for Playback {
+    /// Whether there is anything to follow.
     #[inline]
-    fn is_there(&self) -> bool {
+    pub fn is_there(&self) -> bool {
         !matches!(self.source, Source::Nothing)
     }
 
+    /// The reference at a tick of the clock.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] where it cannot be flown.
     #[inline]
-    fn at(&mut self, now: Tick) -> Result<Reference, ReferenceError> {
+    pub fn reference(&mut self, now: Tick) -> Result<Reference, ReferenceError> {
         let tick = self.trajectory_tick(now);
         match &mut self.source {
             Source::Flash(player) if self.moving => player.reference(tick),
             _ => self.otherwise(tick),
         }
     }
-}
 
-impl Playback {
+    /// Where on which trajectory the last reference was, if it was on one.
+    #[cfg(feature = "motors")]
+    #[inline]
+    pub fn progress(&self) -> Option<Progress> {
+        self.is_trajectory().then_some(Progress { trajectory: self.checksum, tick: self.elapsed })
+    }
+
     /// The reference of everything but a moving trajectory in flash. What comes here is paused, uploaded, or the link's.
     #[cold]
     fn otherwise(&mut self, tick: Tick) -> Result<Reference, ReferenceError> {
@@ -162,16 +190,16 @@ mod tests {
         let mut playback = Playback::new(Box::leak(Box::default()));
         assert!(!playback.is_there(), "nothing to follow");
         playback.start(player());
-        assert_eq!(playback.at(1000), direct.reference(0), "the clock's tick does not matter");
-        assert_eq!(playback.at(6000), direct.reference(5000));
+        assert_eq!(playback.reference(1000), direct.reference(0), "the clock's tick does not matter");
+        assert_eq!(playback.reference(6000), direct.reference(5000));
         assert!(playback.pause());
         let there = direct.at(5000);
         let rest = Reference::hover(there.position_m, there.heading_rad);
-        assert_eq!(playback.at(6010), rest, "rests where it was");
-        assert_eq!(playback.at(9000), rest, "however long");
+        assert_eq!(playback.reference(6010), rest, "rests where it was");
+        assert_eq!(playback.reference(9000), rest, "however long");
         assert!(playback.resume());
-        assert_eq!(playback.at(9002), direct.reference(5000), "goes on from there");
-        assert_eq!(playback.at(9004), direct.reference(5002));
+        assert_eq!(playback.reference(9002), direct.reference(5000), "goes on from there");
+        assert_eq!(playback.reference(9004), direct.reference(5002));
         playback.stop();
         assert!(!playback.is_there());
         assert!(!playback.pause(), "there is nothing left to pause");
@@ -182,8 +210,8 @@ mod tests {
         let mut direct = player();
         let mut playback = Playback::new(Box::leak(Box::default()));
         playback.start(player());
-        assert_eq!(playback.at(u32::MAX - 1), direct.reference(0));
-        assert_eq!(playback.at(4), direct.reference(6));
+        assert_eq!(playback.reference(u32::MAX - 1), direct.reference(0));
+        assert_eq!(playback.reference(4), direct.reference(6));
     }
 
     #[test]
@@ -196,10 +224,10 @@ mod tests {
         playback.store().commit(blob).unwrap();
         assert!(playback.start_uploaded());
         for tick in [0, 2, 4, 2000, 29_998, 40_000] {
-            assert_eq!(playback.at(tick), direct.reference(tick), "tick {tick}");
+            assert_eq!(playback.reference(tick), direct.reference(tick), "tick {tick}");
         }
         let other = encode_trajectory(&stored::AGGRESSIVE, &mut vec![0; TRAJECTORY_BLOB_BYTES]).unwrap().to_vec();
         playback.store().commit(&other).unwrap();
-        assert!(playback.at(40_002).is_err(), "the one that was started is gone");
+        assert!(playback.reference(40_002).is_err(), "the one that was started is gone");
     }
 }

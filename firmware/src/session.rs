@@ -2,7 +2,7 @@
 
 use heapless::Vec;
 use quatrack::Tick;
-use quatrack::gains::table::{AcceptedTable, LoadError, TableError};
+use quatrack::gains::table::{GainTable, LoadError};
 use quatrack::link::{
     BlobError, BlobKind, BlobReceiver, Decoder, Encoder, FRAME_BYTES, FaultReport, FromBoard, Identity, LoopStatistics,
     Parameter, ParameterId, Received, Refusal, TRAJECTORY_BLOB_BYTES, TRAJECTORY_PIECES, Telemetry, ToBoard,
@@ -11,8 +11,9 @@ use quatrack::link::{
 
 use crate::drivers::battery::CellVoltage;
 use crate::flight::{Flight, TICK_RATE_HZ};
-use crate::laws::{Refused, VEHICLE};
+use crate::laws::Refused;
 use crate::stored;
+use crate::vehicle::VEHICLE;
 
 /// Identifies what computes commands: a checksum of its sources, by the build script.
 const CONTROL_IMAGE: u32 = include!(concat!(env!("OUT_DIR"), "/control_image.rs"));
@@ -215,9 +216,10 @@ impl Session {
             BlobKind::GainTable => {
                 // Read while the loop goes on; it waits only for the copy.
                 let rate = flight.with(|flight| flight.table_rate()).ok_or(Refusal::NoTable)?;
-                let table =
-                    AcceptedTable::from_bytes(blob, &VEHICLE, rate).map_err(|error| Refusal::Blob(error.into()))?;
-                flight.with(|flight| flight.load(&table)).map_err(Refusal::from)?;
+                let refused = |error: LoadError| Refusal::Blob(error.into());
+                let table = GainTable::from_bytes(blob).map_err(|error| refused(error.into()))?;
+                let accepted = table.accept_for(&VEHICLE, rate).map_err(|error| refused(error.into()))?;
+                flight.with(|flight| flight.load(&accepted)).map_err(Refusal::from)?;
                 self.committed = Some(begin);
                 Ok(())
             }
@@ -234,7 +236,7 @@ impl Session {
             ParameterId::TelemetryPeriodTicks => Parameter::TelemetryPeriodTicks(self.telemetry_period_ticks),
             ParameterId::UploadsRefused => Parameter::UploadsRefused(self.uploads_refused),
             ParameterId::BatteryVoltage => Parameter::BatteryVoltage(flight.motors.battery().volts()),
-            ParameterId::BodyRateBandwidth => Parameter::BodyRateBandwidth(flight.motors.bandwidth_rad_s()),
+            ParameterId::BodyRateBandwidth => Parameter::BodyRateBandwidth(flight.bandwidth_rad_s()),
         })
     }
 
@@ -271,7 +273,7 @@ impl Session {
                 flight.with(|flight| flight.motors.set_battery(battery));
             }
             Parameter::BodyRateBandwidth(bandwidth_rad_s) => {
-                let set = flight.with(|flight| flight.motors.set_bandwidth(bandwidth_rad_s));
+                let set = flight.with(|flight| flight.set_bandwidth(bandwidth_rad_s));
                 set.map_err(|_| Refusal::OutOfRange)?;
             }
         }
@@ -287,12 +289,10 @@ impl Session {
 
 impl From<Refused> for Refusal {
     fn from(refused: Refused) -> Self {
-        let not_flown = |error: LoadError| Self::Blob(BlobError::GainTable(error));
         match refused {
             Refused::NoTable => Self::NoTable,
             Refused::Busy => Self::LawChanging,
-            Refused::Kind(kind) => not_flown(TableError::Kind { found: kind.number() }.into()),
-            Refused::Accept(error) => not_flown(error.into()),
+            Refused::Accept(error) => Self::Blob(BlobError::GainTable(error.into())),
         }
     }
 }

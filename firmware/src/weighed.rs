@@ -53,7 +53,7 @@ mod image {
                 #[cfg(feature = "motors")]
                 16 => flight.accept_rigid(black_box::<Option<RigidStateIn>>(None)?, now),
                 #[cfg(feature = "motors")]
-                17 => _ = flight.motors.set_bandwidth(black_box([1.0; 3])),
+                17 => _ = flight.set_bandwidth(black_box([1.0; 3])),
                 _ => tick::control(&mut flight, &timing, counter, &mut NoCraft),
             }
             black_box((flight.command(), flight.forces_n()));

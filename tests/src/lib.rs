@@ -1,5 +1,6 @@
 //! What the tests that cross crates share; they live in `tests/`.
 
+pub mod core_step;
 pub mod design_problem;
 
 /// The README's example is compiled and run.

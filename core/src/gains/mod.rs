@@ -1,5 +1,8 @@
 //! Gain tables made offline: constants in the image, checked when it is compiled, and files, checked when they are
 //! loaded.
 
+mod constant;
 pub mod paper;
 pub mod table;
+
+pub use constant::{ConstantGain, Decoupled, Scales};

@@ -10,13 +10,12 @@
 use nalgebra::Vector3;
 
 use super::difference;
-use crate::airframe::Airframe;
-use crate::clock::Rate;
+use crate::control::{Actuation, Memory};
 use crate::gain::{Gain, GainError};
-use crate::mixer::{ForceRange, MotorLimited, Parts};
-use crate::motor_lag::{MotorForces, MotorLag, MotorLagError};
+use crate::mixer::{MotorLimited, Parts};
+use crate::motor_lag::MotorForces;
 use crate::motor_reference::MotorReference;
-use crate::rigid_state::RigidState;
+use crate::state::State;
 
 /// Outputs: forces of M1 to M4, N. Errors: position (3, m), velocity (3, m/s), rotation vector (3, rad), body rates (3, rad/s),
 /// motor forces (4, N), integral of position (3, m s); the first two groups and the last in the heading frame.
@@ -49,63 +48,11 @@ struct Chains {
     yaw: [f32; 3],
 }
 
-/// The law: a gain for a craft's motors. What it remembers is apart, in [`ActuatorMemory`].
+/// The law: a gain on a craft's motors. What it remembers is apart, in [`Memory`].
 #[derive(Clone, Copy, Debug)]
 pub struct ActuatorAware<'a> {
-    /// The gain.
-    pub gain: &'a ActuatorAwareGain,
-    lag: MotorLag,
-    range: ForceRange,
-}
-
-/// What the law remembers from step to step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct ActuatorMemory {
-    /// Forces that the motors should have, N.
-    pub(crate) forces_n: MotorForces,
-    /// Integral of the position error in the world frame, m s.
-    pub(crate) integral_m_s: Vector3<f32>,
-}
-
-impl ActuatorMemory {
-    /// Motors at some forces (N), and nothing integrated: zeros on the ground, the forces of hover when taking over in
-    /// flight. Nothing where a force is not finite.
-    pub fn new(forces_n: MotorForces) -> Option<Self> {
-        let finite = forces_n.iter().all(|force| force.is_finite());
-        finite.then_some(Self { forces_n, integral_m_s: Vector3::new(0.0, 0.0, 0.0) })
-    }
-
-    /// Motors that stand still.
-    pub const fn at_rest() -> Self {
-        Self { forces_n: [0.0; 4], integral_m_s: Vector3::new(0.0, 0.0, 0.0) }
-    }
-
-    /// A craft that hovers.
-    pub const fn hovering(airframe: &Airframe) -> Self {
-        Self { forces_n: [airframe.hover_force_n(); 4], integral_m_s: Vector3::new(0.0, 0.0, 0.0) }
-    }
-
-    /// Motors that are switched off run down: this share of their forces is left.
-    pub fn run_down(&mut self, share: f32) {
-        let [a, b, c, d] = self.forces_n;
-        self.forces_n = [a * share, b * share, c * share, d * share];
-    }
-
-    /// Forces that the motors should have, N.
-    pub const fn forces_n(&self) -> MotorForces {
-        self.forces_n
-    }
-
-    /// Integral of the position error in the world frame, m s.
-    pub const fn integral_m_s(&self) -> Vector3<f32> {
-        self.integral_m_s
-    }
-
-    /// Forgets the integral: before another trajectory that begins elsewhere.
-    pub const fn clear_integral(&mut self) {
-        self.integral_m_s = Vector3::new(0.0, 0.0, 0.0);
-    }
+    pub(crate) gain: &'a ActuatorAwareGain,
+    pub(crate) actuation: &'a Actuation,
 }
 
 impl ActuatorAwareGain {
@@ -214,10 +161,10 @@ const fn columns_of_feedback(gain: &Gain<4, 19>) -> [[f32; 4]; 19] {
 impl Chains {
     /// Nothing unless every column drives one part alone, by the pattern of its signs and with entries of the same size.
     const fn of(columns: &[[f32; 4]; 19]) -> Option<Self> {
-        const THRUST: [f32; 4] = [1.0, 1.0, 1.0, 1.0];
-        const ROLL: [f32; 4] = [-1.0, -1.0, 1.0, 1.0];
-        const PITCH: [f32; 4] = [-1.0, 1.0, 1.0, -1.0];
-        const YAW: [f32; 4] = [-1.0, 1.0, -1.0, 1.0];
+        const THRUST: [f32; 4] = Parts::SIGNS_OF_THRUST;
+        const ROLL: [f32; 4] = Parts::SIGNS_OF_ROLL;
+        const PITCH: [f32; 4] = Parts::SIGNS_OF_PITCH;
+        const YAW: [f32; 4] = Parts::SIGNS_OF_YAW;
         let [x, y, z, vx, vy, vz, rotation_x, rotation_y, rotation_z, p, q, r, f1, f2, f3, f4, ix, iy, iz] = columns;
         let thrust = [size(z, &THRUST), size(vz, &THRUST), size(iz, &THRUST), Some(0.0), Some(0.0)];
         let roll = [size(y, &ROLL), size(vy, &ROLL), size(rotation_x, &ROLL), size(p, &ROLL), size(iy, &ROLL)];
@@ -267,25 +214,10 @@ struct Errors {
 }
 
 impl<'a> ActuatorAware<'a> {
-    /// The law for a craft at a control rate, those of the gain's design. References are to be made for the same airframe,
-    /// [`Airframe::commanded_at`] that rate: they too depend on its motor lag.
-    ///
-    /// # Errors
-    /// [`MotorLagError`] for a lag shorter than two control periods.
-    pub const fn new(gain: &'a ActuatorAwareGain, airframe: &Airframe, rate: Rate) -> Result<Self, MotorLagError> {
-        match MotorLag::new(airframe.figures().motor_lag_s, rate) {
-            Ok(lag) => Ok(Self::with_lag(gain, airframe, lag)),
-            Err(error) => Err(error),
-        }
-    }
-
-    pub(crate) const fn with_lag(gain: &'a ActuatorAwareGain, airframe: &Airframe, lag: MotorLag) -> Self {
-        Self { gain, lag, range: ForceRange::of(airframe) }
-    }
-
-    /// The lag that it reckons with.
-    pub const fn lag(&self) -> &MotorLag {
-        &self.lag
+    /// The law on a craft at a control rate, those of the gain's design. References are to be made for the actuation's airframe,
+    /// [`crate::Airframe::commanded_at`] that rate: they too depend on its motor lag.
+    pub const fn new(gain: &'a ActuatorAwareGain, actuation: &'a Actuation) -> Self {
+        Self { gain, actuation }
     }
 
     /// Commanded forces (N) within the motors' range and whether any was cut; nothing, and the memory as it was, where one of
@@ -294,11 +226,12 @@ impl<'a> ActuatorAware<'a> {
     #[inline(always)]
     pub(crate) fn step(
         &self,
-        memory: &mut ActuatorMemory,
-        state: &RigidState,
+        memory: &mut Memory,
+        state: &State,
+        body_rates_rad_s: &Vector3<f32>,
         reference: &MotorReference,
     ) -> Option<(MotorForces, MotorLimited)> {
-        let (RigidState { state, body_rates_rad_s }, target) = (state, &reference.reference);
+        let (target, actuation) = (&reference.reference, self.actuation);
         let heading = target.heading;
         let error = difference(&state.position_m, &target.state.position_m);
         let velocity = difference(&state.velocity_m_s, &target.state.velocity_m_s);
@@ -314,10 +247,10 @@ impl<'a> ActuatorAware<'a> {
             integral: heading.to_heading_frame(memory.integral_m_s),
         };
         let asked = self.gain.feedback.added_to(reference.commands_n, &errors);
-        let (commands, limited) = self.range.saturate(&asked)?;
-        memory.forces_n = self.lag.next(&memory.forces_n, &commands);
+        let (commands, limited) = actuation.range.saturate(&asked)?;
+        memory.forces_n = actuation.lag.next(&memory.forces_n, &commands);
         if !limited.any() {
-            let (h, i) = (self.lag.period_s(), &memory.integral_m_s);
+            let (h, i) = (actuation.lag.period_s(), &memory.integral_m_s);
             memory.integral_m_s = Vector3::new(i.x + h * error.x, i.y + h * error.y, i.z + h * error.z);
         }
         Some((commands, limited))

@@ -15,7 +15,7 @@ use crate::command::Command;
 use crate::flatness::GRAVITY_M_S2;
 use crate::gain::{Gain, GainError};
 use crate::reference::Reference;
-use crate::state::Measured;
+use crate::state::NormalizedState;
 use crate::trajectory::Progress;
 
 /// A gain at a knot by rows as it stands in a table, each entry an `f32` lowest byte first: outputs `[T p q r]` from
@@ -57,7 +57,14 @@ impl fmt::Display for ScheduleError {
     }
 }
 
-impl core::error::Error for ScheduleError {}
+impl core::error::Error for ScheduleError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Knot { error, .. } => Some(error),
+            _ => None,
+        }
+    }
+}
 
 impl<'a> GainSchedule<'a> {
     /// Checks gains for the trajectory of a checksum ([`crate::Trajectory::checksum`]), the first at its start, the others
@@ -76,10 +83,14 @@ impl<'a> GainSchedule<'a> {
         Ok(Self { knots, last, steps_per_knot, trajectory })
     }
 
-    /// Of knots and a spacing that have been checked before; nothing without a knot.
-    #[cfg(feature = "link")]
-    pub(crate) fn of_checked(knots: &'a [Knot], steps_per_knot: u16, trajectory: u32) -> Option<Self> {
-        Some(Self { knots, last: knots.last()?, steps_per_knot, trajectory })
+    /// Of knots and a spacing that have been checked before.
+    pub(crate) const fn of_checked(knots: &'a [Knot], steps_per_knot: u16, trajectory: u32) -> Self {
+        const NONE: Knot = [[[0; 4]; 9]; 4];
+        let last = match knots.last() {
+            Some(last) => last,
+            None => &NONE,
+        };
+        Self { knots, last, steps_per_knot, trajectory }
     }
 
     /// A gain by rows as a knot.
@@ -151,7 +162,7 @@ impl<'a> AlongTrajectory<'a> {
 
     /// The command before saturation.
     #[inline]
-    pub fn command(&self, progress: Option<Progress>, state: &Measured<'_>, reference: &Reference) -> Command {
+    pub fn command(&self, progress: Option<Progress>, state: &NormalizedState<'_>, reference: &Reference) -> Command {
         let position = progress
             .filter(|progress| progress.trajectory == self.schedule.trajectory)
             .map(|progress| progress.tick as f32 * self.knots_per_tick);

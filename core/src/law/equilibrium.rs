@@ -9,7 +9,7 @@ use crate::command::Command;
 use crate::flatness::GRAVITY_M_S2;
 use crate::gain::{Gain, GainError};
 use crate::reference::Reference;
-use crate::state::Measured;
+use crate::state::NormalizedState;
 
 /// Outputs `[T p q r]` from errors `[x y z q1 q2 q3 vx vy vz]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -130,7 +130,7 @@ impl<'a> Equilibrium<'a> {
     }
 
     #[inline(always)]
-    fn error(&self, state: &Measured<'_>, reference: &Reference) -> [f32; 9] {
+    fn error(&self, state: &NormalizedState<'_>, reference: &Reference) -> [f32; 9] {
         match self.error_form {
             ErrorForm::HeadingFrame => heading_frame_error(state, reference),
             ErrorForm::Paper => {
@@ -148,7 +148,7 @@ impl<'a> Equilibrium<'a> {
 
 /// The error `[x y z q1 q2 q3 vx vy vz]` of [`ErrorForm::HeadingFrame`].
 #[inline(always)]
-pub(super) fn heading_frame_error(state: &Measured<'_>, reference: &Reference) -> [f32; 9] {
+pub(super) fn heading_frame_error(state: &NormalizedState<'_>, reference: &Reference) -> [f32; 9] {
     let target = &reference.state;
     let r = reference.heading.to_heading_frame(difference(state.position_m(), &target.position_m));
     let v = reference.heading.to_heading_frame(difference(state.velocity_m_s(), &target.velocity_m_s));
@@ -159,7 +159,7 @@ pub(super) fn heading_frame_error(state: &Measured<'_>, reference: &Reference) -
 impl ControlLaw for Equilibrium<'_> {
     // All of it into each of its callers: a function that they shared would take 70 instructions more.
     #[inline(always)]
-    fn command(&self, state: &Measured<'_>, reference: &Reference) -> Command {
+    fn command(&self, state: &NormalizedState<'_>, reference: &Reference) -> Command {
         let [thrust, p, q, r] = self.gain.feedback(&self.error(state, reference));
         match self.feed_forward {
             FeedForward::Without => {

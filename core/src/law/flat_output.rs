@@ -12,7 +12,7 @@ use crate::flatness::{GRAVITY_M_S2, Tilt};
 use crate::gain::{Gain, GainError};
 use crate::math::sqrt;
 use crate::reference::Reference;
-use crate::state::Measured;
+use crate::state::NormalizedState;
 
 /// Outputs `[a(3) j(3) q3']` from errors `[r(3) v(3) a(3) q3]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,7 +115,7 @@ impl<'a> FlatOutput<'a> {
 
 impl ControlLaw for FlatOutput<'_> {
     #[inline]
-    fn command(&self, state: &Measured<'_>, reference: &Reference) -> Command {
+    fn command(&self, state: &NormalizedState<'_>, reference: &Reference) -> Command {
         let heading = reference.heading;
         let target = &reference.state;
         let r = heading.to_heading_frame(difference(state.position_m(), &target.position_m));

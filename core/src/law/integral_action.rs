@@ -15,7 +15,7 @@ use crate::clock::Rate;
 use crate::command::{Command, Limited};
 use crate::gain::{Gain, GainError};
 use crate::reference::Reference;
-use crate::state::{Measured, State};
+use crate::state::{NormalizedState, State};
 
 /// Outputs `[T p q r]` from errors `[x y z q1 q2 q3 vx vy vz]` and their integrals `[ix iy iz]`, metre seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,7 +95,7 @@ impl<'a> IntegralAction<'a> {
 
     /// The command before saturation, with the sum of the steps before, world frame, metre seconds.
     #[inline]
-    pub fn command(&self, sum: &Vector3<f32>, state: &Measured<'_>, reference: &Reference) -> Command {
+    pub fn command(&self, sum: &Vector3<f32>, state: &NormalizedState<'_>, reference: &Reference) -> Command {
         let Self { gain: IntegralGain { equilibrium: gain, integral }, feed_forward, .. } = *self;
         let without = Equilibrium { gain, error_form: ErrorForm::HeadingFrame, feed_forward }.command(state, reference);
         let i = reference.heading.to_heading_frame(*sum);

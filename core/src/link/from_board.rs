@@ -11,10 +11,9 @@ use super::trajectory_store::BlobError;
 use super::upload::{Progress, UploadError};
 use crate::clock::Tick;
 use crate::command::LimitsError;
+use crate::control::{MotorStep, Step};
 use crate::error::{ReferenceError, StepError};
-use crate::motor_tracker::MotorStep;
 use crate::supervisor::{ArmError, Fault, Mode};
-use crate::tracker::Step;
 
 /// A message from the board.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::control::Law;
 use crate::gains::paper;
-use crate::law::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput};
+use crate::law::{Equilibrium, ErrorForm, FeedForward, FlatOutput};
 
 /// A gain table, and with it the law that it is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -42,10 +43,10 @@ impl LawChoice {
     }
 
     /// The law of thrust and body rates, if its table is one of those in the image.
-    pub fn built_in(&self) -> Option<AnyLaw<'static>> {
+    pub fn built_in(&self) -> Option<Law<'static>> {
         let Self { table, feed_forward, error_form } = *self;
-        let equilibrium = |gain| Some(AnyLaw::Equilibrium(Equilibrium { gain, error_form, feed_forward }));
-        let flat_output = |gain| Some(AnyLaw::FlatOutput(FlatOutput { gain, feed_forward }));
+        let equilibrium = |gain| Some(Law::Equilibrium(Equilibrium { gain, error_form, feed_forward }));
+        let flat_output = |gain| Some(Law::FlatOutput(FlatOutput { gain, feed_forward }));
         match table {
             Table::LyapE => equilibrium(&paper::LYAP_E),
             Table::LqrE => equilibrium(&paper::LQR_E),

@@ -31,7 +31,6 @@ mod encoder;
 mod from_board;
 mod gain_store;
 mod law_choice;
-mod schedule_store;
 mod size;
 mod to_board;
 mod trajectory_store;
@@ -48,7 +47,6 @@ pub use from_board::{
 };
 pub use gain_store::GainStore;
 pub use law_choice::{LawChoice, Table};
-pub use schedule_store::{ScheduleSlot, ScheduleStore};
 pub use size::{CHUNK_BYTES, FRAME_BYTES, MESSAGE_BYTES};
 pub use to_board::{
     LimitsSetting, Parameter, ParameterId, RigidStateIn, StateIn, ToBoard, TrajectoryCommand, TrajectoryId,

@@ -76,6 +76,11 @@ impl<'a> Player<'a> {
         Some(Self { trajectory, clock, end_tick, piece, following, end_ns })
     }
 
+    /// What is played.
+    pub const fn trajectory(&self) -> &Trajectory<'a> {
+        &self.trajectory
+    }
+
     /// The first tick at or after the trajectory's end.
     pub fn end_tick(&self) -> Tick {
         self.end_tick

@@ -18,12 +18,6 @@ pub(crate) const LYAP_F: Certified = (3.714, 0.02);
 /// (LQR-F), likewise.
 pub(crate) const LQR_F: Certified = (14.71, 0.02);
 
-/// A gain for where one has to stand that is not looked at.
-pub(crate) static ANY: ActuatorAwareGain = {
-    let [design, ..] = motor_gains::CRAZYFLIE_2_1;
-    design.gain
-};
-
 /// A gain for motor forces with what it is certified for.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Design {

@@ -1,16 +1,14 @@
-//! One step of one law: table, sample or reference, and state in; the output, into the outcome.
+//! One step of one table's controller: sample or reference, and state in; the output, into the outcome.
 
-use quatrack::law::ActuatorMemory;
-use quatrack::mixer::{MotorLimited, Wrench};
 use quatrack::{
-    Equilibrium, FifthOrderSample, FlatOutput, Heading, MotorLaw, MotorReference, MotorTracker, Reference,
-    ReferenceError, RigidState, StepError, Tracker,
+    FifthOrderSample, Handover, Heading, Measured, Memory, MotorReference, Output as LawOutput, Reference,
+    ReferenceError, RigidState, StepError, Target,
 };
 
 use super::outcome::{Outcome, Settings};
 use crate::craft::Craft;
 use crate::output::Output;
-use crate::tables::{Gains, MotorGains, Table};
+use crate::tables::Table;
 
 /// Why a step gave nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,88 +43,99 @@ pub(super) struct LawStep<'a> {
 impl LawStep<'_> {
     /// Steps the law of a table.
     #[inline(always)]
-    pub(super) fn step(
-        &self,
-        table: &Table,
-        memory: &mut ActuatorMemory,
-        outcome: &mut Outcome,
-    ) -> Result<(), Unflown> {
-        match &table.gains {
-            Gains::ActuatorAware(motors) => self.straight(motors, memory, outcome),
-            _ => self.through_rates(table, outcome),
+    pub(super) fn step(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<(), Unflown> {
+        if table.gain.gives_forces() {
+            self.to_motors(table, memory, outcome)
+        } else {
+            self.by_rates(table, memory, outcome)
         }
     }
 
-    /// The same for a second law in one step, whose stack is only that of its own kind.
-    #[inline(always)]
-    pub(super) fn step_beside(
-        &self,
-        table: &Table,
-        memory: &mut ActuatorMemory,
-        outcome: &mut Outcome,
-    ) -> Result<(), Unflown> {
-        match &table.gains {
-            Gains::ActuatorAware(motors) => self.straight_beside(motors, memory, outcome),
-            _ => self.through_rates(table, outcome),
-        }
-    }
-
+    /// On the way from one table to another, both side by side.
     #[inline(never)]
-    fn straight_beside(
+    pub(super) fn hand_over(
         &self,
-        motors: &MotorGains,
-        memory: &mut ActuatorMemory,
+        handover: &mut Handover,
+        (before, table): (&Table, &Table),
+        memory: &mut Memory,
         outcome: &mut Outcome,
     ) -> Result<(), Unflown> {
-        self.straight(motors, memory, outcome)
+        let to = |memory: &mut Memory| self.output(table, memory, outcome);
+        // What is logged is the new law's.
+        let from = |memory: &mut Memory| self.output_before(before, memory);
+        let output = handover.step_with(memory, Some(&table.actuation), self.measured(), to, from)?;
+        self.put(&output, outcome)
+    }
+
+    fn output_before(&self, table: &Table, memory: &mut Memory) -> Result<LawOutput, Unflown> {
+        let mut outcome = Outcome::OFF;
+        self.output(table, memory, &mut outcome)
+    }
+
+    /// The output of a table's law on a reference of its own; its target into the outcome. Out of line: the stack of two laws
+    /// in one step is then that of one.
+    #[inline(never)]
+    fn output(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<LawOutput, Unflown> {
+        let controller = table.controller(self.settings.limits, self.settings.feed_forward)?;
+        if table.gain.gives_forces() {
+            let reference = &MotorReference::from_flat_at(self.sample, self.heading, table.actuation.airframe())?;
+            outcome.target = reference.state().attitude;
+            Ok(controller.step(memory, self.measured(), Target::with_forces(reference))?)
+        } else {
+            let reference = &Reference::from_flat_at(&self.sample.flat, self.heading)?;
+            outcome.target = reference.state().attitude;
+            Ok(controller.step(memory, self.measured(), Target::new(reference))?)
+        }
     }
 
     #[inline(always)]
-    fn straight(&self, motors: &MotorGains, memory: &mut ActuatorMemory, outcome: &mut Outcome) -> Result<(), Unflown> {
-        let airframe = &motors.airframe;
-        let tracker = MotorTracker::new(MotorLaw::ActuatorAware(motors.law()), airframe);
+    fn to_motors(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<(), Unflown> {
         // References are looked at where they lie: to move one out costs as much as the product with a gain.
-        let Ok(reference) = &MotorReference::from_flat_at(self.sample, self.heading, airframe) else {
+        let Ok(reference) = &MotorReference::from_flat_at(self.sample, self.heading, table.actuation.airframe()) else {
             return Err(Unflown::Motion);
         };
-        let step = tracker.step(memory, self.state, reference)?;
-        outcome.output = Output::Forces(step.forces_n);
-        (outcome.limited, outcome.target) = (step.limited, reference.state().attitude);
-        Ok(())
-    }
-
-    /// Steps a law of the paper on a reference that is there.
-    #[inline(always)]
-    pub(super) fn follow(&self, table: &Table, reference: &Reference, outcome: &mut Outcome) -> Result<(), Unflown> {
-        let feed_forward = self.settings.feed_forward;
-        let tracker = match &table.gains {
-            Gains::Equilibrium(gain) => {
-                Tracker::new(Equilibrium { feed_forward, ..Equilibrium::new(gain) }, self.settings.limits)
-            }
-            Gains::FlatOutput(gain) => Tracker::new(FlatOutput { gain, feed_forward }, self.settings.limits),
-            Gains::ActuatorAware(_) => return Err(Unflown::State),
-        };
-        let step = tracker.step(&self.state.state, reference)?;
-        let wrench = self.craft.body_rates.wrench(&step.command, &self.state.body_rates_rad_s);
-        if !is_finite(&wrench) {
-            return Err(Unflown::State);
-        }
-        outcome.output = Output::Wrench(wrench);
-        outcome.limited = MotorLimited::from_bits(u16::from(step.limited.bits()) << 8);
+        let controller = table.controller(self.settings.limits, self.settings.feed_forward)?;
+        let output = controller.step(memory, self.measured(), Target::with_forces(reference))?;
         outcome.target = reference.state().attitude;
+        self.put(&output, outcome)
+    }
+
+    /// Steps a law of commands on a reference that has to be made.
+    #[inline(never)]
+    fn by_rates(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<(), Unflown> {
+        self.follow(table, &Reference::from_flat_at(&self.sample.flat, self.heading)?, memory, outcome)
+    }
+
+    /// Steps a law of commands on a reference that is there.
+    #[inline(always)]
+    pub(super) fn follow(
+        &self,
+        table: &Table,
+        reference: &Reference,
+        memory: &mut Memory,
+        outcome: &mut Outcome,
+    ) -> Result<(), Unflown> {
+        let controller = table.controller(self.settings.limits, self.settings.feed_forward)?;
+        let output = controller.step(memory, self.measured(), Target::new(reference))?;
+        outcome.target = reference.state().attitude;
+        self.put(&output, outcome)
+    }
+
+    #[inline(always)]
+    fn measured(&self) -> Measured<'_> {
+        Measured::from(self.state)
+    }
+
+    /// An output as the firmware takes it: a command goes through the body-rate loop to its mixer.
+    #[inline(always)]
+    fn put(&self, output: &LawOutput, outcome: &mut Outcome) -> Result<(), Unflown> {
+        outcome.limited = output.limited();
+        outcome.output = match output {
+            LawOutput::Forces(step) => Output::Forces(step.forces_n),
+            LawOutput::Command(step) => {
+                Output::Wrench(self.craft.actuation.wrench(&step.command, &self.state.body_rates_rad_s)?)
+            }
+        };
         Ok(())
     }
-
-    /// Steps a law of the paper on a reference that has to be made.
-    #[inline(never)]
-    fn through_rates(&self, table: &Table, outcome: &mut Outcome) -> Result<(), Unflown> {
-        self.follow(table, &Reference::from_flat_at(&self.sample.flat, self.heading)?, outcome)
-    }
-}
-
-/// The gyroscope's readings come in here; the thrust has been looked at.
-#[inline]
-pub(super) fn is_finite(wrench: &Wrench) -> bool {
-    let torque = &wrench.torque_n_m;
-    (torque.x + torque.y + torque.z).abs() <= f32::MAX
 }

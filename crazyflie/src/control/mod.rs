@@ -9,14 +9,13 @@ mod law_step;
 mod outcome;
 mod power_on;
 
-use quatrack::law::ActuatorMemory;
 use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
-use quatrack::{Command, FifthOrderSample, Heading, MotorForces, Quaternion, Reference, RigidState, State};
+use quatrack::{Command, FifthOrderSample, Handover, Heading, Memory, Quaternion, Reference, RigidState, State};
 
 pub use self::chores::Chore;
 use self::chores::Chores;
-use self::law_step::{LawStep, Unflown, is_finite};
+use self::law_step::{LawStep, Unflown};
 pub use self::outcome::{Counters, Mode, Outcome, Settings};
 pub(crate) use self::power_on::CONTROLLER;
 use crate::abi;
@@ -26,7 +25,7 @@ use crate::edge;
 use crate::guide::{Along, Guide};
 use crate::output::Output;
 use crate::stream::{Arrival, GAP_MAX_MS, Stream};
-use crate::tables::{Gains, Table};
+use crate::tables::Table;
 use crate::turning::Turning;
 
 /// Control steps that a change of the table takes: a quarter of a second.
@@ -58,7 +57,7 @@ pub struct Controller {
     settings: Settings,
     outcome: Outcome,
     last_step: u32,
-    fade_left: u16,
+    is_handing_over: bool,
     counters: Counters,
     mode: Mode,
     /// The flight goes along the stream.
@@ -71,18 +70,17 @@ pub struct Controller {
     is_blind: bool,
     chores: Chores,
     craft: Craft,
-    memory: ActuatorMemory,
+    memory: Memory,
     table: Table,
-    /// The table on its way out and its memory, for as many steps as the fade still takes.
+    /// The table on its way out, and how far it is.
     before: Table,
-    memory_before: ActuatorMemory,
+    handover: Handover,
 }
 
 impl Controller {
     /// For a craft, with motors off.
     pub const fn new(craft: Craft, table: Table, settings: Settings) -> Self {
         const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
-        let (output, limited) = (Output::OFF, MotorLimited::NOTHING);
         Self {
             setpoint: abi::Setpoint::OFF,
             stream: Stream::new(),
@@ -95,9 +93,9 @@ impl Controller {
             turning: Turning::new(),
             guide: Guide::new(PERIOD_S),
             settings,
-            outcome: Outcome { output, limited, target: Quaternion::IDENTITY, error_m: ZERO },
+            outcome: Outcome::OFF,
             last_step: 0,
-            fade_left: 0,
+            is_handing_over: false,
             counters: Counters { bad_states: 0, bad_setpoints: 0, limited_steps: 0, jumps: 0 },
             mode: Mode::NoCraft,
             is_along: false,
@@ -106,10 +104,10 @@ impl Controller {
             is_blind: false,
             chores: Chores::new(),
             craft,
-            memory: ActuatorMemory::at_rest(),
+            memory: Memory::at_rest(),
             table,
             before: table,
-            memory_before: ActuatorMemory::at_rest(),
+            handover: Handover::OVER,
         }
     }
 
@@ -235,7 +233,7 @@ impl Controller {
     /// Whether a law that is flown takes snap and crackle.
     #[inline(always)]
     fn looks_beyond_jerk(&self) -> bool {
-        matches!(self.table.gains, Gains::ActuatorAware(_)) || self.fade_left > 0
+        self.table.gain.gives_forces() || self.is_handing_over
     }
 
     /// Between control steps: makes the reference of the next one for the paper's laws along a trajectory. It takes nothing
@@ -243,7 +241,7 @@ impl Controller {
     #[inline]
     pub fn prepare(&mut self, state: &abi::State, next_step: u32) {
         let Some(flight) = self.flight.as_ref().filter(|_| self.is_along && !self.looks_beyond_jerk()) else { return };
-        let mass_kg = self.craft.airframe.figures().mass_kg;
+        let mass_kg = self.craft.airframe().figures().mass_kg;
         let (stream, turning) = (&self.stream, &self.turning);
         let along = Along { flight, stream, turning, now_ms: next_step, to_fifth: false, mass_kg };
         self.heading = along.put(&edge::state(state), &self.settings.bounds, &mut self.sample);
@@ -263,8 +261,8 @@ impl Controller {
     #[cold]
     #[inline(never)]
     fn restart(&mut self) {
-        self.memory = ActuatorMemory::hovering(&self.craft.airframe);
-        (self.flight, self.is_along, self.fade_left) = (None, false, 0);
+        self.memory = Memory::hovering(self.craft.airframe());
+        (self.flight, self.is_along, self.is_handing_over) = (None, false, false);
         (self.is_blind, self.is_selected) = (false, false);
         self.prepared_for = None;
     }
@@ -279,10 +277,10 @@ impl Controller {
     fn take(&mut self, setpoint: &abi::Setpoint, state: &State, now_ms: u32) {
         self.setpoint = *setpoint;
         (self.prepared_for, self.is_turn_due) = (None, false);
-        let thrust_max_n = 4.0 * self.craft.airframe.figures().force_max_n;
+        let thrust_max_n = 4.0 * self.craft.airframe().figures().force_max_n;
         let flight = match edge::demand(setpoint, thrust_max_n) {
             Some(Demand::Off) => {
-                (self.flight, self.is_along, self.fade_left, self.mode) = (None, false, 0, Mode::Off);
+                (self.flight, self.is_along, self.is_handing_over, self.mode) = (None, false, false, Mode::Off);
                 self.memory.clear_integral();
                 return;
             }
@@ -326,7 +324,7 @@ impl Controller {
         let reference = self.prepared.as_ref().filter(|_| self.prepared_for == Some(now_ms));
         if reference.is_none() {
             let to_fifth = self.looks_beyond_jerk();
-            let mass_kg = self.craft.airframe.figures().mass_kg;
+            let mass_kg = self.craft.airframe().figures().mass_kg;
             let (stream, turning) = (&self.stream, &self.turning);
             let along = Along { flight, stream, turning, now_ms, to_fifth, mass_kg };
             self.heading = self.guide.put(&along, &state.state, &self.settings.bounds, &mut self.sample);
@@ -338,42 +336,32 @@ impl Controller {
             let (craft, settings, sample, heading) = (&self.craft, &self.settings, &self.sample, self.heading);
             let law_step = LawStep { craft, settings, sample, heading, state };
             if let Some(reference) = reference {
-                return law_step.follow(&self.table, reference, &mut self.outcome);
+                return law_step.follow(&self.table, reference, &mut self.memory, &mut self.outcome);
             }
-            match law_step.step(&self.table, &mut self.memory, &mut self.outcome) {
+            let step = if self.is_handing_over {
+                let step = law_step.hand_over(
+                    &mut self.handover,
+                    (&self.before, &self.table),
+                    &mut self.memory,
+                    &mut self.outcome,
+                );
+                self.is_handing_over = !self.handover.is_over();
+                step
+            } else {
+                law_step.step(&self.table, &mut self.memory, &mut self.outcome)
+            };
+            match step {
                 Err(Unflown::Motion) if !is_upright => make_upright(&mut self.sample),
-                Err(unflown) => return Err(unflown),
-                Ok(()) => break,
+                other => return other,
             }
             is_upright = true;
         }
-        if self.fade_left > 0 { self.mix_in_the_one_before(state) } else { Ok(()) }
-    }
-
-    /// Both laws, their forces mixed in changing shares.
-    #[cold]
-    #[inline(never)]
-    fn mix_in_the_one_before(&mut self, state: &RigidState) -> Result<(), Unflown> {
-        self.fade_left -= 1;
-        let (craft, settings, sample, heading) = (&self.craft, &self.settings, &self.sample, self.heading);
-        let law_step = LawStep { craft, settings, sample, heading, state };
-        let mut before = self.outcome;
-        // Where only the old law has no answer, the new one's counts at once.
-        if law_step.step_beside(&self.before, &mut self.memory_before, &mut before).is_err() {
-            self.fade_left = 0;
-        }
-        if self.fade_left > 0 {
-            let share = f32::from(self.fade_left) / f32::from(FADE_STEPS);
-            let (from, to) = (before.output.forces_n(&self.craft), self.outcome.output.forces_n(&self.craft));
-            self.outcome.output = Output::Forces(between(to, from, share));
-        }
-        Ok(())
     }
 
     /// Manual flight by body rates: the same under every table.
     #[inline(never)]
     fn turn(&mut self, [p, q]: [f32; 2], state: &RigidState) -> Result<(), Unflown> {
-        let mass_kg = self.craft.airframe.figures().mass_kg;
+        let mass_kg = self.craft.airframe().figures().mass_kg;
         let (vertical, turn) = match &self.flight {
             Some(flight) => (flight.vertical, flight.turn),
             None => return Ok(()),
@@ -389,15 +377,15 @@ impl Controller {
         };
         let command = Command { thrust_m_s2, body_rates_rad_s: Vector3::new(p, q, r) };
         let wrench = self.settings.limits.saturate(&command).map(|(command, limited)| {
-            self.outcome.limited = MotorLimited::from_bits(u16::from(limited.bits()) << 8);
-            self.craft.body_rates.wrench(&command, &state.body_rates_rad_s)
+            self.outcome.limited = MotorLimited::of_command(limited);
+            self.craft.actuation.wrench(&command, &state.body_rates_rad_s)
         });
-        match wrench.filter(is_finite) {
-            Some(wrench) => {
+        match wrench {
+            Some(Ok(wrench)) => {
                 self.outcome.output = Output::Wrench(wrench);
                 Ok(())
             }
-            None => Err(Unflown::State),
+            _ => Err(Unflown::State),
         }
     }
 
@@ -414,11 +402,16 @@ impl Controller {
     pub fn change_table(&mut self, table: &Table) {
         if self.flight.is_some() {
             self.before = self.table;
-            (self.memory_before, self.fade_left) = (self.memory, FADE_STEPS);
-            if !matches!(self.before.gains, Gains::ActuatorAware(_)) {
-                // A law that does not know of the motors has not kept it.
-                self.memory = ActuatorMemory::hovering(&self.craft.airframe);
+            if !self.before.gain.gives_forces() {
+                // The firmware's mixer has carried its commands to the motors: what they have by now nobody has kept.
+                self.memory.assume_hovering(self.craft.airframe());
             }
+            let Settings { limits, feed_forward, .. } = self.settings;
+            let laws = (self.before.controller(limits, feed_forward), table.controller(limits, feed_forward));
+            if let (Ok(old), Ok(new)) = laws {
+                self.handover = Handover::begin(FADE_STEPS, old.law(), new.law(), &mut self.memory);
+            }
+            self.is_handing_over = !self.handover.is_over();
         }
         self.table = *table;
         self.prepared_for = None;
@@ -428,7 +421,7 @@ impl Controller {
     #[inline(never)]
     pub fn change_craft(&mut self, craft: &Craft) {
         self.craft = *craft;
-        (self.flight, self.is_along, self.fade_left) = (None, false, 0);
+        (self.flight, self.is_along, self.is_handing_over) = (None, false, false);
         (self.mode, self.is_selected) = (Mode::Off, true);
         self.counters = Counters::default();
     }
@@ -437,7 +430,7 @@ impl Controller {
     #[inline(never)]
     pub fn set(&mut self, settings: &Settings, craft: &Craft) {
         self.settings = *settings;
-        self.craft.body_rates = craft.body_rates;
+        self.craft.actuation = craft.actuation;
     }
 
     /// How the last setpoint is flown.
@@ -475,9 +468,4 @@ fn make_upright(sample: &mut FifthOrderSample) {
     let mut upright = FifthOrderSample::at_rest(flat.position_m, 0.0);
     upright.flat.velocity_m_s = flat.velocity_m_s;
     *sample = upright;
-}
-
-/// `share` of the way from one to another.
-fn between([a1, a2, a3, a4]: MotorForces, [b1, b2, b3, b4]: MotorForces, share: f32) -> MotorForces {
-    [a1 + (b1 - a1) * share, a2 + (b2 - a2) * share, a3 + (b3 - a3) * share, a4 + (b4 - a4) * share]
 }

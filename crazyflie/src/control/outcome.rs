@@ -60,3 +60,13 @@ pub struct Outcome {
     /// Measured position less asked, world frame, m.
     pub error_m: Vector3<f32>,
 }
+
+impl Outcome {
+    /// Motors off.
+    pub(super) const OFF: Self = Self {
+        output: Output::OFF,
+        limited: MotorLimited::NOTHING,
+        target: Quaternion::IDENTITY,
+        error_m: Vector3::new(0.0, 0.0, 0.0),
+    };
+}

@@ -30,8 +30,8 @@ mod image {
     use quatrack::link::{LawChoice, LimitsSetting, StateIn, Table, TrajectoryId};
     use quatrack::nalgebra::Vector3;
     use quatrack::{
-        Command, Equilibrium, ErrorForm, FeedForward, Piece, Player, Quaternion, Reference, ReferenceError, State,
-        Step, Tick, Tracker, Trajectory,
+        Actuation, Airframe, Command, Controller, Equilibrium, ErrorForm, FeedForward, Measured, Memory, Piece, Player,
+        Quaternion, Rate, Reference, ReferenceError, State, Step, Target, Tick, Trajectory,
     };
     use quatrack_firmware::counter::Counter;
     use quatrack_firmware::craft::NoCraft;
@@ -95,6 +95,8 @@ mod image {
             *row = read_words(&mut states)?.map(f32::from_bits);
         }
         let dense_to_motors = ActuatorAwareGain::new(rows).ok()?;
+        let step_rate = Rate::from_hz(TICK_RATE.hz() / TICKS_PER_STEP)?;
+        let actuation = Actuation::new(&Airframe::CRAZYFLIE_2_1.commanded_at(step_rate), step_rate).ok()?;
         let flight = Flight::new(store, None);
         let mut bench = Bench { counter, overhead, timing: Timing::new(1), flight, dense, limits, states, counts };
         bench.timing.set_decimation(1);
@@ -106,7 +108,7 @@ mod image {
                 }
             };
             if controller == TO_MOTORS {
-                let mut motors = Motors::new(&dense_to_motors, stored, septic)?;
+                let mut motors = Motors::new(&dense_to_motors, &actuation, stored, septic)?;
                 (0..steps).try_for_each(|step| motors.step(&mut bench, step))?;
                 continue;
             }
@@ -189,14 +191,14 @@ mod image {
         fn fly_recorded(&mut self, course: &Course, table: Table, steps: u32) -> Option<()> {
             let law = LawChoice { error_form: ErrorForm::Paper, ..LawChoice::new(table) };
             let [limits, ..] = self.limits;
-            let tracker = black_box(Tracker::new(law.built_in()?, limits.check().ok()?));
+            let controller = black_box(Controller::new(law.built_in()?, limits.check().ok()?));
             let mut player = Player::new(course.stored, TICK_RATE);
             self.take_off(course, law, limits)?;
             for step in 0..steps {
                 let state = black_box(self.read_state()?);
                 let (of_reference, reference) = self.reference(&mut player, step * TICKS_PER_STEP)?;
                 let mut calls = Calls::NONE;
-                let expected = self.law(&mut calls, &tracker, &state, &reference)?;
+                let expected = self.law(&mut calls, &controller, &state, &reference)?;
                 let of_tick = self.tick(step, state, &expected)?;
                 self.write(of_reference, &calls, of_tick)?;
             }
@@ -225,16 +227,18 @@ mod image {
                             Some(table) => LawChoice { feed_forward, ..LawChoice::new(table) }.built_in()?,
                             None => Equilibrium { feed_forward, ..Equilibrium::new(&dense) }.into(),
                         };
-                        let tracker = black_box(Tracker::new(law, limits.check().ok()?));
-                        self.law(&mut calls, &tracker, &state, &reference)?;
+                        let controller = black_box(Controller::new(law, limits.check().ok()?));
+                        self.law(&mut calls, &controller, &state, &reference)?;
                     }
                 }
                 let mut of_tick = 0;
                 if let Some(table) = table {
-                    let tracker = Tracker::new(worst(table).built_in()?, last.check().ok()?);
+                    let controller = Controller::new(worst(table).built_in()?, last.check().ok()?);
                     let reference = stored.reference(step * TICKS_PER_STEP).ok()?;
                     let state = State { attitude: sign(recorded.attitude), ..recorded };
-                    of_tick = self.tick(step, state, &tracker.step(&state, &reference).ok()?)?;
+                    let memory = &mut Memory::at_rest();
+                    let output = controller.step(memory, Measured::new(&state), Target::new(&reference)).ok()?;
+                    of_tick = self.tick(step, state, output.command()?)?;
                 }
                 self.write(of_reference, &calls, of_tick)?;
             }
@@ -259,11 +263,18 @@ mod image {
         }
 
         /// One step of the law with validation, sign handling and saturation: a call of the core's own function.
-        fn law(&self, calls: &mut Calls, tracker: &Tracker<'_>, state: &State, reference: &Reference) -> Option<Step> {
+        fn law(
+            &self,
+            calls: &mut Calls,
+            controller: &Controller<'_>,
+            state: &State,
+            reference: &Reference,
+        ) -> Option<Step> {
+            let memory = &mut Memory::at_rest();
             let start = self.counter.now();
-            let step = tracker.step(state, reference);
+            let output = controller.step(memory, Measured::new(state), Target::new(reference));
             let count = self.since(start);
-            let step = black_box(step.ok()?);
+            let step = *black_box(&output).as_ref().ok()?.command()?;
             calls.add(count);
             calls.hash = hashed(calls.hash, words(&step.command));
             Some(step)

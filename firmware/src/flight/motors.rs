@@ -1,58 +1,115 @@
-//! A flight down to its motors: body rates, and the law's command or the newest state, in; gated motor forces and their
-//! answers out.
+//! A flight down to its motors: body rates beside the newest state in; gated motor forces out.
 
 use quatrack::body_rate::BandwidthError;
-use quatrack::link::{ForcesOut, FromBoard, NoCommand};
+use quatrack::gains::table::AcceptedTable;
+use quatrack::link::{NoCommand, Table};
 use quatrack::nalgebra::Vector3;
-use quatrack::supervisor::Mode;
-use quatrack::{MotorForces, RigidState, State, Step, Tick};
+use quatrack::{
+    Actuation, ActuatorAware, BodyRateLoop, Controller, Measured, Memory, MotorForces, Output, Settings, State,
+    StepError, Target, Tick,
+};
 
-use crate::control::ReferenceSource as _;
 use crate::craft::BodyRates;
 use crate::drivers::battery::CellVoltage;
-use crate::motor_control::{MotorControl, STOPPED};
+use crate::laws::Laws;
 use crate::playback::Playback;
+use crate::vehicle::{ACTUATION, AIRFRAME, STOPPED};
 
-/// What carries the law to the motors, and what comes of it.
+/// The table in the image.
+pub mod table {
+    include!("../../../gains/generated/actuator-aware.rs");
+}
+
+static TO_MOTORS: Actuation = ACTUATION;
+
+/// The board's ways to its motors: its own, and that of each slot's table, which may reckon with another motor lag.
+pub struct Actuations {
+    board: Actuation,
+    of_slots: [Actuation; 2],
+    bandwidth_rad_s: [f32; 3],
+}
+
+impl Actuations {
+    /// The craft's own, with the body-rate loop that fits its motors' lag.
+    #[inline(always)]
+    pub(crate) const fn new() -> Self {
+        let bandwidth_rad_s = [0.5 / AIRFRAME.figures().motor_lag_s; 3];
+        Self { board: ACTUATION, of_slots: [ACTUATION; 2], bandwidth_rad_s }
+    }
+
+    /// Bandwidth of the body-rate loop, rad/s.
+    pub const fn bandwidth_rad_s(&self) -> [f32; 3] {
+        self.bandwidth_rad_s
+    }
+
+    /// Sets it.
+    ///
+    /// # Errors
+    /// As [`BodyRateLoop::new`]; what was set stays.
+    #[cold]
+    pub fn set_bandwidth(&mut self, bandwidth_rad_s: [f32; 3]) -> Result<(), BandwidthError> {
+        let body_rates = BodyRateLoop::new(&AIRFRAME, bandwidth_rad_s)?;
+        self.bandwidth_rad_s = bandwidth_rad_s;
+        for actuation in self.of_slots.iter_mut().chain([&mut self.board]) {
+            *actuation = actuation.with_body_rates(body_rates);
+        }
+        Ok(())
+    }
+
+    /// A table has been put to use: it is in slot 0, and what was there in slot 1.
+    pub(crate) fn load(&mut self, table: &AcceptedTable<'_>) {
+        let [in_use, _] = self.of_slots;
+        self.of_slots = [table.actuation(&self.board), in_use];
+    }
+
+    /// That of a table.
+    #[inline]
+    pub(crate) const fn of(&self, table: Table) -> Option<&Actuation> {
+        let [in_use, before] = &self.of_slots;
+        Some(match table {
+            Table::Loaded(0) => in_use,
+            Table::Loaded(_) => before,
+            _ => &self.board,
+        })
+    }
+}
+
+/// The law of motor forces in the image, for steps at [`crate::vehicle::STEP_RATE`].
+pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> =
+    Some(ActuatorAware::new(&table::ACTUATOR_AWARE, &TO_MOTORS));
+
+/// What is known of the motors, and what comes of a step for them.
 pub struct ToMotors {
-    control: MotorControl,
     battery: CellVoltage,
-    /// The actuator-aware law is flown, straight to the forces.
-    is_straight: bool,
     /// Body rates that came with the newest state, rad/s.
     sent_rad_s: Option<Vector3<f32>>,
     /// The forces that pass, N.
     passed_n: MotorForces,
-    /// The last step and its result, and whether it is that which answers the state.
-    answer: ForcesOut,
-    answers: bool,
+    /// The last step had body rates, or should have had: forces answer the state.
+    answers_by_forces: bool,
 }
 
-/// What a step is taken on.
-pub(super) struct StepInput<'a> {
-    /// The board's tick, that of the state, and that of the reference.
-    pub(super) now: Tick,
-    pub(super) state_tick: Tick,
-    pub(super) reference_tick: Tick,
-    pub(super) mode: Mode,
-    pub(super) rates: BodyRates,
-    pub(super) state: Option<&'a State>,
-    /// Of the law that gives one.
-    pub(super) command: &'a Result<Step, NoCommand>,
+/// A step of any law.
+#[inline(always)]
+pub(crate) fn step(
+    controller: &Controller<'_>,
+    memory: &mut Memory,
+    measured: Measured<'_>,
+    target: Target<'_>,
+) -> Result<Output, StepError> {
+    controller.step(memory, measured, target)
+}
+
+/// The controller of a loaded table.
+#[inline]
+pub(crate) fn loaded<'t>(table: &AcceptedTable<'t>, settings: &Settings<'t>) -> Option<Controller<'t>> {
+    table.controller(settings).ok()
 }
 
 impl ToMotors {
     /// Motors off.
     pub(super) const fn new() -> Self {
-        Self {
-            control: MotorControl::new(),
-            battery: CellVoltage::NOMINAL,
-            is_straight: false,
-            sent_rad_s: None,
-            passed_n: STOPPED,
-            answer: ForcesOut { tick: 0, state_tick: 0, result: Err(NoCommand::NoReference) },
-            answers: false,
-        }
+        Self { battery: CellVoltage::NOMINAL, sent_rad_s: None, passed_n: STOPPED, answers_by_forces: false }
     }
 
     /// What the duties are reckoned with.
@@ -65,38 +122,9 @@ impl ToMotors {
         self.battery = battery;
     }
 
-    /// Bandwidth of the body-rate loop, rad/s.
-    pub const fn bandwidth_rad_s(&self) -> [f32; 3] {
-        self.control.bandwidth_rad_s()
-    }
-
-    /// Sets it.
-    ///
-    /// # Errors
-    /// As [`MotorControl::set_bandwidth`].
-    pub fn set_bandwidth(&mut self, bandwidth_rad_s: [f32; 3]) -> Result<(), BandwidthError> {
-        self.control.set_bandwidth(bandwidth_rad_s)
-    }
-
     /// The forces that pass, N.
     pub const fn forces_n(&self) -> &MotorForces {
         &self.passed_n
-    }
-
-    /// Flies the actuator-aware law from the next step on, if the steps come at its rate; whether it is flown.
-    pub(super) fn go_straight(&mut self, is_its_rate: bool) -> bool {
-        self.is_straight |= is_its_rate;
-        self.is_straight
-    }
-
-    /// Flies a law that gives commands.
-    pub(super) fn follow_commands(&mut self) {
-        self.is_straight = false;
-    }
-
-    #[inline]
-    pub(super) const fn is_straight(&self) -> bool {
-        self.is_straight
     }
 
     /// Takes what came with a state.
@@ -105,56 +133,64 @@ impl ToMotors {
         self.sent_rad_s = body_rates_rad_s;
     }
 
-    /// Before a flight.
-    pub(super) fn begin(&mut self) {
-        self.control.begin();
-    }
-
-    /// Carries the command to the motors, or steps the law that goes there straight, if there are body rates or should be.
-    /// The gyroscope's count before those that came with the state.
+    /// Looks at whether there are body rates, or should be: forces then answer the state, or why there are none.
     #[inline]
-    pub(super) fn step(&mut self, input: &StepInput<'_>, playback: &mut Playback) {
-        self.answers = self.sent_rad_s.is_some() || input.rates != BodyRates::NoGyroscope;
-        if self.answers {
-            self.step_on_rates(input, playback);
-        }
+    pub(super) fn look_at(&mut self, rates: BodyRates) {
+        self.answers_by_forces = self.sent_rad_s.is_some() || rates != BodyRates::NoGyroscope;
     }
 
-    #[inline(never)]
-    fn step_on_rates(&mut self, input: &StepInput<'_>, playback: &mut Playback) {
-        let rates = match input.rates {
+    /// A step, down to the motors if there are body rates or should be. The gyroscope's count before those that came with the
+    /// state.
+    #[inline]
+    pub(super) fn step(
+        &mut self,
+        laws: &mut Laws,
+        playback: &mut Playback,
+        tick: Tick,
+        state: Option<&State>,
+        rates: BodyRates,
+    ) -> Result<Output, NoCommand> {
+        let Some(state) = state else { return Err(NoCommand::NoReference) };
+        let rates = match rates {
             BodyRates::Measured(rates) => Some(rates),
             BodyRates::NoGyroscope => self.sent_rad_s,
             BodyRates::Failed => None,
         };
-        let result = match (input.state, rates) {
-            _ if !input.mode.motors_allowed() => Err(NoCommand::Mode(input.mode)),
-            (None, _) => Err(NoCommand::NoReference),
-            (Some(_), None) => Err(NoCommand::NoBodyRates),
-            (Some(_), Some(rates)) if !self.is_straight => {
-                input.command.and_then(|step| self.control.carry(&step, &rates).map_err(NoCommand::Step))
-            }
-            (Some(_), _) if !playback.is_there() => Err(NoCommand::NoReference),
-            (Some(state), Some(rates)) => {
-                let state = RigidState { state: *state, body_rates_rad_s: rates };
-                self.control.step(input.reference_tick, &state, playback)
+        if rates.is_none() && (self.answers_by_forces || laws.follows_forces()) {
+            return Err(NoCommand::NoBodyRates);
+        }
+        if !playback.is_there() {
+            return Err(NoCommand::NoReference);
+        }
+        let measured = match &rates {
+            Some(rates) => Measured::new(state).with_body_rates(rates),
+            None => Measured::new(state),
+        };
+        let output = if laws.follows_forces() {
+            let airframe = laws.airframe().ok_or(NoCommand::Step(StepError::NoActuation))?;
+            let reference = playback.motor_reference(tick, airframe).map_err(NoCommand::Reference)?;
+            laws.step(measured, Target::with_forces(&reference).at(playback.progress()))
+        } else {
+            // Looked at where it lies: to move a reference out costs as many instructions as the product with a gain.
+            match &playback.reference(tick) {
+                Ok(reference) => laws.step(measured, Target::new(reference).at(playback.progress())),
+                Err(error) => return Err(NoCommand::Reference(*error)),
             }
         };
-        self.answer = ForcesOut { tick: input.now, state_tick: input.state_tick, result };
-    }
-
-    /// Why the step has nothing to pass, if so.
-    #[inline]
-    pub(super) fn refusal<'a>(&'a self, command: &'a Result<Step, NoCommand>) -> Option<&'a NoCommand> {
-        if self.answers { self.answer.result.as_ref().err() } else { command.as_ref().err() }
+        let output = output.map_err(NoCommand::Step)?;
+        if self.answers_by_forces {
+            laws.carry(&output, measured).map(Output::Forces).map_err(NoCommand::Step)
+        } else {
+            Ok(output)
+        }
     }
 
     /// Passes what the step gave.
     #[inline]
-    pub(super) fn pass(&mut self) {
-        self.passed_n = match &self.answer.result {
-            Ok(step) if self.answers => step.forces_n,
-            _ => STOPPED,
+    pub(super) fn pass(&mut self, output: &Output) {
+        self.passed_n = match output {
+            Output::Forces(step) => step.forces_n,
+            Output::Command(_) => STOPPED,
         };
     }
 
@@ -164,15 +200,9 @@ impl ToMotors {
         self.passed_n = STOPPED;
     }
 
-    /// Takes back what a step gave in a mode that lets it not pass.
-    pub(super) fn withdraw(&mut self, mode: Mode) {
-        if self.answer.result.is_ok() {
-            self.answer.result = Err(NoCommand::Mode(mode));
-        }
-    }
-
-    /// The answer, if the state is answered by forces.
-    pub(super) fn message(&self) -> Option<FromBoard> {
-        self.answers.then_some(FromBoard::Forces(self.answer))
+    /// Whether the last step's state is answered by forces.
+    #[inline]
+    pub(super) const fn answers_by_forces(&self) -> bool {
+        self.answers_by_forces
     }
 }

@@ -4,10 +4,13 @@
 use quatrack::{Airframe, FifthOrderSample, MotorReference, Player, ReferenceError, Tick};
 
 use super::{NOWHERE, Playback, Source};
-use crate::motor_control::MotorReferenceSource;
 
-impl MotorReferenceSource for Playback {
-    fn motor_reference(&mut self, now: Tick, airframe: &Airframe) -> Result<MotorReference, ReferenceError> {
+impl Playback {
+    /// The reference at a tick of the clock, down to the motor forces of a craft.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] where it cannot be flown.
+    pub fn motor_reference(&mut self, now: Tick, airframe: &Airframe) -> Result<MotorReference, ReferenceError> {
         let tick = self.trajectory_tick(now);
         let sample = match &mut self.source {
             Source::Flash(player) if self.moving => return player.motor_reference(tick, airframe),

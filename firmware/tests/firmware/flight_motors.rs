@@ -10,18 +10,18 @@ use quatrack::link::{ForcesOut, FromBoard, LawChoice, NoCommand, RigidStateIn, S
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{Fault, Mode, StopReason};
 use quatrack::{
-    ActuatorAware, ActuatorMemory, BodyRateLoop, ByBodyRates, Equilibrium, Limits, MotorForces, MotorLag, MotorLaw,
-    MotorTracker, Rate, RigidState, State, StateError, StepError, Tick,
+    Actuation, ActuatorAware, Controller, Equilibrium, Handover, Limits, Memory, MotorForces, Output, RigidState,
+    State, StateError, StepError, Target, Tick,
 };
 use quatrack_firmware::craft::{BoardCraft, BodyRates, Craft};
 use quatrack_firmware::drivers::battery::CellVoltage;
 use quatrack_firmware::drivers::bmi088::{Address, Bandwidth, Gyro, Range};
 use quatrack_firmware::drivers::motors::Motors;
 use quatrack_firmware::drivers::thrust_curve::ThrustCurve;
-use quatrack_firmware::flight::{CONFIG, Flight, LOCK_STEP};
-use quatrack_firmware::laws::Refused;
-use quatrack_firmware::motor_control::{AIRFRAME, table};
+use quatrack_firmware::flight::{CONFIG, Flight, LOCK_STEP, table};
+use quatrack_firmware::laws::{FADE_STEPS, Refused};
 use quatrack_firmware::stored;
+use quatrack_firmware::vehicle::{ACTUATION, AIRFRAME};
 
 const LAWS: [Table; 2] = [Table::LqrE, Table::ActuatorAware];
 const NONE: MotorForces = [0.0; 4];
@@ -68,28 +68,22 @@ fn stopped(flight: &Flight) -> Option<StopReason> {
     }
 }
 
+static ON_THE_CRAFT: Actuation = ACTUATION;
+
 /// The same law in the core, down to the motors.
-fn core(table: Table, limits: Limits) -> MotorTracker<'static> {
-    let rate = Rate::from_hz(500).unwrap();
-    let law = match table {
-        Table::ActuatorAware => {
-            MotorLaw::ActuatorAware(ActuatorAware::new(&table::ACTUATOR_AWARE, &AIRFRAME, rate).unwrap())
-        }
-        _ => MotorLaw::BodyRates(ByBodyRates {
-            tracker: quatrack::Tracker::new(Equilibrium::new(&paper::LQR_E), limits),
-            body_rates: BodyRateLoop::behind_lag(&AIRFRAME),
-            lag: MotorLag::new(AIRFRAME.figures().motor_lag_s, rate).unwrap(),
-        }),
-    };
-    MotorTracker::new(law, &AIRFRAME)
+fn core(table: Table, limits: Limits) -> Controller<'static> {
+    match table {
+        Table::ActuatorAware => Controller::new(ActuatorAware::new(&table::ACTUATOR_AWARE, &ON_THE_CRAFT), limits),
+        _ => Controller::new(Equilibrium::new(&paper::LQR_E), limits).with_actuation(&ON_THE_CRAFT),
+    }
 }
 
 #[test]
 fn forces_are_the_cores_to_the_bit() {
     for table in LAWS {
         let mut flight = flying(table, 100);
-        let tracker = core(table, flight.limits().check().unwrap());
-        let mut memory = ActuatorMemory::at_rest();
+        let controller = core(table, flight.limits().check().unwrap());
+        let mut memory = Memory::at_rest();
         let mut player = stored::player(TrajectoryId::Mild).unwrap();
         for step in 0..200 {
             let now = 100 + 2 * Tick::from(step);
@@ -99,7 +93,8 @@ fn forces_are_the_cores_to_the_bit() {
                 flight.step(now, false, BodyRates::NoGyroscope);
             }
             let reference = player.motor_reference(now - 100, &AIRFRAME).unwrap();
-            let expected = tracker.step(&mut memory, &state(step), &reference).unwrap();
+            let measured = state(step);
+            let expected = controller.step_to_motors(&mut memory, (&measured).into(), (&reference).into()).unwrap();
             let found = answered(&mut flight).result.unwrap();
             assert_eq!(found.forces_n.map(f32::to_bits), expected.forces_n.map(f32::to_bits), "{table:?}, step {step}");
             assert_eq!(found.limited, expected.limited);
@@ -109,18 +104,30 @@ fn forces_are_the_cores_to_the_bit() {
 }
 
 #[test]
-fn a_law_that_takes_over_in_flight_knows_the_motors() {
+fn a_law_that_takes_over_in_flight_knows_the_motors_and_comes_in_parts() {
     let mut flight = flying(Table::LqrE, 0);
     let first = *flight.forces_n();
     flight.select(LawChoice::new(Table::ActuatorAware)).expect("it is in flash");
-    flight.step(2, false, BodyRates::NoGyroscope);
-    // As the core has it: the forces that the lag gives after one step of the first law, from motors at rest.
-    let lag = MotorLag::new(AIRFRAME.figures().motor_lag_s, Rate::from_hz(500).unwrap()).unwrap();
-    let mut memory = ActuatorMemory::new(lag.next(&NONE, &first)).unwrap();
-    let reference = stored::player(TrajectoryId::Mild).unwrap().motor_reference(2, &AIRFRAME).unwrap();
+    // As the core has it: from the forces that the lag gives after one step of the first law, from motors at rest.
+    let mut memory = Memory::new(ACTUATION.lag().next(&NONE, &first)).unwrap();
     let limits = flight.limits().check().unwrap();
-    let expected = core(Table::ActuatorAware, limits).step(&mut memory, &state(0), &reference).unwrap();
-    assert_eq!(flight.forces_n(), &expected.forces_n);
+    let (old, new) = (core(Table::LqrE, limits), core(Table::ActuatorAware, limits));
+    let mut way = Handover::begin(FADE_STEPS, old.law(), new.law(), &mut memory);
+    let mut player = stored::player(TrajectoryId::Mild).unwrap();
+    let measured = state(0);
+    for step in 1..=FADE_STEPS + 5 {
+        let tick = 2 * Tick::from(step);
+        flight.hear(tick);
+        flight.accept_rigid(RigidStateIn { tick, state: measured }, tick);
+        flight.step(tick, false, BodyRates::NoGyroscope);
+        let reference = player.motor_reference(tick, &AIRFRAME).unwrap();
+        let target = Target::with_forces(&reference);
+        let Ok(Output::Forces(expected)) = way.step((&old, &new), &mut memory, (&measured).into(), target) else {
+            panic!("step {step}: no forces");
+        };
+        assert_eq!(flight.forces_n(), &expected.forces_n, "step {step}");
+    }
+    assert!(way.is_over());
 }
 
 #[test]

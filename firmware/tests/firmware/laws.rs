@@ -1,22 +1,22 @@
 //! The law in force: what changes it, and what a change leaves alone.
 
 use quatrack::gains::paper;
-use quatrack::gains::table::{AcceptedTable, Certificate, GainTable, Hash, Margins, Name, Rows, TableHead};
+use quatrack::gains::table::{Certificate, GainTable, Hash, Margins, Name, Rows, TableHead};
 use quatrack::link::{LawChoice, StateIn, Table, TrajectoryId};
 use quatrack::nalgebra::Vector3;
 use quatrack::{Limits, Rate, State, Tick};
 use quatrack_firmware::craft::BodyRates;
 use quatrack_firmware::flight::{DECIMATION, Flight};
-use quatrack_firmware::laws::{FADE_STEPS, Refused, VEHICLE};
+use quatrack_firmware::laws::{FADE_STEPS, Refused};
 use quatrack_firmware::stored;
+use quatrack_firmware::vehicle::VEHICLE;
 
 /// LYAP-E as a table that the board takes; the figures only have to be possible ones.
-fn table() -> AcceptedTable {
-    let rate = Rate::from_hz(500).unwrap();
+fn table() -> GainTable<'static> {
     let head = TableHead {
         name: Name::literal("lyap-e"),
         vehicle: VEHICLE,
-        rate,
+        rate: rate(),
         limits: Limits::new(1.75, 16.5, Vector3::new(20.0, 20.0, 5.0)).unwrap(),
         design_hash: Hash([1; 32]),
         certificate: Certificate {
@@ -29,7 +29,15 @@ fn table() -> AcceptedTable {
         },
     };
     let rows = Rows::Equilibrium(*paper::LYAP_E.gain().rows());
-    GainTable::new(head, &rows).unwrap().accept_for(&VEHICLE, rate).unwrap()
+    GainTable::new(head, &rows).unwrap()
+}
+
+fn rate() -> Rate {
+    Rate::from_hz(500).unwrap()
+}
+
+fn load(flight: &mut Flight) -> Result<(), Refused> {
+    flight.load(&table().accept_for(&VEHICLE, rate()).unwrap())
 }
 
 fn board() -> Flight {
@@ -49,13 +57,15 @@ fn thrust(flight: &mut Flight, now: Tick) -> f32 {
 #[test]
 fn a_change_in_flight_takes_its_steps_whatever_is_asked_meanwhile() {
     let mut flight = board();
-    flight.load(&table()).unwrap();
+    load(&mut flight).unwrap();
     flight.hear(0);
     flight.arm(0).unwrap();
-    // LQR-E is cut to the most thrust, 16.55 m/s^2; LYAP-E gives 9.81 + 8 * 0.1.
-    assert_eq!(thrust(&mut flight, 1), 16.55);
+    // LQR-E is cut to the most thrust, that of four motors of 0.12 N at 29 g; LYAP-E gives 9.81 + 8 * 0.1.
+    let most = flight.limits().thrust_max_m_s2;
+    assert!((most - 0.48 / 0.029).abs() < 2e-6, "{most}");
+    assert_eq!(thrust(&mut flight, 1), most);
     flight.select(LawChoice::new(Table::Loaded(0))).unwrap();
-    let mut before = 16.55;
+    let mut before = most;
     for step in 1..=u32::from(FADE_STEPS) {
         let now = thrust(&mut flight, 1 + step);
         assert!(now < before && before - now < 0.2, "step {step}: from {before} to {now}");
@@ -64,7 +74,7 @@ fn a_change_in_flight_takes_its_steps_whatever_is_asked_meanwhile() {
             flight.arm(1 + step).expect("it is armed");
             flight.select(LawChoice::new(Table::Loaded(0))).expect("it is chosen");
             assert_eq!(flight.select(LawChoice::new(Table::LqrE)), Err(Refused::Busy));
-            assert_eq!(flight.load(&table()), Err(Refused::Busy));
+            assert_eq!(load(&mut flight), Err(Refused::Busy));
         }
     }
     // 8 1/s^2 times what the reference has climbed in these 50 ms, a few micrometres.
@@ -75,21 +85,21 @@ fn a_change_in_flight_takes_its_steps_whatever_is_asked_meanwhile() {
 fn a_table_that_is_flown_is_not_taken_away() {
     let mut flight = board();
     for _ in 0..2 {
-        flight.load(&table()).unwrap();
+        load(&mut flight).unwrap();
     }
     flight.select(LawChoice::new(Table::Loaded(1))).unwrap();
     flight.hear(0);
     flight.arm(0).unwrap();
-    assert_eq!(flight.load(&table()), Err(Refused::Busy), "it would be the room for the next one");
+    assert_eq!(load(&mut flight), Err(Refused::Busy), "it would be the room for the next one");
     flight.select(LawChoice::new(Table::LqrE)).unwrap();
     flight.disarm();
-    flight.load(&table()).expect("on the ground it is gone from at once");
+    load(&mut flight).expect("on the ground it is gone from at once");
 }
 
 #[test]
 fn tables_go_with_the_rate_that_they_are_certified_at() {
     let mut flight = board();
-    flight.load(&table()).unwrap();
+    load(&mut flight).unwrap();
     flight.select(LawChoice::new(Table::Loaded(0))).unwrap();
     flight.set_decimation(DECIMATION);
     assert_eq!(flight.law().table, Table::Loaded(0), "the same rate");
@@ -99,6 +109,6 @@ fn tables_go_with_the_rate_that_they_are_certified_at() {
         assert_eq!(flight.table_rate().map(Rate::hz), hz);
         assert_eq!(flight.law().table, Table::LqrE);
         assert_eq!(flight.select(LawChoice::new(Table::Loaded(0))), Err(Refused::NoTable));
-        assert!(matches!(flight.load(&table()), Err(Refused::Accept(_))));
+        assert!(matches!(load(&mut flight), Err(Refused::Accept(_))));
     }
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use quatrack::gains::paper;
 use quatrack::nalgebra::Vector3;
 use quatrack::{
-    AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Quaternion, Rate, Reference, State, Tracker,
+    Controller, Equilibrium, ErrorForm, FeedForward, FlatOutput, Law, Limits, Quaternion, Rate, Reference, State,
 };
 use quatrack_design::model::StateVector;
 use quatrack_design::model::flat::FlatSample;
@@ -16,10 +16,11 @@ use quatrack_simulation::flight::closed_loop::{Flight, fly_sampled};
 use quatrack_simulation::flight::core_loop::CoreLoop;
 use quatrack_simulation::flight::metrics::Metrics;
 use quatrack_simulation::flight::reference::Exact;
+use quatrack_tests::core_step::step;
 
 const RATE_HZ: u32 = 500;
 
-fn laws(feed_forward: FeedForward) -> [(&'static str, AnyLaw<'static>); 4] {
+fn laws(feed_forward: FeedForward) -> [(&'static str, Law<'static>); 4] {
     let equilibrium = |gain| Equilibrium { gain, error_form: ErrorForm::HeadingFrame, feed_forward };
     let flat = |gain| FlatOutput { gain, feed_forward };
     [
@@ -49,7 +50,7 @@ fn move_and_turn(from_rad: f64, to_rad: f64) -> PiecewisePolynomial {
 fn fly(
     trajectory: &dyn Trajectory,
     pieces: &PiecewisePolynomial,
-    law: AnyLaw<'_>,
+    law: Law<'_>,
     disturb: impl Fn(u32, &StateVector) -> StateVector,
 ) -> Flight {
     let pieces = on_board::pieces(pieces);
@@ -85,7 +86,7 @@ fn an_offset_at_hover_dies_out_at_sixteen_headings() {
                 PiecewisePolynomial::new(vec![Piece { duration_s: 8.0, coefficients }]).unwrap()
             };
             // The flat chain (F-LTI) drives position by the thrust's size alone: F does not see a lateral offset.
-            let lateral = if matches!(law, AnyLaw::Equilibrium(_)) { 1.0 } else { 0.0 };
+            let lateral = if matches!(law, Law::Equilibrium(_)) { 1.0 } else { 0.0 };
             let offset = Vector3::new(0.3 * lateral, -0.2 * lateral, 0.1);
             let flight = fly(&Beside(&hover, offset), &hover, law, |_, x| *x);
             let error = flight.samples.last().unwrap().position_error_m().norm();
@@ -150,19 +151,19 @@ fn the_sign_of_the_measured_quaternion_does_not_matter() {
 fn both_signs_give_one_command_over_many_attitudes() {
     let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.4).unwrap();
     for (name, law) in laws(FeedForward::Without) {
-        let tracker = Tracker::new(law, Limits::NONE);
+        let controller = Controller::new(law, Limits::NONE);
         for case in 0..2000 {
             let u = quatrack_tests::halton::<4>(case).map(|v| (2.0 * v - 1.0) as f32);
             let norm = u.iter().map(|v| v * v).sum::<f32>().sqrt();
             let [w, x, y, z] = u.map(|v| v / norm);
             let at = |q: Quaternion| State { attitude: q, ..State::at_rest(Vector3::new(0.1, 0.2, 0.9)) };
             let q = Quaternion::new(w, x, y, z);
-            let (plus, minus) = (tracker.step(&at(q), &reference), tracker.step(&at(-q), &reference));
+            let (plus, minus) = (step(&controller, &at(q), &reference), step(&controller, &at(-q), &reference));
             assert_eq!(plus, minus, "{name} at {q:?}");
         }
     }
 }
 
-fn iae(trajectory: &PiecewisePolynomial, law: AnyLaw<'_>) -> f64 {
+fn iae(trajectory: &PiecewisePolynomial, law: Law<'_>) -> f64 {
     Metrics::of(&fly(trajectory, trajectory, law, |_, x| *x)).iae_m_s.unwrap()
 }

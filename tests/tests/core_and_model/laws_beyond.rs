@@ -3,19 +3,20 @@
 use nalgebra::{SMatrix, SVector};
 use quatrack::gains::paper;
 use quatrack::gains::table::{
-    Certificate, Hash, Margins, Name, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable, TableHead, Vehicle,
+    Certificate, GainTable, Hash, Margins, Name, ScheduleRows, TABLE_BYTES_MAX, TableHead, Vehicle,
 };
 use quatrack::law::{EquilibriumGain, IntegralGain};
 use quatrack::nalgebra::Vector3;
 use quatrack::{
-    AlongTrajectory, Command, Controller, Crossfade, Equilibrium, FeedForward, FlatSample, FlightLaw, IntegralAction,
-    Limits, Memory, Progress, Quaternion, Rate, Reference, State, StepError, Tracker,
+    AlongTrajectory, Command, Controller, Equilibrium, FeedForward, FlatSample, Handover, IntegralAction, Law, Limits,
+    Memory, Progress, Quaternion, Rate, Reference, State, StepError, Target,
 };
 use quatrack_design::design::integral::{IntegralWeights, sampled_lqi};
 use quatrack_design::design::sampled::{Sampling, shaped};
 use quatrack_design::design::synthesis::EquilibriumWeights;
 use quatrack_design::model::{InputVector, StateVector, VELOCITY, dynamics, normalised};
 use quatrack_simulation::flight::core_loop;
+use quatrack_tests::core_step::{command, step, step_on};
 use quatrack_tests::halton;
 
 fn rate(hz: u32) -> Rate {
@@ -74,8 +75,14 @@ fn bits(command: &Command) -> [u32; 4] {
     array(command).map(f32::to_bits)
 }
 
+/// What is left of half a second at a displacement: a controller of 1 Hz whose law is flown one step.
 fn memory_of(sum: Vector3<f32>) -> Memory {
-    Memory { position_integral_metre_seconds: sum }
+    let gain = lqi(1);
+    let controller = Controller::new(IntegralAction::new(&gain, rate(1), FeedForward::Without), Limits::NONE);
+    let mut memory = Memory::at_rest();
+    step_on(&controller, &mut memory, &State::at_rest(sum), Target::new(&hover(0.0))).unwrap();
+    assert_eq!(memory.integral_m_s(), sum);
+    memory
 }
 
 /// A level state at a displacement from a hover at the origin.
@@ -91,7 +98,8 @@ fn hover(heading_rad: f32) -> Reference {
 fn integral_action_adds_what_its_sum_asks_for_in_the_heading_frame() {
     let (gain, rows) = (lqi(100), lqi_rows(100));
     for feed_forward in [FeedForward::Without, FeedForward::With] {
-        let without = Tracker::new(Equilibrium { feed_forward, ..Equilibrium::new(gain.equilibrium()) }, Limits::NONE);
+        let without =
+            Controller::new(Equilibrium { feed_forward, ..Equilibrium::new(gain.equilibrium()) }, Limits::NONE);
         let with = Controller::new(IntegralAction::new(&gain, rate(100), feed_forward), Limits::NONE);
         for index in 0..2000 {
             let (reference, state) = case(index);
@@ -101,8 +109,8 @@ fn integral_action_adds_what_its_sum_asks_for_in_the_heading_frame() {
             let (cos, sin) = (f64::from(cos), f64::from(sin));
             let i = sum.map(f64::from);
             let i = [cos * i.x + sin * i.y, cos * i.y - sin * i.x, i.z];
-            let base = without.step(&state, &reference).unwrap().command;
-            let found = with.step(&mut memory_of(sum), None, &state, &reference).unwrap().command;
+            let base = step(&without, &state, &reference).unwrap().command;
+            let found = step_on(&with, &mut memory_of(sum), &state, Target::new(&reference)).unwrap().command;
             for ((row, base), found) in rows.iter().zip(array(&base)).zip(array(&found)) {
                 let asked: f64 = row[9..].iter().zip(i).map(|(k, i)| f64::from(*k) * i).sum();
                 let expected = f64::from(base) - asked;
@@ -117,20 +125,20 @@ fn integral_action_adds_what_its_sum_asks_for_in_the_heading_frame() {
 fn the_sum_is_that_of_the_steps_before_and_stays_in_the_world_frame() {
     let gain = lqi(100);
     let controller = Controller::new(IntegralAction::new(&gain, rate(100), FeedForward::Without), Limits::NONE);
-    let plain = Tracker::new(Equilibrium::new(gain.equilibrium()), Limits::NONE);
+    let plain = Controller::new(Equilibrium::new(gain.equilibrium()), Limits::NONE);
     let state = displaced(0.5, -0.25, 0.125);
-    let mut memory = Memory::new();
-    for (step, heading_rad) in (1_u8..).zip([0.0, 1.0, -2.5, 3.0]) {
+    let mut memory = Memory::at_rest();
+    for (count, heading_rad) in (1_u8..).zip([0.0, 1.0, -2.5, 3.0]) {
         let reference = hover(heading_rad);
-        let with = controller.step(&mut memory, None, &state, &reference).unwrap();
-        if step == 1 {
-            let without = plain.step(&state, &reference).unwrap();
+        let with = step_on(&controller, &mut memory, &state, Target::new(&reference)).unwrap();
+        if count == 1 {
+            let without = step(&plain, &state, &reference).unwrap();
             assert_eq!(with, without, "nothing has been summed before the first step");
         }
-        let sum = memory.position_integral_metre_seconds;
-        let expected = Vector3::new(0.5, -0.25, 0.125) * (0.01 * f32::from(step));
+        let sum = memory.integral_m_s();
+        let expected = Vector3::new(0.5, -0.25, 0.125) * (0.01 * f32::from(count));
         // The period, 0.01 s, and each sum are rounded.
-        assert!((sum - expected).amax() < 4.0 * f32::EPSILON, "after {step} steps: {sum}");
+        assert!((sum - expected).amax() < 4.0 * f32::EPSILON, "after {count} steps: {sum}");
     }
 }
 
@@ -158,9 +166,9 @@ fn the_sum_holds_while_the_command_that_answers_to_it_is_cut() {
             };
             let before = Vector3::new(0.01, 0.02, 0.03);
             let mut memory = memory_of(before);
-            let step = controller.step(&mut memory, None, &state, &hover(heading_rad)).unwrap();
+            let step = step_on(&controller, &mut memory, &state, Target::new(&hover(heading_rad))).unwrap();
             assert_eq!(step.limited.bits(), cut);
-            let change = memory.position_integral_metre_seconds - before;
+            let change = memory.integral_m_s() - before;
             let moved = [change.x, change.y, change.z].map(|change| change != 0.0);
             assert_eq!(moved, goes_on, "{cut:04b} cut at heading {heading_rad}");
         }
@@ -177,7 +185,7 @@ fn a_step_without_a_command_leaves_what_is_remembered() {
             let mut state = displaced(0.0, 0.0, 0.0);
             state.position_m[component] = bad;
             let mut memory = before;
-            let refused = controller.step(&mut memory, None, &state, &hover(0.0));
+            let refused = step_on(&controller, &mut memory, &state, Target::new(&hover(0.0)));
             assert!(matches!(refused, Err(StepError::State(_) | StepError::Singular)), "{bad} in {component}");
             assert_eq!(memory, before);
         }
@@ -185,7 +193,7 @@ fn a_step_without_a_command_leaves_what_is_remembered() {
 }
 
 /// The plant (1) in a steady wind, which pushes by an acceleration, under held commands; the position error at the end.
-fn position_in_a_wind(law: FlightLaw<'_>, wind_m_s2: Vector3<f64>, heading_rad: f32, duration_s: u32) -> Vector3<f64> {
+fn position_in_a_wind(law: Law<'_>, wind_m_s2: Vector3<f64>, heading_rad: f32, duration_s: u32) -> Vector3<f64> {
     let limits = Limits::new(2.0, 17.0, Vector3::new(20.0, 20.0, 5.0)).unwrap();
     let controller = Controller::new(law, limits);
     let reference = hover(heading_rad);
@@ -193,9 +201,10 @@ fn position_in_a_wind(law: FlightLaw<'_>, wind_m_s2: Vector3<f64>, heading_rad: 
     let mut x = StateVector::zeros();
     x.fixed_rows_mut::<4>(3)
         .copy_from(&nalgebra::Vector4::new(attitude.w, attitude.x, attitude.y, attitude.z).map(f64::from));
-    let mut memory = Memory::new();
+    let mut memory = Memory::at_rest();
     for _ in 0..duration_s * 100 {
-        let step = controller.step(&mut memory, None, &core_loop::state(&normalised(&x)), &reference).unwrap();
+        let state = core_loop::state(&normalised(&x));
+        let step = step_on(&controller, &mut memory, &state, Target::new(&reference)).unwrap();
         let input: InputVector = core_loop::input(&step.command);
         for _ in 0..10 {
             let mut rate_of_change = dynamics(&x, &input);
@@ -233,16 +242,16 @@ fn a_steady_wind_leaves_no_offset_at_any_heading() {
 /// 7.2 m/s^2 upwards are to be had: its largest value, the last one, and the sum at the end.
 fn pushed_down(controller: &Controller<'_>, duration_s: u32) -> (f32, f32, f32) {
     let reference = hover(0.0);
-    let (mut z, mut vz, mut memory, mut highest) = (0.0_f32, 0.0_f32, Memory::new(), 0.0_f32);
+    let (mut z, mut vz, mut memory, mut highest) = (0.0_f32, 0.0_f32, Memory::at_rest(), 0.0_f32);
     for tick in 0..100 * duration_s {
         let state = State { velocity_m_s: Vector3::new(0.0, 0.0, vz), ..displaced(0.0, 0.0, z) };
-        let thrust = controller.step(&mut memory, None, &state, &reference).unwrap().command.thrust_m_s2;
+        let thrust = step_on(controller, &mut memory, &state, Target::new(&reference)).unwrap().command.thrust_m_s2;
         let push = if tick < 200 { 8.0 } else { 0.0 };
         vz += (thrust.clamp(2.0, 17.0) - 9.81 - push) * 0.01;
         z += vz * 0.01;
         highest = highest.max(z);
     }
-    (highest, z, memory.position_integral_metre_seconds.z)
+    (highest, z, memory.integral_m_s().z)
 }
 
 #[test]
@@ -296,11 +305,10 @@ const STEPS_PER_KNOT: u16 = 20;
 const TRAJECTORY: u32 = 77;
 
 /// The law with the gains of [`knots`] at 100 Hz, 0.2 s apart.
-fn along(buffer: &mut [u8; SCHEDULE_BYTES_MAX], player_hz: u32, feed_forward: FeedForward) -> AlongTrajectory<'_> {
+fn along(buffer: &mut [u8; TABLE_BYTES_MAX], player_hz: u32, feed_forward: FeedForward) -> AlongTrajectory<'_> {
     let rows = ScheduleRows { trajectory: TRAJECTORY, steps_per_knot: STEPS_PER_KNOT, gains: &knots() };
-    let table = ScheduleTable::write(buffer, &head(rate(100)), &rows).unwrap();
-    let vehicle = table.head().vehicle;
-    table.accept_for(&vehicle, rate(100)).unwrap().law(rate(player_hz), feed_forward)
+    let table = GainTable::along(buffer, &head(rate(100)), &rows).unwrap();
+    AlongTrajectory::new(table.schedule().unwrap(), rate(100), rate(player_hz), feed_forward)
 }
 
 fn at(tick: u32) -> Option<Progress> {
@@ -310,7 +318,7 @@ fn at(tick: u32) -> Option<Progress> {
 #[test]
 fn at_a_knot_the_law_is_that_of_its_gain_to_the_bit() {
     let gains: Vec<EquilibriumGain> = knots().into_iter().map(|rows| EquilibriumGain::new(rows).unwrap()).collect();
-    let mut buffer = [0; SCHEDULE_BYTES_MAX];
+    let mut buffer = [0; TABLE_BYTES_MAX];
     for feed_forward in [FeedForward::Without, FeedForward::With] {
         for player_hz in [100, 500, 1000] {
             let along = Controller::new(along(&mut buffer, player_hz, feed_forward), Limits::NONE);
@@ -328,11 +336,12 @@ fn at_a_knot_the_law_is_that_of_its_gain_to_the_bit() {
             ];
             for (progress, knot) in cases {
                 let fixed = Equilibrium { feed_forward, ..Equilibrium::new(&gains[knot]) };
-                let fixed = Tracker::new(fixed, Limits::NONE);
+                let fixed = Controller::new(fixed, Limits::NONE);
                 for index in 0..200 {
                     let (reference, state) = case(index);
-                    let expected = fixed.step(&state, &reference).unwrap().command;
-                    let found = along.step(&mut Memory::new(), progress, &state, &reference).unwrap().command;
+                    let expected = step(&fixed, &state, &reference).unwrap().command;
+                    let target = Target::new(&reference).at(progress);
+                    let found = step_on(&along, &mut Memory::at_rest(), &state, target).unwrap().command;
                     assert_eq!(bits(&found), bits(&expected), "knot {knot}, {progress:?}, case {index}");
                 }
             }
@@ -342,7 +351,7 @@ fn at_a_knot_the_law_is_that_of_its_gain_to_the_bit() {
 
 #[test]
 fn between_knots_the_gain_is_on_the_straight_line() {
-    let mut buffer = [0; SCHEDULE_BYTES_MAX];
+    let mut buffer = [0; TABLE_BYTES_MAX];
     let along = Controller::new(along(&mut buffer, 300, FeedForward::Without), Limits::NONE);
     let gains = knots();
     for index in 0..2000 {
@@ -356,7 +365,8 @@ fn between_knots_the_gain_is_on_the_straight_line() {
         let (before, after) = (gains[knot], gains[(knot + 1).min(2)]);
         let (r, v) = (state.position_m, state.velocity_m_s);
         let error = SVector::<f64, 9>::from([r.x, r.y, r.z, 0.0, 0.0, 0.0, v.x, v.y, v.z].map(f64::from));
-        let found = along.step(&mut Memory::new(), at(tick), &state, &reference).unwrap().command;
+        let target = Target::new(&reference).at(at(tick));
+        let found = step_on(&along, &mut Memory::at_rest(), &state, target).unwrap().command;
         let hover = [9.81_f64, 0.0, 0.0, 0.0];
         for row in 0..4 {
             let gain = SVector::<f64, 9>::from_fn(|column, _| {
@@ -372,19 +382,21 @@ fn between_knots_the_gain_is_on_the_straight_line() {
 }
 
 #[test]
-fn a_crossfade_of_controllers_ends_at_the_new_one_and_counts_each_step_once() {
+fn a_handover_of_laws_that_remember_ends_at_the_new_one_and_counts_each_step_once() {
     let gain = lqi(100);
     let integral = Controller::new(IntegralAction::new(&gain, rate(100), FeedForward::Without), Limits::NONE);
     let plain = Controller::new(Equilibrium::new(&paper::LQR_E), Limits::NONE);
     let (state, reference) = (displaced(0.1, 0.2, 0.3), hover(0.5));
     for (old, new) in [(&plain, &integral), (&integral, &plain), (&integral, &integral)] {
         let start = memory_of(Vector3::new(0.02, -0.03, 0.04));
-        let (mut alone, mut memory, mut fade) = (start, start, Crossfade::over(8));
+        let (mut before, mut memory) = (start, start);
+        let mut way = Handover::begin(8, old.law(), new.law(), &mut memory);
+        let mut alone = memory;
         for step in 1..=10 {
-            let mut before = memory;
-            let from = old.step(&mut before, None, &state, &reference).unwrap().command;
-            let to = new.step(&mut alone, None, &state, &reference).unwrap().command;
-            let found = fade.step_controllers((old, new), &mut memory, None, &state, &reference).unwrap().command;
+            let from = step_on(old, &mut before, &state, Target::new(&reference)).unwrap().command;
+            let to = step_on(new, &mut alone, &state, Target::new(&reference)).unwrap().command;
+            let output = way.step((old, new), &mut memory, (&state).into(), Target::new(&reference));
+            let found = command(output.unwrap()).command;
             let share = (f64::from(step) / 8.0).min(1.0);
             for ((from, to), found) in array(&from).into_iter().zip(array(&to)).zip(array(&found)) {
                 let expected = f64::from(from) + share * (f64::from(to) - f64::from(from));
@@ -392,7 +404,7 @@ fn a_crossfade_of_controllers_ends_at_the_new_one_and_counts_each_step_once() {
             }
             assert_eq!(memory, alone, "as the new law would have left it");
         }
-        assert!(fade.is_over());
+        assert!(way.is_over());
     }
 }
 

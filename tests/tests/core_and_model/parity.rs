@@ -2,11 +2,14 @@
 
 use quatrack::gains::paper;
 use quatrack::nalgebra::Vector3;
-use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlatSample, Limits, Reference, Tracker};
+use quatrack::{
+    Controller, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlatSample, Law as CoreLaw, Limits, Reference,
+};
 use quatrack_design::model::flat::reference_point;
 use quatrack_design::model::{ATTITUDE, StateVector};
 use quatrack_simulation::flight::core_loop;
 use quatrack_simulation::flight::law::{Feedback, Law};
+use quatrack_tests::core_step::step;
 use quatrack_tests::{halton, quantile};
 
 const CASES: u32 = 4000;
@@ -21,12 +24,13 @@ fn vector(units: &[f64], size: f64) -> Vector3<f64> {
 }
 
 /// Relative errors of the core's commands, in the order of cases, with both signs of the measured quaternion.
-fn errors(core: AnyLaw<'_>, law: Law<'_>, heading_max_rad: f64) -> Vec<f64> {
+fn errors(core: CoreLaw<'_>, law: Law<'_>, heading_max_rad: f64) -> Vec<f64> {
     let feed_forward = match core {
-        AnyLaw::Equilibrium(law) => law.feed_forward,
-        AnyLaw::FlatOutput(law) => law.feed_forward,
+        CoreLaw::Equilibrium(law) => law.feed_forward,
+        CoreLaw::FlatOutput(law) => law.feed_forward,
+        other => panic!("{other:?} has no counterpart in f64 here"),
     } == FeedForward::With;
-    let tracker = Tracker::new(core, Limits::NONE);
+    let controller = Controller::new(core, Limits::NONE);
     let feedback = Feedback { law, feed_forward };
     let mut errors = Vec::new();
     for case in 0..CASES {
@@ -66,8 +70,8 @@ fn errors(core: AnyLaw<'_>, law: Law<'_>, heading_max_rad: f64) -> Vec<f64> {
         for sign in [1.0, -1.0] {
             let mut state: StateVector = state;
             state.fixed_rows_mut::<4>(ATTITUDE).scale_mut(sign);
-            let step = tracker.step(&core_loop::state(&state), &reference).unwrap();
-            let found = core_loop::input(&step.command);
+            let found = step(&controller, &core_loop::state(&state), &reference).unwrap();
+            let found = core_loop::input(&found.command);
             errors.push((found - exact).amax() / exact.amax().max(9.81));
         }
     }
@@ -116,8 +120,8 @@ fn the_flat_output_law_agrees_to_f32_rounding() {
 
 #[test]
 fn a_bad_state_gives_no_command() {
-    let tracker = Tracker::new(Equilibrium::new(&paper::LQR_E), Limits::NONE);
-    let flat = Tracker::new(FlatOutput::new(&paper::LQR_F), Limits::NONE);
+    let controller = Controller::new(Equilibrium::new(&paper::LQR_E), Limits::NONE);
+    let flat = Controller::new(FlatOutput::new(&paper::LQR_F), Limits::NONE);
     let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.3).unwrap();
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for component in 0..10 {
@@ -129,8 +133,8 @@ fn a_bad_state_gives_no_command() {
                 attitude: quatrack::Quaternion::new(q0, q1, q2, q3),
                 velocity_m_s: Vector3::new(vx, vy, vz),
             };
-            for tracker in [&tracker, &flat] {
-                let refused = tracker.step(&state, &reference);
+            for law in [&controller, &flat] {
+                let refused = step(law, &state, &reference);
                 assert!(
                     matches!(refused, Err(quatrack::StepError::State(quatrack::StateError::NonFinite { .. }))),
                     "component {component} = {bad}: {refused:?}"

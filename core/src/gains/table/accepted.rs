@@ -1,57 +1,133 @@
-//! A table that this board flies: an accepted one in, a law out.
+//! A table that this board flies: an accepted one in, a controller out.
 
-use super::{GainTable, Gains, LoadError, TableHead, TableKind, Vehicle};
+use super::gains::{Content, Gains};
+use super::{AcceptError, TableHead, TableKind};
 use crate::clock::Rate;
 use crate::command::Limits;
-use crate::law::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlightLaw, IntegralAction};
+use crate::control::{Actuation, Controller, ControllerError, Law, Settings};
+use crate::law::{AlongTrajectory, GainSchedule, Knot};
+use crate::motor_lag::MotorLag;
+use crate::trajectory::Trajectory;
 
-/// A table for this board's vehicle and rate; made by [`GainTable::accept_for`] alone.
+/// The proof that a table is for this board's vehicle and rate, made by [`super::GainTable::accept_for`] alone; the table
+/// itself is borrowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AcceptedTable {
-    table: GainTable,
+pub struct AcceptedTable<'t> {
+    content: &'t Content,
+    knots: &'t [Knot],
 }
 
-impl AcceptedTable {
-    pub(super) const fn of(table: GainTable) -> Self {
-        Self { table }
+impl<'t> AcceptedTable<'t> {
+    pub(crate) const fn of(content: &'t Content, knots: &'t [Knot]) -> Self {
+        Self { content, knots }
     }
 
-    /// Reads a table and accepts it, in one.
+    /// Its law, within the tighter of the table's and the board's limits: a controller.
     ///
     /// # Errors
-    /// [`LoadError`].
-    pub fn from_bytes(bytes: &[u8], vehicle: &Vehicle, rate: Rate) -> Result<Self, LoadError> {
-        Ok(GainTable::from_bytes(bytes)?.accept_for(vehicle, rate)?)
+    /// [`ControllerError`] where a table for motor forces is not given the actuation of its lag.
+    #[inline]
+    pub fn controller(&self, settings: &Settings<'t>) -> Result<Controller<'t>, ControllerError> {
+        let limits = settings.limits.within(&self.content.head.limits);
+        let controller = Controller::new(self.law(settings)?, limits);
+        Ok(match settings.actuation {
+            Some(actuation) => controller.with_actuation(actuation),
+            None => controller,
+        })
     }
 
-    /// The law. Only the equilibrium law asks for the form of the error; the others have one.
+    /// Its law.
+    ///
+    /// # Errors
+    /// As [`Self::controller`].
     #[inline]
-    pub fn law(&self, feed_forward: FeedForward, error_form: ErrorForm) -> FlightLaw<'_> {
-        let fixed = match &self.table.gains {
-            Gains::Equilibrium(gain) => AnyLaw::Equilibrium(Equilibrium { gain, error_form, feed_forward }),
-            Gains::FlatOutput(gain) => AnyLaw::FlatOutput(FlatOutput { gain, feed_forward }),
-            Gains::Integral(gain) => return IntegralAction::new(gain, self.table.head.rate, feed_forward).into(),
-        };
-        FlightLaw::Fixed(fixed)
+    pub fn law(&self, settings: &Settings<'t>) -> Result<Law<'t>, ControllerError> {
+        let rate = self.content.head.rate;
+        match &self.content.gains {
+            Gains::Constant(gain) => gain.law(rate, settings),
+            Gains::ToMotors { gain, lag } => {
+                if let Some(actuation) = settings.actuation
+                    && actuation.lag() != lag
+                {
+                    let (table_s, actuation_s) = (lag.lag_s(), actuation.lag().lag_s());
+                    return Err(ControllerError::MotorLag { table_s, actuation_s });
+                }
+                gain.law(rate, settings)
+            }
+            Gains::Along { steps_per_knot, trajectory } => {
+                let schedule = GainSchedule::of_checked(self.knots, *steps_per_knot, *trajectory);
+                Ok(AlongTrajectory::new(schedule, rate, settings.player_rate, settings.feed_forward).into())
+            }
+        }
+    }
+
+    /// The board's way to its motors as the table reckons with it: that of its own motor lag where it has one.
+    pub fn actuation(&self, board: &Actuation) -> Actuation {
+        self.lag().map_or(*board, |lag| board.reckoning_with(lag))
+    }
+
+    /// The factor by which each channel of the feedback may be off behind motors of a lag (s) and a body-rate loop that fits
+    /// it: half of what the lag leaves of the certified one, on its way to the longest lag that is stable.
+    ///
+    /// # Errors
+    /// [`AcceptError::MotorLag`] for a lag that is longer than certified: the table is not to be flown there.
+    pub fn margin_behind(&self, motor_lag_s: f32) -> Result<f32, AcceptError> {
+        let certificate = &self.content.head.certificate;
+        margin_behind(certificate.all_channels.gain_factor, certificate.motor_lag_max_s, motor_lag_s)
+    }
+
+    /// Whether gains along a trajectory are for this one; on another the law flies the last knot's gain throughout. Others are
+    /// for any.
+    pub fn is_for(&self, trajectory: &Trajectory<'_>) -> bool {
+        match &self.content.gains {
+            Gains::Along { trajectory: of, .. } => *of == trajectory.checksum(),
+            _ => true,
+        }
     }
 
     /// Which law it is for.
     pub const fn kind(&self) -> TableKind {
-        self.table.kind()
-    }
-
-    /// What the vehicle can be asked for.
-    pub const fn limits(&self) -> Limits {
-        self.table.head.limits
+        self.content.gains.kind()
     }
 
     /// What it says beside the gains.
-    pub const fn head(&self) -> &TableHead {
-        &self.table.head
+    pub const fn head(&self) -> &'t TableHead {
+        &self.content.head
     }
 
-    /// The table, to be looked at or written.
-    pub const fn table(&self) -> &GainTable {
-        &self.table
+    /// The rate of control steps that it is certified at.
+    pub const fn rate(&self) -> Rate {
+        self.content.head.rate
+    }
+
+    /// What it says that the vehicle can be asked for.
+    pub const fn limits(&self) -> Limits {
+        self.content.head.limits
+    }
+
+    /// The motor lag that it was designed for, if it reckons with one.
+    pub const fn lag(&self) -> Option<&'t MotorLag> {
+        match &self.content.gains {
+            Gains::ToMotors { lag, .. } => Some(lag),
+            _ => None,
+        }
+    }
+
+    pub(crate) const fn parts(&self) -> (&'t Content, &'t [Knot]) {
+        (self.content, self.knots)
+    }
+}
+
+/// What is left of a certified gain margin of all channels behind motors that lag, through a body-rate loop that fits them:
+/// half of what the lag leaves on its way to the longest that is stable.
+///
+/// # Errors
+/// [`AcceptError::MotorLag`] for a lag beyond that.
+pub fn margin_behind(gain_factor: f32, lag_max_s: f32, motor_lag_s: f32) -> Result<f32, AcceptError> {
+    let left = 1.0 - motor_lag_s / lag_max_s;
+    if left >= 0.0 {
+        Ok(1.0 + 0.5 * left * (gain_factor - 1.0))
+    } else {
+        Err(AcceptError::MotorLag { lag_max_s, motor_lag_s })
     }
 }

@@ -7,11 +7,13 @@ use super::certificate::{Figure, Vehicle};
 use super::name::NameError;
 use crate::command::LimitsError;
 use crate::gain::GainError;
+use crate::law::ScheduleError;
 
 /// Why bytes are no gain table, or numbers no table to be written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum TableError {
     /// The first four bytes are not [`super::MAGIC`].
     Magic {
@@ -96,11 +98,6 @@ pub enum TableError {
         /// What stands there.
         value: f32,
     },
-    /// A table of a kind that is loaded by another reader.
-    OtherKind {
-        /// Its kind.
-        kind: TableKind,
-    },
     /// Gains over time with fewer than 2 knots or more than [`super::KNOTS_MAX`].
     Knots {
         /// Knots found.
@@ -126,6 +123,7 @@ pub enum TableError {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum KnotFault {
     /// An entry is not finite, or an error goes unused.
     Gain(GainError),
@@ -141,9 +139,10 @@ pub enum KnotFault {
 }
 
 /// Why a sound table is not flown on this board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum AcceptError {
     /// Designed for another vehicle, or for other parameters of it.
     Vehicle {
@@ -157,12 +156,27 @@ pub enum AcceptError {
         /// The loop's, Hz.
         loop_hz: u32,
     },
+    /// Certified for shorter motor lags than this craft's.
+    MotorLag {
+        /// The longest that is certified, s.
+        lag_max_s: f32,
+        /// The craft's, s.
+        motor_lag_s: f32,
+    },
+    /// It has more gains along its trajectory than there is room for.
+    Knots {
+        /// The table's.
+        knots: u16,
+        /// The room.
+        room: u16,
+    },
 }
 
 /// Why a blob does not become a table that is flown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum LoadError {
     /// It is no table.
     Table(TableError),
@@ -211,7 +225,6 @@ impl fmt::Display for TableError {
             Self::Uncertified { figure, value } => {
                 write!(f, "certified {figure} is {value}, which certifies nothing; change the design")
             }
-            Self::OtherKind { kind } => write!(f, "{kind}, which is not loaded here; load it as what it is"),
             Self::Knots { found } => {
                 write!(f, "{found} knots; must be 2 to {}: change their spacing", super::KNOTS_MAX)
             }
@@ -244,6 +257,14 @@ impl fmt::Display for AcceptError {
                 f,
                 "gain table: certified at {table_hz} Hz, the loop runs at {loop_hz} Hz; certify it at the loop's rate"
             ),
+            Self::MotorLag { lag_max_s, motor_lag_s } => write!(
+                f,
+                "gain table: certified up to a motor lag of {lag_max_s} s, the craft's is {motor_lag_s} s; design it for \
+                 these motors"
+            ),
+            Self::Knots { knots, room } => {
+                write!(f, "gain table: {knots} knots, there is room for {room}; change their spacing")
+            }
         }
     }
 }
@@ -257,9 +278,27 @@ impl fmt::Display for LoadError {
     }
 }
 
-impl core::error::Error for TableError {}
+impl core::error::Error for TableError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Gain(error) | Self::Knot { fault: KnotFault::Gain(error), .. } => Some(error),
+            Self::TableName(error) | Self::VehicleName(error) => Some(error),
+            Self::Limits(error) => Some(error),
+            _ => None,
+        }
+    }
+}
+
 impl core::error::Error for AcceptError {}
-impl core::error::Error for LoadError {}
+
+impl core::error::Error for LoadError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Table(error) => Some(error),
+            Self::Accept(error) => Some(error),
+        }
+    }
+}
 
 impl From<TableError> for LoadError {
     fn from(error: TableError) -> Self {
@@ -270,6 +309,18 @@ impl From<TableError> for LoadError {
 impl From<AcceptError> for LoadError {
     fn from(error: AcceptError) -> Self {
         Self::Accept(error)
+    }
+}
+
+impl From<ScheduleError> for TableError {
+    fn from(error: ScheduleError) -> Self {
+        match error {
+            ScheduleError::Empty => Self::Knots { found: 0 },
+            ScheduleError::NoSpacing => Self::KnotSpacing,
+            ScheduleError::Knot { knot, error } => {
+                Self::Knot { knot: u16::try_from(knot).unwrap_or(u16::MAX), fault: KnotFault::Gain(error) }
+            }
+        }
     }
 }
 

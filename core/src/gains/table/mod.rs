@@ -1,48 +1,51 @@
 //! Gain tables as bytes: a file or an upload in; gains with their vehicle, rate, limits and certificate out, or the
 //! reason for none.
 //!
-//! A table goes through two gates. [`GainTable::from_bytes`] refuses what is no sound, certified table at all;
-//! [`GainTable::accept_for`] what is not for this vehicle or this control rate. Only the [`AcceptedTable`] behind the
-//! second one has a law to fly.
+//! A table goes through two gates, whichever law it is for. [`GainTable::from_bytes`] refuses what is no sound, certified
+//! table at all; [`GainTable::accept_for`] what is not for this vehicle or this control rate. Only the [`AcceptedTable`]
+//! behind the second one becomes a controller.
 //!
-//! Gains over time along a trajectory are too many to copy: [`ScheduleTable`] borrows them from their bytes, through the
-//! same two gates. [`ActuatorTable`] is for the law that commands motor forces, and has their lag beside its gain.
-//! [`TableKind::of`] says which of the three reads a file.
+//! Gains along a trajectory are too many to copy: a table borrows them from its bytes.
 //!
 //! ```
-//! use quatrack::gains::table::{GainTable, LoadError, Vehicle};
-//! use quatrack::{Controller, ErrorForm, FeedForward, Rate};
+//! use quatrack::gains::table::{GainTable, Vehicle};
+//! use quatrack::{Actuation, ErrorForm, FeedForward, Limits, Rate, Settings};
 //!
-//! fn controller_of(file: &[u8], vehicle: &Vehicle, rate: Rate) -> Result<f32, LoadError> {
-//!     let table = GainTable::from_bytes(file)?.accept_for(vehicle, rate)?;
-//!     let controller = Controller::new(table.law(FeedForward::With, ErrorForm::HeadingFrame), table.limits());
+//! fn largest_delay_s(file: &[u8], vehicle: &Vehicle, rate: Rate, board: &Actuation) -> Result<f32, Box<dyn std::error::Error>> {
+//!     let table = GainTable::from_bytes(file)?;
+//!     let accepted = table.accept_for(vehicle, rate)?;
+//!     let actuation = accepted.actuation(board);
+//!     let (feed_forward, error_form) = (FeedForward::With, ErrorForm::HeadingFrame);
+//!     let settings =
+//!         Settings { limits: Limits::NONE, actuation: Some(&actuation), feed_forward, error_form, player_rate: rate };
+//!     let controller = accepted.controller(&settings)?;
 //!     # let _ = controller;
-//!     Ok(table.head().certificate.delay_max_s)
+//!     Ok(accepted.head().certificate.delay_max_s)
 //! }
 //! ```
 
 mod accepted;
-mod actuator;
 mod certificate;
 mod error;
+mod gains;
 mod name;
-mod schedule;
+mod table;
 mod wire;
 
-pub use accepted::AcceptedTable;
-pub use actuator::{ACTUATOR_TABLE_BYTES, AcceptedActuatorTable, ActuatorTable};
+pub use accepted::{AcceptedTable, margin_behind};
 pub use certificate::{Certificate, Figure, Hash, Margins, Vehicle};
 pub use error::{AcceptError, KnotFault, LoadError, TableError};
+pub(crate) use gains::Content;
 pub use name::{Name, NameError};
-pub use schedule::{AcceptedSchedule, KNOTS_MAX, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable};
+pub use table::GainTable;
 pub use wire::{FORMAT_VERSION, MAGIC};
 
 use core::fmt;
 
+use self::gains::ALONG_BYTES;
 use crate::clock::Rate;
 use crate::command::Limits;
 use crate::flatness::GRAVITY_M_S2;
-use crate::law::{EquilibriumGain, FlatOutputGain, IntegralGain};
 
 /// Largest entry of a gain, in the units of its row and column: ten times what the stiffest design so far asks.
 pub const ENTRY_MAX: f32 = 1e4;
@@ -57,14 +60,22 @@ pub const THRUST_MAX_M_S2: f32 = 200.0;
 /// Largest body rate limit, rad/s: almost three times what a gyroscope of 2000 degrees a second measures.
 pub const BODY_RATE_MAX_RAD_S: f32 = 100.0;
 
-/// Bytes of the longest [`GainTable`]; gains over time have [`SCHEDULE_BYTES_MAX`], those of motor forces
-/// [`ACTUATOR_TABLE_BYTES`].
-pub const TABLE_BYTES_MAX: usize = wire::FRAME_BYTES + wire::HEAD_BYTES + TableKind::FlatOutput.gain_bytes();
+/// Most knots along a trajectory: with as many, a table goes where an uploaded trajectory goes.
+pub const KNOTS_MAX: usize = 60;
+
+/// Bytes of the longest table: one of gains along a trajectory.
+pub const TABLE_BYTES_MAX: usize =
+    wire::FRAME_BYTES + wire::HEAD_BYTES + ALONG_BYTES + KNOTS_MAX * TableKind::AlongTrajectory.gain_bytes();
+
+/// Bytes of the longest table whose gain is the same all the time: one for motor forces, a float for the lag beside its gain.
+pub const CONSTANT_TABLE_BYTES_MAX: usize =
+    wire::FRAME_BYTES + wire::HEAD_BYTES + 4 + TableKind::ActuatorAware.gain_bytes();
 
 /// Which law a table is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum TableKind {
     /// [`crate::Equilibrium`], 4 by 9.
     Equilibrium,
@@ -72,14 +83,15 @@ pub enum TableKind {
     FlatOutput,
     /// [`crate::IntegralAction`], 4 by 12.
     Integral,
-    /// [`crate::AlongTrajectory`], 4 by 9 at each knot; read by [`ScheduleTable`].
+    /// [`crate::AlongTrajectory`], 4 by 9 at each knot.
     AlongTrajectory,
-    /// [`crate::ActuatorAware`], 4 by 19; read by [`ActuatorTable`].
+    /// [`crate::ActuatorAware`], 4 by 19.
     ActuatorAware,
 }
 
-/// The entries of a gain, by rows.
+/// What a table of one gain is written from: its entries by rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Rows {
     /// Outputs `[T p q r]` from errors `[x y z q1 q2 q3 vx vy vz]`.
     Equilibrium([[f32; 9]; 4]),
@@ -88,6 +100,13 @@ pub enum Rows {
     /// Outputs `[T p q r]` from errors `[x y z q1 q2 q3 vx vy vz ix iy iz]`, the last three their integrals, metre
     /// seconds.
     Integral([[f32; 12]; 4]),
+    /// Outputs and errors as in [`crate::ActuatorAwareGain`].
+    ActuatorAware {
+        /// The lag of the motors that it was designed for, s.
+        motor_lag_s: f32,
+        /// The entries.
+        rows: [[f32; 19]; 4],
+    },
 }
 
 impl Rows {
@@ -97,8 +116,21 @@ impl Rows {
             Self::Equilibrium(rows) => rows.as_flattened(),
             Self::FlatOutput(rows) => rows.as_flattened(),
             Self::Integral(rows) => rows.as_flattened(),
+            Self::ActuatorAware { rows, .. } => rows.as_flattened(),
         }
     }
+}
+
+/// What a table of gains along a trajectory is written from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScheduleRows<'a> {
+    /// [`crate::Trajectory::checksum`] of the trajectory that they are for.
+    pub trajectory: u32,
+    /// Control steps from one knot to the next, at the rate in the head.
+    pub steps_per_knot: u16,
+    /// The gains by rows, the first at the trajectory's start: outputs `[T p q r]` from errors
+    /// `[x y z q1 q2 q3 vx vy vz]`.
+    pub gains: &'a [[[f32; 9]; 4]],
 }
 
 /// What a table says beside its gains.
@@ -116,89 +148,6 @@ pub struct TableHead {
     pub design_hash: Hash,
     /// What was proven.
     pub certificate: Certificate,
-}
-
-/// A sound and certified table; see [`GainTable::accept_for`] for one that is flown.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GainTable {
-    head: TableHead,
-    gains: Gains,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Gains {
-    Equilibrium(EquilibriumGain),
-    FlatOutput(FlatOutputGain),
-    Integral(IntegralGain),
-}
-
-impl GainTable {
-    /// Checks the parts of a table that is to be written.
-    ///
-    /// # Errors
-    /// [`TableError`], as [`Self::from_bytes`] would find in it.
-    pub fn new(head: TableHead, rows: &Rows) -> Result<Self, TableError> {
-        let gains = Gains::new(rows)?;
-        head.check()?;
-        Ok(Self { head, gains })
-    }
-
-    /// Reads a table.
-    ///
-    /// # Errors
-    /// [`TableError`]: the first thing that is wrong, from the frame inwards.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, TableError> {
-        let payload = wire::open(bytes)?;
-        let cut = wire::wrong_length(bytes, wire::HEAD_BYTES);
-        let (head, entries) = payload.split_first_chunk::<{ wire::HEAD_BYTES }>().ok_or(cut)?;
-        let mut fields = wire::Reader::new(head, cut);
-        let kind = fields.kind()?;
-        // Other readers' kinds have fields of their own.
-        if !kind.is_read_elsewhere() && entries.len() != kind.gain_bytes() {
-            return Err(wire::wrong_length(bytes, wire::HEAD_BYTES + kind.gain_bytes()));
-        }
-        let gains = Gains::read(kind, entries)?;
-        Ok(Self { head: TableHead::read(fields)?, gains })
-    }
-
-    /// Writes the table over the start of `buffer` and returns that part; nothing if it is too short. The same table
-    /// gives the same bytes; [`TABLE_BYTES_MAX`] are enough for any.
-    pub fn to_bytes<'b>(&self, buffer: &'b mut [u8]) -> Option<&'b [u8]> {
-        wire::write(buffer, self.kind(), &self.head, &[], self.rows().entries())
-    }
-
-    /// The table as one that this board flies: it was designed for `vehicle` and certified at `rate`, that of the
-    /// control steps.
-    ///
-    /// # Errors
-    /// [`AcceptError`].
-    pub fn accept_for(self, vehicle: &Vehicle, rate: Rate) -> Result<AcceptedTable, AcceptError> {
-        self.head.accept_for(vehicle, rate)?;
-        Ok(AcceptedTable::of(self))
-    }
-
-    /// Which law it is for.
-    pub const fn kind(&self) -> TableKind {
-        match &self.gains {
-            Gains::Equilibrium(_) => TableKind::Equilibrium,
-            Gains::FlatOutput(_) => TableKind::FlatOutput,
-            Gains::Integral(_) => TableKind::Integral,
-        }
-    }
-
-    /// What it says beside the gains.
-    pub const fn head(&self) -> &TableHead {
-        &self.head
-    }
-
-    /// The gains, to be looked at.
-    pub const fn rows(&self) -> Rows {
-        match &self.gains {
-            Gains::Equilibrium(gain) => Rows::Equilibrium(*gain.gain().rows()),
-            Gains::FlatOutput(gain) => Rows::FlatOutput(*gain.gain().rows()),
-            Gains::Integral(gain) => Rows::Integral(gain.rows()),
-        }
-    }
 }
 
 impl TableHead {
@@ -239,79 +188,6 @@ impl TableHead {
         }
         Ok(())
     }
-}
-
-impl Gains {
-    fn new(rows: &Rows) -> Result<Self, TableError> {
-        match rows {
-            Rows::Equilibrium(rows) => Self::equilibrium(rows),
-            Rows::FlatOutput(rows) => Self::flat_output(rows),
-            Rows::Integral(rows) => Self::integral(rows),
-        }
-    }
-
-    /// From the bytes behind the head.
-    fn read(kind: TableKind, entries: &[u8]) -> Result<Self, TableError> {
-        match kind {
-            TableKind::Equilibrium => {
-                let mut rows = [[0.0; 9]; 4];
-                wire::read_entries(entries, rows.as_flattened_mut());
-                Self::equilibrium(&rows)
-            }
-            TableKind::FlatOutput => {
-                let mut rows = [[0.0; 10]; 7];
-                wire::read_entries(entries, rows.as_flattened_mut());
-                Self::flat_output(&rows)
-            }
-            TableKind::Integral => {
-                let mut rows = [[0.0; 12]; 4];
-                wire::read_entries(entries, rows.as_flattened_mut());
-                Self::integral(&rows)
-            }
-            TableKind::AlongTrajectory | TableKind::ActuatorAware => Err(TableError::OtherKind { kind }),
-        }
-    }
-
-    fn equilibrium(rows: &[[f32; 9]; 4]) -> Result<Self, TableError> {
-        let gain = EquilibriumGain::new(*rows).map_err(TableError::Gain)?;
-        in_proportion(rows.as_flattened(), 9)?;
-        Ok(Self::Equilibrium(gain))
-    }
-
-    fn flat_output(rows: &[[f32; 10]; 7]) -> Result<Self, TableError> {
-        let gain = FlatOutputGain::new(*rows).map_err(TableError::Gain)?;
-        in_proportion(rows.as_flattened(), 10)?;
-        Ok(Self::FlatOutput(gain))
-    }
-
-    fn integral(rows: &[[f32; 12]; 4]) -> Result<Self, TableError> {
-        let gain = IntegralGain::new(*rows).map_err(TableError::Gain)?;
-        in_proportion(rows.as_flattened(), 12)?;
-        Ok(Self::Integral(gain))
-    }
-}
-
-fn in_proportion(entries: &[f32], columns: u8) -> Result<(), TableError> {
-    match out_of_proportion(entries, columns) {
-        None => Ok(()),
-        Some((row, column, value)) => Err(TableError::Entry { row, column, value }),
-    }
-}
-
-/// The row, column and value of the first entry that is neither 0 nor of a size from [`ENTRY_MIN`] to [`ENTRY_MAX`].
-#[inline(never)]
-fn out_of_proportion(entries: &[f32], columns: u8) -> Option<(u8, u8, f32)> {
-    let (mut row, mut column) = (0, 0);
-    for value in entries.iter().copied() {
-        if value != 0.0 && !(ENTRY_MIN..=ENTRY_MAX).contains(&value.abs()) {
-            return Some((row, column, value));
-        }
-        column += 1;
-        if column == columns {
-            (row, column) = (row + 1, 0);
-        }
-    }
-    None
 }
 
 impl TableKind {
@@ -355,11 +231,6 @@ impl TableKind {
             Self::AlongTrajectory => (4, 9),
             Self::ActuatorAware => (4, 19),
         }
-    }
-
-    /// Whether it is none of [`GainTable`]'s.
-    const fn is_read_elsewhere(self) -> bool {
-        matches!(self, Self::AlongTrajectory | Self::ActuatorAware)
     }
 
     /// Bytes of one gain.

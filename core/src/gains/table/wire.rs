@@ -96,12 +96,7 @@ impl<'b> Reader<'b> {
     }
 
     #[inline(always)]
-    pub(super) fn u16(&mut self) -> Result<u16, TableError> {
-        self.bytes().map(u16::from_le_bytes)
-    }
-
-    #[inline(always)]
-    pub(super) fn u32(&mut self) -> Result<u32, TableError> {
+    fn u32(&mut self) -> Result<u32, TableError> {
         self.bytes().map(u32::from_le_bytes)
     }
 
@@ -199,7 +194,7 @@ pub(super) fn write<'b>(
     kind: TableKind,
     head: &TableHead,
     fields: &[u8],
-    entries: &[f32],
+    entries: impl ExactSizeIterator<Item = f32>,
 ) -> Option<&'b [u8]> {
     let length = HEAD_BYTES + fields.len() + 4 * entries.len();
     let (frame, _) = buffer.split_at_mut_checked(FRAME_BYTES + length)?;
@@ -211,7 +206,9 @@ pub(super) fn write<'b>(
     writer.bytes(&length.to_le_bytes())?;
     writer.head(kind, head)?;
     writer.bytes(fields)?;
-    writer.f32s(entries)?;
+    for entry in entries {
+        writer.bytes(&entry.to_le_bytes())?;
+    }
     *checksum = crc32c(content).to_le_bytes();
     Some(frame)
 }

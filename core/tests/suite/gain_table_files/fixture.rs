@@ -2,8 +2,7 @@
 
 use quatrack::gains::paper;
 use quatrack::gains::table::{
-    Certificate, GainTable, Hash, Margins, Name, Rows, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable,
-    TABLE_BYTES_MAX, TableHead, TableKind, Vehicle,
+    Certificate, GainTable, Hash, Margins, Name, Rows, ScheduleRows, TABLE_BYTES_MAX, TableHead, TableKind, Vehicle,
 };
 use quatrack::nalgebra::Vector3;
 use quatrack::{Limits, Rate};
@@ -59,12 +58,12 @@ pub(crate) fn tables() -> Vec<(&'static str, Rows)> {
     paper_tables().into_iter().chain([("lqi-e", Rows::Integral(integral_rows()))]).collect()
 }
 
-pub(crate) fn table(name: &str) -> GainTable {
+pub(crate) fn table(name: &str) -> GainTable<'static> {
     let (_, rows) = tables().into_iter().find(|(known, _)| *known == name).unwrap();
     GainTable::new(head(name), &rows).unwrap()
 }
 
-pub(crate) fn bytes_of(table: &GainTable) -> Vec<u8> {
+pub(crate) fn bytes_of(table: &GainTable<'_>) -> Vec<u8> {
     table.to_bytes(&mut [0; TABLE_BYTES_MAX]).unwrap().to_vec()
 }
 
@@ -99,5 +98,5 @@ pub(crate) fn gains_over_time(knots: usize) -> Vec<[[f32; 9]; 4]> {
 
 pub(crate) fn schedule_bytes(gains: &[[[f32; 9]; 4]]) -> Vec<u8> {
     let rows = ScheduleRows { trajectory: TRAJECTORY, steps_per_knot: 25, gains };
-    ScheduleTable::write(&mut [0; SCHEDULE_BYTES_MAX], &head("along"), &rows).unwrap().bytes().to_vec()
+    bytes_of(&GainTable::along(&mut [0; TABLE_BYTES_MAX], &head("along"), &rows).unwrap())
 }

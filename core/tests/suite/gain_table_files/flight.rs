@@ -2,24 +2,27 @@
 
 use proptest::prelude::*;
 use quatrack::gains::paper;
-use quatrack::gains::table::{AcceptedTable, GainTable, Rows};
+use quatrack::gains::table::{GainTable, Rows};
 use quatrack::nalgebra::Vector3;
 use quatrack::{
-    AnyLaw, Command, Crossfade, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlatSample, Quaternion, Reference,
-    State, Tracker,
+    Command, Controller, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlatSample, Handover, Law, Memory,
+    Quaternion, Reference, Settings, State,
 };
+use quatrack_tests::core_step::{command, step};
 use quatrack_tests::halton;
 
 use super::fixture::{VEHICLE, bytes_of, head, paper_tables, rate, table};
 
 const CASES: u32 = 5000;
 
-fn loaded(name: &str) -> AcceptedTable {
-    AcceptedTable::from_bytes(&bytes_of(&table(name)), &VEHICLE, rate()).unwrap()
+fn loaded(name: &str) -> GainTable<'static> {
+    GainTable::from_bytes(&bytes_of(&table(name))).unwrap().owned().unwrap()
 }
 
-fn tracker(table: &AcceptedTable, feed_forward: FeedForward, error_form: ErrorForm) -> Tracker<'_> {
-    Tracker::new(table.law(feed_forward, error_form).fixed().unwrap(), table.limits())
+fn controller<'t>(table: &'t GainTable<'_>, feed_forward: FeedForward, error_form: ErrorForm) -> Controller<'t> {
+    let accepted = table.accept_for(&VEHICLE, rate()).unwrap();
+    let settings = Settings { feed_forward, error_form, ..Settings::new(accepted.limits(), rate()) };
+    accepted.controller(&settings).unwrap()
 }
 
 fn bits(command: &Command) -> [u32; 4] {
@@ -61,18 +64,18 @@ fn a_loaded_table_commands_the_bits_of_the_one_in_the_image() {
         let loaded = loaded(name);
         for feed_forward in [FeedForward::Without, FeedForward::With] {
             for error_form in [ErrorForm::HeadingFrame, ErrorForm::Paper] {
-                let built_in: AnyLaw<'_> = match name {
+                let built_in: Law<'_> = match name {
                     "lyap-e" => Equilibrium { gain: &paper::LYAP_E, error_form, feed_forward }.into(),
                     "lqr-e" => Equilibrium { gain: &paper::LQR_E, error_form, feed_forward }.into(),
                     "lyap-f" => FlatOutput { gain: &paper::LYAP_F, feed_forward }.into(),
                     _ => FlatOutput { gain: &paper::LQR_F, feed_forward }.into(),
                 };
-                let built_in = Tracker::new(built_in, loaded.limits());
-                let from_file = tracker(&loaded, feed_forward, error_form);
+                let built_in = Controller::new(built_in, loaded.head().limits);
+                let from_file = controller(&loaded, feed_forward, error_form);
                 let mut answered = 0;
                 for index in 0..CASES {
                     let (reference, state) = case(index);
-                    let (expected, found) = (built_in.step(&state, &reference), from_file.step(&state, &reference));
+                    let (expected, found) = (step(&built_in, &state, &reference), step(&from_file, &state, &reference));
                     assert_eq!(found, expected, "{name}, case {index}");
                     let (Ok(expected), Ok(found)) = (expected, found) else { continue };
                     assert_eq!(bits(&found.command), bits(&expected.command), "{name}, case {index}");
@@ -93,8 +96,8 @@ fn equilibrium_gains() -> impl Strategy<Value = Rows> {
         .prop_map(Rows::Equilibrium)
 }
 
-fn accepted(rows: &Rows) -> AcceptedTable {
-    GainTable::new(head("any"), rows).unwrap().accept_for(&VEHICLE, rate()).unwrap()
+fn table_of(rows: &Rows) -> GainTable<'static> {
+    GainTable::new(head("any"), rows).unwrap()
 }
 
 fn hover(index: u32) -> Reference {
@@ -109,9 +112,10 @@ proptest! {
         old in equilibrium_gains(), new in equilibrium_gains(), index in 0..CASES, forward in any::<bool>()
     ) {
         let feed_forward = if forward { FeedForward::With } else { FeedForward::Without };
-        let gains = [accepted(&old), accepted(&new)];
+        let gains = [table_of(&old), table_of(&new)];
         let commands = |reference: &Reference| gains.each_ref().map(|table| {
-            tracker(table, feed_forward, ErrorForm::HeadingFrame).step(reference.state(), reference).unwrap().command
+            let controller = controller(table, feed_forward, ErrorForm::HeadingFrame);
+            step(&controller, reference.state(), reference).unwrap().command
         });
         // In hover, at any heading, the error is 0 to the bit. Equal as numbers: a rate of zero may change its sign,
         // which no actuator sees.
@@ -125,23 +129,26 @@ proptest! {
     }
 
     #[test]
-    fn a_swap_off_zero_error_jumps_by_the_difference_of_the_gains_and_a_crossfade_by_a_part_of_it(
+    fn a_swap_off_zero_error_jumps_by_the_difference_of_the_gains_and_a_handover_by_a_part_of_it(
         index in 0..CASES, steps in 2..200_u16
     ) {
         let (reference, state) = case(index);
         let (old, new) = (loaded("lyap-e"), loaded("lqr-e"));
-        let [old, new] = [&old, &new].map(|table| tracker(table, FeedForward::With, ErrorForm::HeadingFrame));
+        let [old, new] = [&old, &new].map(|table| controller(table, FeedForward::With, ErrorForm::HeadingFrame));
         let rates = |step: &quatrack::Step| step.command.body_rates_rad_s;
-        let from = old.step(&state, &reference).unwrap();
-        let jump = (rates(&new.step(&state, &reference).unwrap()) - rates(&from)).amax();
-        let (mut fade, mut last) = (Crossfade::over(steps), from);
+        let from = step(&old, &state, &reference).unwrap();
+        let jump = (rates(&step(&new, &state, &reference).unwrap()) - rates(&from)).amax();
+        let mut memory = Memory::at_rest();
+        let mut way = Handover::begin(steps, old.law(), new.law(), &mut memory);
+        let mut last = from;
         for _ in 0..steps {
-            let next = fade.step(&old, &new, &state, &reference).unwrap();
+            let next = way.step((&old, &new), &mut memory, (&state).into(), (&reference).into());
+            let next = command(next.unwrap());
             // Rounding: a few units in the last place of the largest rate, 20 rad/s.
             prop_assert!((rates(&next) - rates(&last)).amax() <= jump / f32::from(steps) + 1e-5);
             last = next;
         }
-        prop_assert_eq!(last, new.step(&state, &reference).unwrap(), "the way ends at the new table's command");
+        prop_assert_eq!(last, step(&new, &state, &reference).unwrap(), "the way ends at the new table's command");
     }
 }
 
@@ -154,7 +161,7 @@ fn swapping_the_papers_tables_in_hover_keeps_every_bit_of_the_command() {
         for feed_forward in [FeedForward::Without, FeedForward::With] {
             let commands = paper_tables().map(|(name, _)| {
                 let table = loaded(name);
-                tracker(&table, feed_forward, ErrorForm::HeadingFrame).step(reference.state(), &reference).unwrap()
+                step(&controller(&table, feed_forward, ErrorForm::HeadingFrame), reference.state(), &reference).unwrap()
             });
             for step in &commands {
                 assert_eq!(step.command, *reference.input(), "what holds the craft up, from every law");

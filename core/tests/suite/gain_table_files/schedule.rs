@@ -4,14 +4,16 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use quatrack::gain::GainError;
 use quatrack::gains::table::{
-    AcceptError, AcceptedSchedule, GainTable, KNOTS_MAX, KnotFault, LoadError, SCHEDULE_BYTES_MAX, ScheduleRows,
-    ScheduleTable, TableError, TableKind, Vehicle,
+    AcceptError, GainTable, KNOTS_MAX, KnotFault, LoadError, ScheduleRows, TABLE_BYTES_MAX, TableError, TableKind,
+    Vehicle,
 };
-use quatrack::link::{ScheduleStore, TRAJECTORY_BLOB_BYTES};
+use quatrack::link::{GainStore, TRAJECTORY_BLOB_BYTES};
 use quatrack::nalgebra::Vector3;
 use quatrack::{
-    AlongTrajectory, Controller, FeedForward, Limits, Memory, Piece, Progress, Rate, Reference, State, Trajectory,
+    Controller, FeedForward, Limits, Memory, Piece, Progress, Rate, Reference, Settings, State, Step, Target,
+    Trajectory,
 };
+use quatrack_tests::core_step::step_on;
 
 use super::fixture::{
     TRAJECTORY, VEHICLE, bytes_of, gains_over_time, head, rate, schedule_bytes, sealed, table, tables,
@@ -21,7 +23,7 @@ use super::fixture::{
 fn refusal(offset: usize, replacement: &[u8]) -> TableError {
     let mut bytes = schedule_bytes(&gains_over_time(4));
     bytes[offset..offset + replacement.len()].copy_from_slice(replacement);
-    ScheduleTable::from_bytes(&sealed(bytes)).unwrap_err()
+    GainTable::from_bytes(&sealed(bytes)).unwrap_err()
 }
 
 #[test]
@@ -36,27 +38,23 @@ fn every_field_stands_where_the_page_says_and_comes_back() {
             bytes[187..bytes.len() - 4].chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
         assert_eq!(of_file, gains.as_flattened().as_flattened());
 
-        let read = ScheduleTable::from_bytes(&bytes).unwrap();
-        assert_eq!((read.head(), read.bytes()), (&head("along"), &bytes[..]));
-        let schedule = read.schedule();
+        let read = GainTable::from_bytes(&bytes).unwrap();
+        assert_eq!((read.head(), bytes_of(&read)), (&head("along"), bytes.clone()));
+        assert_eq!((read.rows(), read.owned()), (None, None), "its gains are where the bytes are");
+        let schedule = read.schedule().unwrap();
         assert_eq!((schedule.knots(), schedule.steps_per_knot(), schedule.trajectory()), (knots, 25, TRAJECTORY));
         assert_eq!((0..).map_while(|knot| schedule.gain(knot)).collect::<Vec<_>>(), gains);
     }
     // A compile-time fact of two constants, in different modules of the core.
-    const { assert!(SCHEDULE_BYTES_MAX <= TRAJECTORY_BLOB_BYTES, "goes where an uploaded trajectory goes") };
+    const { assert!(TABLE_BYTES_MAX <= TRAJECTORY_BLOB_BYTES, "goes where an uploaded trajectory goes") };
 }
 
 #[test]
-fn a_kind_is_read_by_its_own_reader_alone() {
+fn a_kind_is_told_before_anything_is_read() {
     let bytes = schedule_bytes(&gains_over_time(4));
     assert_eq!(TableKind::of(&bytes), Ok(TableKind::AlongTrajectory));
-    let refused = TableError::OtherKind { kind: TableKind::AlongTrajectory };
-    assert_eq!(GainTable::from_bytes(&bytes), Err(refused));
     for (name, _) in tables() {
-        let bytes = bytes_of(&table(name));
-        let kind = table(name).kind();
-        assert_eq!(TableKind::of(&bytes), Ok(kind));
-        assert_eq!(ScheduleTable::from_bytes(&bytes), Err(TableError::OtherKind { kind }), "{name}");
+        assert_eq!(TableKind::of(&bytes_of(&table(name))), Ok(table(name).kind()));
     }
     assert!(matches!(TableKind::of(&bytes[1..]), Err(TableError::Magic { .. })));
 }
@@ -67,7 +65,7 @@ fn knots_and_their_spacing_are_possible_ones() {
         assert_eq!(refusal(179, &found.to_le_bytes()), TableError::Knots { found });
         let gains = gains_over_time(usize::from(found));
         let rows = ScheduleRows { trajectory: 0, steps_per_knot: 1, gains: &gains };
-        let written = ScheduleTable::write(&mut [0; SCHEDULE_BYTES_MAX], &head("along"), &rows).map(|_| ());
+        let written = GainTable::along(&mut [0; TABLE_BYTES_MAX], &head("along"), &rows).map(|_| ());
         assert_eq!(written, Err(TableError::Knots { found }));
     }
     assert_eq!(refusal(181, &[0, 0]), TableError::KnotSpacing);
@@ -95,7 +93,7 @@ fn every_entry_of_every_knot_is_looked_at() {
     let mut unused = gains_over_time(4);
     unused[2][2][4] = 0.0;
     let rows = ScheduleRows { trajectory: 0, steps_per_knot: 1, gains: &unused };
-    let written = ScheduleTable::write(&mut [0; SCHEDULE_BYTES_MAX], &head("along"), &rows).map(|_| ());
+    let written = GainTable::along(&mut [0; TABLE_BYTES_MAX], &head("along"), &rows).map(|_| ());
     let fault = KnotFault::Gain(GainError::UnusedError { column: 4 });
     assert_eq!(written, Err(TableError::Knot { knot: 2, fault }));
     assert_eq!(
@@ -111,17 +109,17 @@ fn head_and_frame_are_looked_at_as_in_every_table() {
     assert_eq!(refusal(63, &[0; 4]), TableError::Rate { hz: 0 });
     let bytes = schedule_bytes(&gains_over_time(4));
     for length in 0..bytes.len() {
-        let refused = ScheduleTable::from_bytes(&bytes[..length]);
+        let refused = GainTable::from_bytes(&bytes[..length]);
         assert!(matches!(refused, Err(TableError::Length { .. })), "{length} bytes: {refused:?}");
         let gains = gains_over_time(4);
         let rows = ScheduleRows { trajectory: 0, steps_per_knot: 1, gains: &gains };
-        let written = ScheduleTable::write(&mut vec![0; length], &head("along"), &rows).map(|_| ());
+        let written = GainTable::along(&mut vec![0; length], &head("along"), &rows).map(|_| ());
         assert_eq!(written, Err(TableError::Length { bytes: length as u32, wanted: 767 }));
     }
     for bit in 0..bytes.len() * 8 {
         let mut broken = bytes.clone();
         broken[bit / 8] ^= 1 << (bit % 8);
-        assert!(ScheduleTable::from_bytes(&broken).is_err(), "bit {bit}");
+        assert!(GainTable::from_bytes(&broken).is_err(), "bit {bit}");
     }
 }
 
@@ -132,68 +130,78 @@ fn a_table_for_another_board_or_trajectory_is_told() {
     let (flown, other) = (Trajectory::new(&flown).unwrap(), Trajectory::new(&other).unwrap());
     let gains = gains_over_time(4);
     let rows = ScheduleRows { trajectory: flown.checksum(), steps_per_knot: 25, gains: &gains };
-    let mut buffer = [0; SCHEDULE_BYTES_MAX];
-    let bytes = ScheduleTable::write(&mut buffer, &head("along"), &rows).unwrap().bytes();
-    let accepted = AcceptedSchedule::from_bytes(bytes, &VEHICLE, rate()).unwrap();
+    let mut buffer = [0; TABLE_BYTES_MAX];
+    let table = GainTable::along(&mut buffer, &head("along"), &rows).unwrap();
+    let accepted = table.accept_for(&VEHICLE, rate()).unwrap();
     assert!(accepted.is_for(&flown) && !accepted.is_for(&other));
 
     let heavier = Vehicle { id: 1, ..VEHICLE };
-    let refused = LoadError::Accept(AcceptError::Vehicle { table: VEHICLE });
-    assert_eq!(AcceptedSchedule::from_bytes(bytes, &heavier, rate()), Err(refused));
-    let refused = LoadError::Accept(AcceptError::Rate { table_hz: 500, loop_hz: 100 });
-    assert_eq!(AcceptedSchedule::from_bytes(bytes, &VEHICLE, Rate::from_hz(100).unwrap()), Err(refused));
+    assert_eq!(table.accept_for(&heavier, rate()), Err(AcceptError::Vehicle { table: VEHICLE }));
+    let refused = table.accept_for(&VEHICLE, Rate::from_hz(100).unwrap());
+    assert_eq!(refused, Err(AcceptError::Rate { table_hz: 500, loop_hz: 100 }));
+}
+
+fn command(controller: &Controller<'_>, tick: u32) -> Step {
+    let hover = Reference::hover(Vector3::zeros(), 0.0).unwrap();
+    let state = State::at_rest(Vector3::new(0.1, -0.2, 0.3));
+    let target = Target::new(&hover).at(Some(Progress { trajectory: TRAJECTORY, tick }));
+    step_on(controller, &mut Memory::at_rest(), &state, target).unwrap()
 }
 
 #[test]
 fn an_uploaded_table_is_put_to_use_as_a_whole_and_gone_back_from() {
-    let mut store = ScheduleStore::new(VEHICLE, rate());
+    let mut store: GainStore = GainStore::new(VEHICLE, rate());
     let player_rate = Rate::from_hz(1000).unwrap();
-    let hover = Reference::hover(Vector3::zeros(), 0.0).unwrap();
-    let state = State::at_rest(Vector3::new(0.1, -0.2, 0.3));
-    let command = |law: AlongTrajectory<'_>, tick| {
-        let controller = Controller::new(law, Limits::NONE);
-        let progress = Some(Progress { trajectory: TRAJECTORY, tick });
-        controller.step(&mut Memory::new(), progress, &state, &hover).unwrap().command
-    };
-    assert!(store.active().law(player_rate, FeedForward::With).is_none() && !store.revert());
+    let settings = Settings { feed_forward: FeedForward::With, ..Settings::new(Limits::NONE, player_rate) };
+    assert!(store.active().is_none() && !store.revert());
     let blobs = [4, 60].map(|knots| schedule_bytes(&gains_over_time(knots)));
     for (blob, last_gain) in blobs.iter().zip([3.0_f32, 59.0]) {
         store.commit(blob).unwrap();
-        let direct = AcceptedSchedule::from_bytes(blob, &VEHICLE, rate()).unwrap();
-        let [stored, direct] =
-            [store.active().law(player_rate, FeedForward::With).unwrap(), direct.law(player_rate, FeedForward::With)];
+        let direct = GainTable::from_bytes(blob).unwrap();
+        let direct = direct.accept_for(&VEHICLE, rate()).unwrap().controller(&settings).unwrap();
+        // Within the tighter limits of the two, which are the table's; its gain alone is looked at here.
+        let stored = Controller::new(store.active().unwrap().law(&settings).unwrap(), Limits::NONE);
         for tick in [0, 17, 50, 1_000_000] {
-            assert_eq!(command(stored, tick), command(direct, tick), "tick {tick}");
+            let unlimited = Controller::new(*direct.law(), Limits::NONE);
+            assert_eq!(command(&stored, tick), command(&unlimited, tick), "tick {tick}");
         }
         // Of the last knot, k / 64 stiffer than LQR-E, with k / 64 from x besides.
         let thrust = 9.81 - 0.3 * 100.0 * (1.0 + last_gain / 64.0) - 0.1 * last_gain / 64.0;
-        assert!((command(stored, u32::MAX).thrust_m_s2 - thrust).abs() < 1e-4);
+        assert!((command(&stored, u32::MAX).command.thrust_m_s2 - thrust).abs() < 1e-4);
+        assert_eq!(command(&direct, u32::MAX).command.thrust_m_s2, 1.75, "the table's least thrust");
     }
     let mut damaged = blobs[0].clone();
     damaged[300] ^= 1;
     assert!(matches!(store.commit(&damaged), Err(LoadError::Table(TableError::Checksum { .. }))));
-    let other_kind = LoadError::Table(TableError::OtherKind { kind: TableKind::Equilibrium });
-    assert_eq!(store.commit(&bytes_of(&table("lqr-e"))), Err(other_kind));
-    assert_eq!(store.active().head().map(|head| head.name), Some(head("along").name), "what was in use stays");
-    let knots_in_use =
-        |store: &ScheduleStore| command(store.active().law(player_rate, FeedForward::With).unwrap(), u32::MAX);
-    let sixty = knots_in_use(&store);
+    assert_eq!(store.active().map(|table| table.head().name), Some(head("along").name), "what was in use stays");
+    let sixty = store.active().map(|table| last_thrust(&table));
     assert!(store.revert());
-    assert_ne!(knots_in_use(&store), sixty, "the table before");
+    assert_ne!(store.active().map(|table| last_thrust(&table)), sixty, "the table before");
     assert!(store.revert());
-    assert_eq!(knots_in_use(&store), sixty, "and back");
+    assert_eq!(store.active().map(|table| last_thrust(&table)), sixty, "and back");
+    // One of another kind takes its place as any other does.
+    store.commit(&bytes_of(&table("lqr-e"))).unwrap();
+    assert_eq!(store.active().map(|table| table.kind()), Some(TableKind::Equilibrium));
+}
+
+/// What tells two tables in a store apart: the thrust of their last gain.
+fn last_thrust(table: &quatrack::gains::table::AcceptedTable<'_>) -> u32 {
+    let settings = Settings::new(Limits::NONE, rate());
+    let controller = Controller::new(table.law(&settings).unwrap(), Limits::NONE);
+    command(&controller, u32::MAX).command.thrust_m_s2.to_bits()
 }
 
 /// What holds for every table that comes out of any bytes.
 fn holds_for_a_table(bytes: &[u8]) -> Result<bool, TestCaseError> {
-    let Ok(read) = ScheduleTable::from_bytes(bytes) else { return Ok(false) };
-    let schedule = read.schedule();
+    let Ok(read) = GainTable::from_bytes(bytes) else { return Ok(false) };
+    let Some(schedule) = read.schedule() else { return Ok(false) };
     let gains: Vec<_> = (0..).map_while(|knot| schedule.gain(knot)).collect();
     let rows =
         ScheduleRows { trajectory: schedule.trajectory(), steps_per_knot: schedule.steps_per_knot(), gains: &gains };
-    let mut buffer = [0; SCHEDULE_BYTES_MAX];
-    let again = ScheduleTable::write(&mut buffer, read.head(), &rows).unwrap();
-    prop_assert_eq!(again.bytes(), bytes, "one table has one encoding");
+    let mut buffer = [0; TABLE_BYTES_MAX];
+    let again = GainTable::along(&mut buffer, read.head(), &rows).unwrap();
+    prop_assert_eq!(bytes_of(&again), bytes, "one table has one encoding");
+    prop_assert_eq!(bytes_of(&read), bytes, "read or written");
     Ok(true)
 }
 

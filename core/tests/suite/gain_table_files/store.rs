@@ -1,14 +1,14 @@
 //! Tables that travel over the link and are swapped under a flight.
 
-use quatrack::gains::table::{AcceptError, AcceptedTable, LoadError, TableError, Vehicle};
+use quatrack::gains::table::{AcceptError, LoadError, TableError, Vehicle};
 use quatrack::link::{
-    BlobError, BlobKind, BlobReceiver, FRAME_BYTES, FromBoard, GainStore, LawChoice, MESSAGE_BYTES, Refusal, Table,
-    UploadBegin,
+    BlobError, BlobKind, BlobReceiver, FRAME_BYTES, FromBoard, GainStore, MESSAGE_BYTES, Refusal, UploadBegin,
 };
 use quatrack::nalgebra::Vector3;
-use quatrack::{Crossfade, Limits, Rate, Reference, State, Tracker};
+use quatrack::{Handover, Limits, Memory, Rate, Reference, Settings, State};
+use quatrack_tests::core_step::command;
 
-use super::fixture::{VEHICLE, bytes_of, rate, table};
+use super::fixture::{VEHICLE, bytes_of, gains_over_time, rate, schedule_bytes, table};
 
 fn in_use(store: &GainStore) -> Option<&str> {
     store.active().map(|table| table.head().name.as_str())
@@ -19,7 +19,7 @@ fn an_upload_becomes_the_table_in_use() {
     let blob = bytes_of(&table("lqr-f"));
     let mut receiver = BlobReceiver::<512>::new();
     let mut progress = receiver.begin(&UploadBegin::of(BlobKind::GainTable, 7, &blob).unwrap()).unwrap();
-    let mut store = GainStore::new(VEHICLE, rate());
+    let mut store: GainStore = GainStore::new(VEHICLE, rate());
     while let Some(chunk) = progress.next_chunk(&blob) {
         assert_eq!(in_use(&store), None, "before the commit");
         progress = receiver.chunk(&chunk).unwrap();
@@ -27,21 +27,23 @@ fn an_upload_becomes_the_table_in_use() {
     let (begin, whole) = receiver.finish(7).unwrap();
     assert_eq!(begin.kind, BlobKind::GainTable);
     store.commit(whole).unwrap();
-    assert_eq!(store.active().map(|accepted| *accepted.table()), Some(table("lqr-f")));
+    let expected = table("lqr-f");
+    assert_eq!(store.active(), Some(expected.accept_for(&VEHICLE, rate()).unwrap()));
 }
 
 #[test]
 fn a_refused_blob_leaves_both_tables() {
-    let mut store = GainStore::new(VEHICLE, rate());
+    let mut store: GainStore = GainStore::new(VEHICLE, rate());
     store.commit(&bytes_of(&table("lyap-e"))).unwrap();
     store.commit(&bytes_of(&table("lqr-e"))).unwrap();
     let mut damaged = bytes_of(&table("lyap-f"));
     damaged[200] ^= 1;
     assert!(matches!(store.commit(&damaged), Err(LoadError::Table(TableError::Checksum { .. }))));
-    let mut elsewhere = GainStore::new(Vehicle { id: 9, ..VEHICLE }, Rate::from_hz(100).unwrap());
+    let mut elsewhere: GainStore = GainStore::new(Vehicle { id: 9, ..VEHICLE }, Rate::from_hz(100).unwrap());
     let other = AcceptError::Vehicle { table: VEHICLE };
     assert_eq!(elsewhere.commit(&bytes_of(&table("lqr-e"))), Err(LoadError::Accept(other)));
-    let accepted_here = table("lqr-e").accept_for(&VEHICLE, rate()).unwrap();
+    let lqr_e = table("lqr-e");
+    let accepted_here = lqr_e.accept_for(&VEHICLE, rate()).unwrap();
     assert_eq!(elsewhere.activate(&accepted_here), Err(other), "accepted, but for another board");
     assert_eq!(elsewhere.active(), None);
 
@@ -52,14 +54,13 @@ fn a_refused_blob_leaves_both_tables() {
 
 #[test]
 fn the_table_before_is_kept_and_gone_back_to() {
-    let mut store = GainStore::new(VEHICLE, rate());
+    let mut store: GainStore = GainStore::new(VEHICLE, rate());
     assert!(!store.revert(), "nothing to go back to");
     store.commit(&bytes_of(&table("lyap-e"))).unwrap();
     assert!(!store.revert(), "one table has none before it");
     assert_eq!(in_use(&store), Some("lyap-e"));
     for (next, before) in [("lqr-e", "lyap-e"), ("lyap-f", "lqr-e"), ("lqr-f", "lyap-f")] {
-        let table = AcceptedTable::from_bytes(&bytes_of(&table(next)), &VEHICLE, rate()).unwrap();
-        store.activate(&table).unwrap();
+        store.activate(&table(next).accept_for(&VEHICLE, rate()).unwrap()).unwrap();
         assert_eq!(in_use(&store), Some(next));
         assert_eq!(store.previous().map(|table| table.head().name.as_str()), Some(before));
     }
@@ -68,38 +69,43 @@ fn the_table_before_is_kept_and_gone_back_to() {
 }
 
 #[test]
-fn a_choice_names_built_in_tables_and_loaded_ones() {
-    let mut store = GainStore::new(VEHICLE, rate());
-    let law = |store: &GainStore, table| store.law(&LawChoice::new(table)).is_some();
-    assert!(law(&store, Table::LyapF) && !law(&store, Table::Loaded(0)));
+fn slots_are_numbered_from_the_one_in_use() {
+    let mut store = GainStore::<0>::new(VEHICLE, rate());
+    let is_there = |store: &GainStore<0>, slot| store.table(slot).is_some();
+    assert!(!is_there(&store, 0));
     store.commit(&bytes_of(&table("lyap-e"))).unwrap();
-    assert!(law(&store, Table::Loaded(0)) && !law(&store, Table::Loaded(1)));
+    assert!(is_there(&store, 0) && !is_there(&store, 1));
     store.commit(&bytes_of(&table("lqr-e"))).unwrap();
-    assert!(law(&store, Table::Loaded(1)) && !law(&store, Table::Loaded(2)));
+    assert!(is_there(&store, 1) && !is_there(&store, 2));
+    // Without room for gains along a trajectory these are refused, and nothing else changes.
+    let along = schedule_bytes(&gains_over_time(4));
+    assert_eq!(store.commit(&along), Err(LoadError::Accept(AcceptError::Knots { knots: 4, room: 0 })));
+    assert_eq!(store.active().map(|table| table.head().name), Some(table("lqr-e").head().name));
 }
 
 #[test]
 fn a_flight_goes_on_over_a_swap() {
-    let mut store = GainStore::new(VEHICLE, rate());
+    let mut store: GainStore = GainStore::new(VEHICLE, rate());
     store.commit(&bytes_of(&table("lyap-e"))).unwrap();
     let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0).unwrap();
-    let choice = |slot| LawChoice::new(Table::Loaded(slot));
-    let limits = store.active().map_or(Limits::NONE, AcceptedTable::limits);
     // A point mass under the commanded thrust, 10 cm low at the start.
     let (mut z, mut vz, mut last) = (0.9_f32, 0.0_f32, None);
-    let mut fade = Crossfade::over(0);
+    let (mut memory, mut way) = (Memory::at_rest(), Handover::OVER);
     for tick in 0..1000 {
         if tick == 50 {
             store.commit(&bytes_of(&table("lqr-e"))).unwrap();
-            fade = Crossfade::over(50);
+            way = Handover::of_commands(50);
         }
         let state = State { velocity_m_s: Vector3::new(0.0, 0.0, vz), ..State::at_rest(Vector3::new(0.0, 0.0, z)) };
-        let new = Tracker::new(store.law(&choice(0)).unwrap(), limits);
-        let step = match store.law(&choice(1)) {
-            Some(old) if !fade.is_over() => fade.step(&Tracker::new(old, limits), &new, &state, &reference),
-            _ => new.step(&state, &reference),
+        let settings = Settings::new(Limits::NONE, rate());
+        let controller = |slot| store.table(slot).map(|table| table.controller(&settings).unwrap());
+        let new = controller(0).unwrap();
+        let (measured, target) = ((&state).into(), (&reference).into());
+        let output = match controller(1) {
+            Some(old) if !way.is_over() => way.step((&old, &new), &mut memory, measured, target),
+            _ => new.step(&mut memory, measured, target),
         };
-        let thrust = step.unwrap().command.thrust_m_s2;
+        let thrust = command(output.unwrap()).command.thrust_m_s2;
         let jump = thrust - last.unwrap_or(thrust);
         // At the swap LQR-E asks for 6 m/s^2 more than LYAP-E at once; over 50 steps, for less than 0.15 more a step.
         assert!(jump.abs() < 0.15, "tick {tick}: the thrust jumps by {jump} m/s^2");

@@ -9,8 +9,8 @@ use core::hint::black_box;
 
 use quatrack::law::ActuatorAwareGain;
 use quatrack::{
-    ActuatorAware, ActuatorMemory, Airframe, MotorLaw, MotorReference, MotorStep, MotorTracker, Piece, Player, Rate,
-    ReferenceError, RigidState, State, StepError, Tick, Trajectory,
+    Actuation, ActuatorAware, Airframe, Controller, Limits, Memory, MotorReference, Output, Piece, Player, Rate,
+    ReferenceError, RigidState, State, StepError, Target, Tick, Trajectory,
 };
 use quatrack_firmware::flight::{DECIMATION as TICKS_PER_STEP, TICK_RATE};
 
@@ -32,14 +32,14 @@ const APART_N: f32 = 0.05;
 
 /// What is counted on a course.
 pub(crate) struct Motors<'a> {
-    designed: MotorTracker<'a>,
-    dense: MotorTracker<'a>,
+    designed: Controller<'a>,
+    dense: Controller<'a>,
     airframe: Airframe,
     stored: Player<'static>,
     worst: Player<'static>,
     /// At the end of the first piece, and the step on which the next one begins.
     crossing: (Player<'static>, u32),
-    memories: [ActuatorMemory; 9],
+    memories: [Memory; 9],
 }
 
 /// Of degree 7.
@@ -51,27 +51,30 @@ pub(crate) fn septic(pieces: &mut [Piece]) {
 }
 
 impl<'a> Motors<'a> {
-    pub(crate) fn new(dense: &'a ActuatorAwareGain, stored: &'static [Piece], worst: &'static [Piece]) -> Option<Self> {
+    pub(crate) fn new(
+        dense: &'a ActuatorAwareGain,
+        actuation: &'a Actuation,
+        stored: &'static [Piece],
+        worst: &'static [Piece],
+    ) -> Option<Self> {
         let rate = Rate::from_hz(TICK_RATE.hz() / TICKS_PER_STEP)?;
-        let airframe = Airframe::CRAZYFLIE_2_1.commanded_at(rate);
-        let tracker = |gain: &'a ActuatorAwareGain| {
-            let law = ActuatorAware::new(gain, &airframe, rate).ok()?;
-            Some(MotorTracker::new(MotorLaw::ActuatorAware(law), &airframe))
-        };
+        let airframe = *actuation.airframe();
+        let controller =
+            |gain: &'a ActuatorAwareGain| Controller::new(ActuatorAware::new(gain, actuation), Limits::NONE);
         let next = (worst.first()?.duration_ns.div_ceil(1_000_000_000 / u64::from(rate.hz()))) as u32;
         let worst = Player::new(Trajectory::new(worst).ok()?, TICK_RATE);
         let mut before = worst;
         before.motor_reference((next - 1) * TICKS_PER_STEP, &airframe).ok()?;
-        let hover = ActuatorMemory::hovering(&airframe);
+        let hover = Memory::hovering(&airframe);
         let mut memories = [hover; 9];
         for (index, memory) in memories.iter_mut().skip(1).enumerate() {
             let mut forces_n = hover.forces_n();
             *forces_n.get_mut(index / 2)? += if index % 2 == 0 { APART_N } else { -APART_N };
-            *memory = ActuatorMemory::new(forces_n)?;
+            *memory = Memory::new(forces_n)?;
         }
         Some(Self {
-            designed: tracker(&table::ACTUATOR_AWARE)?,
-            dense: tracker(dense)?,
+            designed: controller(&table::ACTUATOR_AWARE),
+            dense: controller(dense),
             airframe,
             stored: Player::new(Trajectory::new(stored).ok()?, TICK_RATE),
             worst,
@@ -97,13 +100,13 @@ impl<'a> Motors<'a> {
             let attitude = if step % 2 == 0 { turned } else { -turned };
             let state = State { attitude, ..recorded };
             let state = black_box(RigidState { state, body_rates_rad_s: reference.body_rates_rad_s() });
-            for (tracker, calls) in [(&self.designed, &mut *designed), (&self.dense, &mut *dense)] {
+            for (controller, calls) in [(&self.designed, &mut *designed), (&self.dense, &mut *dense)] {
                 for memory in self.memories {
-                    let (tracker, mut memory) = (black_box(tracker), black_box(memory));
+                    let (controller, mut memory) = (black_box(controller), black_box(memory));
                     let start = bench.counter.now();
-                    let step = tracker.step(&mut memory, &state, &reference);
+                    let output = controller.step(&mut memory, (&state).into(), Target::with_forces(&reference));
                     calls.add(bench.since(start));
-                    hash = of_step(hash, black_box(step), &memory)?;
+                    hash = of_step(hash, black_box(output), &memory)?;
                 }
             }
         }
@@ -135,8 +138,8 @@ fn of_motor_reference(hash: u32, reference: &MotorReference) -> u32 {
     hashed(hashed(hash, reference.forces_n().map(f32::to_bits)), reference.commands_n().map(f32::to_bits))
 }
 
-fn of_step(hash: u32, step: Result<MotorStep, StepError>, memory: &ActuatorMemory) -> Option<u32> {
-    let step = step.ok()?;
+fn of_step(hash: u32, output: Result<Output, StepError>, memory: &Memory) -> Option<u32> {
+    let Ok(Output::Forces(step)) = output else { return None };
     let hash = hashed(hash, step.forces_n.map(f32::to_bits));
     Some(hashed(hashed(hash, memory.forces_n().map(f32::to_bits)), [u32::from(step.limited.bits())]))
 }

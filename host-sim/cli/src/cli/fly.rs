@@ -6,7 +6,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, FlightLaw, Limits, Rate};
+use quatrack::{Equilibrium, ErrorForm, FeedForward, FlatOutput, Law as CoreLaw, Limits, Rate};
 use quatrack_design::design::codegen::rounded;
 use quatrack_design::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
 use quatrack_plan::plan::{self, Plan, PlanError};
@@ -259,7 +259,7 @@ fn fly_core(
 ) -> Result<Flight, Failure> {
     let (feed_forward, error_form) = (args.feed_forward(), args.error_form());
     let (equilibrium_gain, flat_gain);
-    let law: AnyLaw<'_> = match gain {
+    let law: CoreLaw<'_> = match gain {
         Gain::Equilibrium(gain) => {
             equilibrium_gain = quatrack::law::EquilibriumGain::new(rounded(gain)).map_err(Failure::input)?;
             Equilibrium { gain: &equilibrium_gain, error_form, feed_forward }.into()
@@ -269,13 +269,13 @@ fn fly_core(
             FlatOutput { gain: &flat_gain, feed_forward }.into()
         }
     };
-    fly_law(args, law.into(), trajectory, rate, limits)
+    fly_law(args, law, trajectory, rate, limits)
 }
 
 /// Flies a law of the core.
 fn fly_law(
     args: &Args,
-    law: FlightLaw<'_>,
+    law: CoreLaw<'_>,
     trajectory: &PiecewisePolynomial,
     rate: Rate,
     limits: Limits,

@@ -1,7 +1,7 @@
 //! The paper's flights as the board flies them: both courses, four controllers, 500 Hz; states and commands out.
 
 use quatrack::link::{Table, TrajectoryId};
-use quatrack::{Command, Limits, Player, Rate, State, Tracker};
+use quatrack::{Command, Controller as CoreController, Limits, Measured, Memory, Player, Rate, State, Target};
 use quatrack_design::model::StateVector;
 use quatrack_plan::plan;
 use quatrack_plan::plan::paper::Course;
@@ -76,7 +76,7 @@ impl Plans {
 
 /// The core on the host with what the board has stored.
 pub struct HostCore {
-    tracker: Tracker<'static>,
+    controller: CoreController<'static>,
     player: Player<'static>,
 }
 
@@ -89,7 +89,10 @@ impl HostCore {
         let trajectory = quatrack::Trajectory::new(stored::pieces(course))
             .map_err(|error| PilError::Answer(format!("the stored {course:?} trajectory: {error}")))?;
         let rate = Rate::from_hz(RATE_HZ).ok_or_else(|| PilError::Answer(format!("no rate of {RATE_HZ} Hz")))?;
-        Ok(Self { tracker: Tracker::new(core_law(controller), Limits::NONE), player: Player::new(trajectory, rate) })
+        Ok(Self {
+            controller: CoreController::new(core_law(controller), Limits::NONE),
+            player: Player::new(trajectory, rate),
+        })
     }
 
     /// The command of a tick.
@@ -98,8 +101,11 @@ impl HostCore {
     /// The core's own words.
     pub fn step(&mut self, tick: u32, state: &State) -> Result<Command, String> {
         let reference = self.player.reference(tick).map_err(|error| error.to_string())?;
-        let step = self.tracker.step(state, &reference).map_err(|error| error.to_string())?;
-        Ok(step.command)
+        // None of these laws remembers anything.
+        let memory = &mut Memory::at_rest();
+        let output = self.controller.step(memory, Measured::new(state), Target::new(&reference));
+        let output = output.map_err(|error| error.to_string())?;
+        output.command().map(|step| step.command).ok_or_else(|| "the law gives motor forces".to_owned())
     }
 }
 

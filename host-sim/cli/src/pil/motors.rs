@@ -11,8 +11,8 @@ use nalgebra::{Vector3, Vector4};
 use quatrack::gains::paper;
 use quatrack::link::{LawChoice, LimitsSetting, Parameter, Table, ToBoard, TrajectoryCommand};
 use quatrack::{
-    ActuatorAware, ActuatorMemory, Airframe, BodyRateLoop, ByBodyRates, Equilibrium, MotorForces, MotorLag, MotorLaw,
-    MotorTracker, Player, Quaternion, Rate, RigidState, State, Tracker,
+    Actuation, ActuatorAware, Airframe, BodyRateLoop, Controller, Equilibrium, Limits, Memory, MotorForces, Player,
+    Quaternion, Rate, RigidState, State,
 };
 use quatrack_design::model::position;
 use quatrack_design::vehicle::Vehicle;
@@ -114,10 +114,11 @@ pub struct MotorDifference {
 
 /// The core on the host with what the board has.
 struct HostCore {
-    tracker: MotorTracker<'static>,
-    airframe: Airframe,
+    flight: MotorFlight,
+    limits: Limits,
+    actuation: Actuation,
     player: Player<'static>,
-    memory: ActuatorMemory,
+    memory: Memory,
 }
 
 impl HostCore {
@@ -126,32 +127,29 @@ impl HostCore {
         let airframe = Airframe::CRAZYFLIE_2_1;
         let rate = Rate::from_hz(RATE_HZ).ok_or_else(|| refused(&"no such rate"))?;
         let trajectory = quatrack::Trajectory::new(stored::pieces(course)).map_err(|error| refused(&error))?;
-        let law = match flight {
-            MotorFlight::LqrE => MotorLaw::BodyRates(ByBodyRates {
-                tracker: Tracker::new(
-                    Equilibrium::new(&paper::LQR_E),
-                    vehicles::limits(&vehicle).map_err(|error| refused(&error))?,
-                ),
-                body_rates: BodyRateLoop::new(&airframe, flight.bandwidth_rad_s(vehicle))
-                    .map_err(|error| refused(&error))?,
-                lag: MotorLag::new(airframe.figures().motor_lag_s, rate).map_err(|error| refused(&error))?,
-            }),
-            MotorFlight::ActuatorAware => MotorLaw::ActuatorAware(
-                ActuatorAware::new(&table::ACTUATOR_AWARE, &airframe, rate).map_err(|error| refused(&error))?,
-            ),
-        };
+        let body_rates =
+            BodyRateLoop::new(&airframe, flight.bandwidth_rad_s(vehicle)).map_err(|error| refused(&error))?;
+        let actuation = Actuation::new(&airframe, rate).map_err(|error| refused(&error))?;
         Ok(Self {
-            tracker: MotorTracker::new(law, &airframe),
-            airframe,
+            flight,
+            limits: vehicles::limits(vehicle).map_err(|error| refused(&error))?,
+            actuation: actuation.with_body_rates(body_rates),
             player: Player::new(trajectory, rate),
-            memory: ActuatorMemory::at_rest(),
+            memory: Memory::at_rest(),
         })
     }
 
     fn step(&mut self, tick: u32, state: &RigidState) -> Result<MotorForces, String> {
-        let reference = self.player.motor_reference(tick, &self.airframe).map_err(|error| error.to_string())?;
-        let step = self.tracker.step(&mut self.memory, state, &reference).map_err(|error| error.to_string())?;
-        Ok(step.forces_n)
+        let reference = self.player.motor_reference(tick, self.actuation.airframe()).map_err(|e| e.to_string())?;
+        let controller = match self.flight {
+            MotorFlight::LqrE => Controller::new(Equilibrium::new(&paper::LQR_E), self.limits),
+            MotorFlight::ActuatorAware => {
+                Controller::new(ActuatorAware::new(&table::ACTUATOR_AWARE, &self.actuation), self.limits)
+            }
+        };
+        let controller = controller.with_actuation(&self.actuation);
+        let step = controller.step_to_motors(&mut self.memory, state.into(), (&reference).into());
+        Ok(step.map_err(|error| error.to_string())?.forces_n)
     }
 }
 

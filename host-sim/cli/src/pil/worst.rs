@@ -8,8 +8,8 @@ pub(super) mod motors;
 use quatrack::law::EquilibriumGain;
 use quatrack::link::{LawChoice, LimitsSetting};
 use quatrack::{
-    AnyLaw, Command, Equilibrium, FeedForward, Limits, Piece, Player, Quaternion, Rate, State, Step, Tracker,
-    Trajectory, gains::paper,
+    Command, Controller as CoreController, Equilibrium, FeedForward, Law, Limits, Measured, Memory, Piece, Player,
+    Quaternion, Rate, Reference, State, Target, Trajectory, gains::paper,
 };
 use quatrack_plan::plan::paper::Course;
 use quatrack_plan::plan::stored;
@@ -95,8 +95,7 @@ impl Host {
         let mut hash = HASH;
         for limits in self.limits {
             for feed_forward in FEED_FORWARD {
-                let Step { command, .. } =
-                    Tracker::new(self.law(feed_forward)?, limits).step(&state, &reference).ok()?;
+                let command = command(self.law(feed_forward)?, limits, &state, &reference)?;
                 hash = hashed(hash, words(&command));
             }
         }
@@ -105,19 +104,26 @@ impl Host {
                 let [.., last] = self.limits;
                 let state = State { attitude: sign(recorded.attitude), ..*recorded };
                 let reference = self.stored.reference(step).ok()?;
-                Some(Tracker::new(self.law(FeedForward::With)?, last).step(&state, &reference).ok()?.command)
+                Some(command(self.law(FeedForward::With)?, last, &state, &reference)?)
             }
             None => None,
         };
         Some(Expected { hash, command })
     }
 
-    fn law(&self, feed_forward: FeedForward) -> Option<AnyLaw<'_>> {
+    fn law(&self, feed_forward: FeedForward) -> Option<Law<'_>> {
         match self.controller {
             Some(controller) => LawChoice { feed_forward, ..LawChoice::new(table(controller)) }.built_in(),
             None => Some(Equilibrium { feed_forward, ..Equilibrium::new(&self.dense) }.into()),
         }
     }
+}
+
+/// The command of a law that remembers nothing.
+fn command(law: Law<'_>, limits: Limits, state: &State, reference: &Reference) -> Option<Command> {
+    let controller = CoreController::new(law, limits);
+    let output = controller.step(&mut Memory::at_rest(), Measured::new(state), Target::new(reference)).ok()?;
+    output.command().map(|step| step.command)
 }
 
 /// Of nothing.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use quatrack::Trajectory;
-use quatrack::gains::table::{GainTable, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable};
+use quatrack::gains::table::{GainTable, ScheduleRows, TABLE_BYTES_MAX};
 use quatrack_plan::trajectory::file::{self, TrajectoryFile};
 use quatrack_plan::trajectory::on_board;
 
@@ -208,9 +208,10 @@ fn gains_along_a_trajectory_fly_that_one_alone() {
         steps_per_knot: 500,
         gains: &[gain, gain],
     };
-    let mut buffer = vec![0; SCHEDULE_BYTES_MAX];
+    let mut buffer = vec![0; TABLE_BYTES_MAX];
     let table = dir.join("along.bin");
-    fs::write(&table, ScheduleTable::write(&mut buffer, &head, &rows).unwrap().bytes()).unwrap();
+    let written = GainTable::along(&mut buffer, &head, &rows).unwrap();
+    fs::write(&table, written.to_bytes(&mut vec![0; TABLE_BYTES_MAX]).unwrap()).unwrap();
     let fly = |trajectory: &Path| {
         quatrack(&["fly", "--gains", table.to_str().unwrap(), "--trajectory", trajectory.to_str().unwrap()])
     };

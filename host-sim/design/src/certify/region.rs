@@ -4,6 +4,8 @@
 //! The grid has every value of each quantity with every value of the others: each singly, and all corners. The controller
 //! predicts with the lag of its design throughout. Between the points nothing is promised; the lags stand close.
 
+use std::fmt;
+
 use nalgebra::DMatrix;
 use serde::Serialize;
 
@@ -30,6 +32,17 @@ pub struct Variation {
     pub inertia_factor: f64,
     /// How late a command acts, s.
     pub delay_s: f64,
+}
+
+impl fmt::Display for Variation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { lag_s, mass_factor, inertia_factor, delay_s } = self;
+        let [lag_ms, delay_ms] = [1e3 * lag_s, 1e3 * delay_s];
+        write!(
+            f,
+            "{lag_ms:.1} ms of motor lag, {mass_factor:.2} times the mass, {inertia_factor:.2} times the inertia and {delay_ms:.1} ms of delay"
+        )
+    }
 }
 
 /// Values of each quantity.

@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum VehicleError {
     /// A name that the head of a table cannot carry.
-    #[error("vehicle: name = {name:?}: must be 1 to {longest} letters, digits or any of - . _")]
+    #[error("vehicle: name = \"{name}\": must be 1 to {longest} letters, digits or any of - . _")]
     Name {
         /// The name as read.
         name: String,

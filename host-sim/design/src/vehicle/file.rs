@@ -3,13 +3,11 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 
+use super::check::{LARGEST, check, lag, one_body, positive};
+use super::flown::{AirFigures, BatteryFigures, Flown, ForceFigures, MotorFigures, PropellerFigures};
 use super::{Motors, Vehicle, VehicleError};
 use crate::model::GRAVITY_M_S2;
 
-/// Far beyond any multicopter; keeps products of figures in range.
-const LARGEST: f64 = 1e6;
-/// Likewise downwards.
-const SMALLEST: f64 = 1e-9;
 /// Longest name, bytes: fits the names that tables carry.
 const LONGEST_NAME: usize = 64;
 
@@ -17,7 +15,9 @@ const LONGEST_NAME: usize = 64;
 ///
 /// Its entries are described in `gains/vehicles` of the repository, where each built-in figure has its source beside it:
 /// `name`; `body` with `mass_kg` and `inertia_kg_m2`, by rows; `motors` with `arm_m`, `thrust_min_n`, `thrust_max_n`,
-/// `torque_per_thrust_m`, `lag_s` and `published_lag_s`; `limits` with `body_rates_rad_s`.
+/// `torque_per_thrust_m`, `lag_s` and `published_lag_s`; `limits` with `body_rates_rad_s`; and what is known of it in flight,
+/// each where somebody has measured it: `air`, `motors.flown`, `motors.force`, `propeller`, `battery`, with the keys of
+/// [`super::Flown`].
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleFile {
@@ -25,6 +25,9 @@ pub struct VehicleFile {
     body: BodyEntry,
     motors: MotorsEntry,
     limits: LimitsEntry,
+    air: Option<AirFigures>,
+    propeller: Option<PropellerFigures>,
+    battery: Option<BatteryFigures>,
 }
 
 #[derive(Deserialize)]
@@ -43,6 +46,8 @@ struct MotorsEntry {
     torque_per_thrust_m: f64,
     lag_s: f64,
     published_lag_s: [f64; 2],
+    flown: Option<MotorFigures>,
+    force: Option<ForceFigures>,
 }
 
 #[derive(Deserialize)]
@@ -59,10 +64,23 @@ impl TryFrom<VehicleFile> for Vehicle {
     fn try_from(file: VehicleFile) -> Result<Self, VehicleError> {
         let plain = |c: char| c.is_ascii_alphanumeric() || "-._".contains(c);
         if file.name.is_empty() || file.name.len() > LONGEST_NAME || !file.name.chars().all(plain) {
-            return Err(VehicleError::Name { name: file.name, longest: LONGEST_NAME });
+            // What is printed stays on one line.
+            let name = file.name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
+            return Err(VehicleError::Name { name, longest: LONGEST_NAME });
         }
         positive("body.mass_kg", file.body.mass_kg)?;
         let (inertia_kg_m2, inverse_inertia) = inertia(&file.body.inertia_kg_m2)?;
+        positive("motors.arm_m", file.motors.arm_m)?;
+        let moments = inertia_kg_m2.symmetric_eigenvalues();
+        one_body(file.body.mass_kg, [moments.min(), moments.max()], file.motors.arm_m, file.motors.thrust_max_n)?;
+        let flown = Flown {
+            air: file.air,
+            motors: file.motors.flown,
+            force: file.motors.force,
+            propeller: file.propeller,
+            battery: file.battery,
+        };
+        flown.check(file.motors.arm_m)?;
         let rates = file.limits.body_rates_rad_s;
         rates.iter().try_for_each(|rate| positive("limits.body_rates_rad_s", *rate))?;
         Ok(Self {
@@ -72,17 +90,9 @@ impl TryFrom<VehicleFile> for Vehicle {
             inertia_kg_m2,
             inverse_inertia,
             body_rates_max_rad_s: Vector3::from(rates),
+            flown,
         })
     }
-}
-
-/// `Ok` if `holds`; a NaN makes every comparison false and so never passes.
-fn check(holds: bool, field: &str, value: f64, must: impl Into<String>) -> Result<(), VehicleError> {
-    if holds { Ok(()) } else { Err(VehicleError::Value { field: field.to_owned(), value, must: must.into() }) }
-}
-
-fn positive(field: &str, value: f64) -> Result<(), VehicleError> {
-    check((SMALLEST..=LARGEST).contains(&value), field, value, format!("positive, from {SMALLEST} to {LARGEST}"))
 }
 
 /// Symmetric, and that of a body: no principal moment above the sum of the two others. With its inverse.
@@ -116,8 +126,7 @@ fn inertia(rows: &[[f64; 3]; 3]) -> Result<(Matrix3<f64>, Matrix3<f64>), Vehicle
 }
 
 fn motors(entry: &MotorsEntry, hover_n: f64) -> Result<Motors, VehicleError> {
-    let MotorsEntry { arm_m, thrust_min_n, thrust_max_n, torque_per_thrust_m, lag_s, published_lag_s } = *entry;
-    positive("motors.arm_m", arm_m)?;
+    let MotorsEntry { arm_m, thrust_min_n, thrust_max_n, torque_per_thrust_m, lag_s, published_lag_s, .. } = *entry;
     positive("motors.torque_per_thrust_m", torque_per_thrust_m)?;
     check(
         (0.0..hover_n).contains(&thrust_min_n),
@@ -131,10 +140,11 @@ fn motors(entry: &MotorsEntry, hover_n: f64) -> Result<Motors, VehicleError> {
         thrust_max_n,
         format!("above {hover_n:.6} N, a quarter of the weight, to {LARGEST}"),
     )?;
-    positive("motors.lag_s", lag_s)?;
+    lag("motors.lag_s", lag_s)?;
     let [shortest, longest] = published_lag_s;
-    positive("motors.published_lag_s", shortest)?;
+    lag("motors.published_lag_s", shortest)?;
+    lag("motors.published_lag_s", longest)?;
     let must = format!("the shortest, then the longest; the shortest is {shortest}");
-    check(shortest <= longest && longest <= LARGEST, "motors.published_lag_s", longest, must)?;
+    check(shortest <= longest, "motors.published_lag_s", longest, must)?;
     Ok(Motors { arm_m, thrust_min_n, thrust_max_n, torque_per_thrust_m, lag_s, published_lag_s })
 }

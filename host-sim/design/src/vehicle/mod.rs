@@ -4,13 +4,16 @@
 //! left; 1 and 3 turn anticlockwise seen from above, so that the air turns the body clockwise. Body frame: x forwards, y
 //! left, z up.
 
+mod check;
 mod error;
 mod file;
+mod flown;
 
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
 pub use error::VehicleError;
 pub use file::VehicleFile;
+pub use flown::{AirFigures, BatteryFigures, Flown, ForceFigures, MotorFigures, PropellerFigures};
 
 use crate::model::GRAVITY_M_S2;
 
@@ -29,6 +32,7 @@ pub struct Vehicle {
     inverse_inertia: Matrix3<f64>,
     motors: Motors,
     body_rates_max_rad_s: Vector3<f64>,
+    flown: Flown,
 }
 
 /// Four equal motors in an X.
@@ -98,6 +102,11 @@ impl Vehicle {
     /// Least and most thrust of all motors over mass, m/s^2.
     pub fn thrust_limits_m_s2(&self) -> [f64; 2] {
         [self.motors.thrust_min_n, self.motors.thrust_max_n].map(|thrust_n| 4.0 * thrust_n / self.mass_kg)
+    }
+
+    /// What is known of it in flight.
+    pub fn flown(&self) -> &Flown {
+        &self.flown
     }
 
     /// Body rates that a rate loop of this vehicle follows, rad/s.

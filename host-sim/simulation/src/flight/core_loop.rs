@@ -5,7 +5,10 @@
 
 use nalgebra::{Vector3, Vector4};
 use quatrack::trajectory::TrajectoryError;
-use quatrack::{Command, Controller, FlightLaw, Limits, Memory, Piece, Player, Progress, Quaternion, Rate, State};
+use quatrack::{
+    Command, Controller, Law, Limits, Measured, Memory, Output, Piece, Player, Progress, Quaternion, Rate, State,
+    Target,
+};
 use quatrack_design::model::{InputVector, StateVector, attitude, position, velocity};
 
 use super::closed_loop::HeldCommand;
@@ -56,7 +59,7 @@ impl<'a> CoreLoop<'a> {
     pub fn new(
         pieces: &'a [Piece],
         rate: Rate,
-        law: impl Into<FlightLaw<'a>>,
+        law: impl Into<Law<'a>>,
         limits: Limits,
     ) -> Result<Self, TrajectoryError> {
         let trajectory = quatrack::Trajectory::new(pieces)?;
@@ -65,7 +68,7 @@ impl<'a> CoreLoop<'a> {
             ahead: None,
             trajectory: trajectory.checksum(),
             controller: Controller::new(law, limits),
-            memory: Memory::new(),
+            memory: Memory::at_rest(),
         })
     }
 
@@ -77,7 +80,7 @@ impl<'a> CoreLoop<'a> {
     pub fn with_input_ahead(
         pieces: &'a [Piece],
         rate: Rate,
-        law: impl Into<FlightLaw<'a>>,
+        law: impl Into<Law<'a>>,
         limits: Limits,
     ) -> Result<Option<Self>, TrajectoryError> {
         let Some(double) = Rate::from_hz(2 * rate.hz()) else { return Ok(None) };
@@ -96,10 +99,11 @@ impl<'a> CoreLoop<'a> {
             reference = reference.with_input_of(&ahead);
         }
         let progress = Some(Progress { trajectory: self.trajectory, tick });
-        let step = self
-            .controller
-            .step(&mut self.memory, progress, &state(x), &reference)
-            .map_err(|error| error.to_string())?;
-        Ok(HeldCommand { input: input(&step.command), limited: step.limited.any() })
+        let (state, target) = (state(x), Target::new(&reference).at(progress));
+        match self.controller.step(&mut self.memory, Measured::new(&state), target) {
+            Ok(Output::Command(step)) => Ok(HeldCommand { input: input(&step.command), limited: step.limited.any() }),
+            Ok(_) => Err("the law gives motor forces, which a point with an attitude has not".to_owned()),
+            Err(error) => Err(error.to_string()),
+        }
     }
 }

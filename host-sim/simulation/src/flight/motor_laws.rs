@@ -4,12 +4,12 @@
 use nalgebra::{DMatrix, SMatrix, Vector4};
 use quatrack::airframe::AirframeError;
 use quatrack::gain::GainError;
-use quatrack::gains::table::AcceptedActuatorTable;
+use quatrack::gains::table::AcceptedTable;
 use quatrack::law::ActuatorAwareGain;
 use quatrack::motor_lag::MotorLagError;
-use quatrack::motor_tracker::ByBodyRates;
 use quatrack::{
-    ActuatorAware, Airframe, BodyRateLoop, Equilibrium, MotorLag, MotorLaw, MotorTracker, ReferenceError, Tracker,
+    Actuation, ActuatorAware, Airframe, Controller as CoreController, ControllerError, Equilibrium, ErrorForm,
+    FeedForward, Limits, ReferenceError, Settings,
 };
 use quatrack_design::certify::{
     CertifyError, Controller, Plant, Region, RegionCertificate, Timing, certify, certify_region,
@@ -45,6 +45,9 @@ pub enum FlightError {
     /// The core takes no such lag.
     #[error("the core refuses the lag: {0}")]
     Lag(#[from] MotorLagError),
+    /// The table becomes no controller.
+    #[error(transparent)]
+    Controller(#[from] ControllerError),
     /// The core takes no such gain.
     #[error("the core refuses the gain: {0}")]
     Gain(#[from] GainError),
@@ -109,17 +112,24 @@ impl AwareTable {
     /// # Errors
     /// [`FlightError::Lag`] for a lag below two control periods.
     pub fn craft_law(&self) -> Result<CraftLaw<'_>, FlightError> {
-        let law = ActuatorAware::new(&self.gain, &self.airframe, motor_loop::RATE)?;
-        let tracker = MotorTracker::new(MotorLaw::ActuatorAware(law), &self.airframe);
-        Ok(CraftLaw { tracker, airframe: self.airframe })
+        let actuation = Actuation::new(&self.airframe, motor_loop::RATE)?;
+        Ok(CraftLaw { flown: Flown::Gain(&self.gain), actuation })
     }
 }
 
 /// A law on a craft as the core takes it.
 #[derive(Clone, Copy, Debug)]
 pub struct CraftLaw<'a> {
-    tracker: MotorTracker<'a>,
-    airframe: Airframe,
+    flown: Flown<'a>,
+    actuation: Actuation,
+}
+
+/// What a controller is made of, on the craft.
+#[derive(Clone, Copy, Debug)]
+enum Flown<'a> {
+    Gain(&'a ActuatorAwareGain),
+    Table(AcceptedTable<'a>),
+    ByBodyRates(Equilibrium<'a>, Limits),
 }
 
 impl<'a> CraftLaw<'a> {
@@ -127,11 +137,10 @@ impl<'a> CraftLaw<'a> {
     ///
     /// # Errors
     /// [`FlightError::Airframe`] where the core refuses the vehicle.
-    pub fn of_table(vehicle: &Vehicle, table: &'a AcceptedActuatorTable) -> Result<Self, FlightError> {
-        let lag_s = f64::from(table.table().lag().lag_s());
-        let airframe = table.airframe(&motor_loop::airframe(vehicle, lag_s)?);
-        let tracker = MotorTracker::new(MotorLaw::ActuatorAware(table.law(&airframe)), &airframe);
-        Ok(Self { tracker, airframe })
+    pub fn of_table(vehicle: &Vehicle, table: AcceptedTable<'a>) -> Result<Self, FlightError> {
+        let lag_s = table.lag().map_or_else(|| vehicle.motors().lag_s, |lag| f64::from(lag.lag_s()));
+        let board = Actuation::new(&motor_loop::airframe(vehicle, lag_s)?, motor_loop::RATE)?;
+        Ok(Self { flown: Flown::Table(table), actuation: table.actuation(&board) })
     }
 
     /// A law of the paper on a vehicle's motors, through the core's body-rate loop and mixer.
@@ -139,23 +148,32 @@ impl<'a> CraftLaw<'a> {
     /// # Errors
     /// [`FlightError`] where the core refuses vehicle or lag.
     pub fn by_body_rates(vehicle: &Vehicle, law: Equilibrium<'a>, lag_s: f64) -> Result<Self, FlightError> {
-        let airframe = motor_loop::airframe(vehicle, lag_s)?;
-        let law = ByBodyRates {
-            tracker: Tracker::new(law, vehicles::limits(vehicle)?),
-            body_rates: BodyRateLoop::behind_lag(&airframe),
-            lag: MotorLag::new(lag_s as f32, motor_loop::RATE)?,
-        };
-        Ok(Self { tracker: MotorTracker::new(MotorLaw::BodyRates(law), &airframe), airframe })
+        let actuation = Actuation::new(&motor_loop::airframe(vehicle, lag_s)?, motor_loop::RATE)?;
+        Ok(Self { flown: Flown::ByBodyRates(law, vehicles::limits(vehicle)?), actuation })
     }
 
     /// The craft as the core takes it.
     pub fn airframe(&self) -> &Airframe {
-        &self.airframe
+        self.actuation.airframe()
     }
 
     /// The law in the loop, its motors at the given thrusts, N; nothing where one of them is not finite.
-    pub fn started(&self, thrusts_n: &Vector4<f64>) -> Option<MotorLoop<'a>> {
-        MotorLoop::new(self.tracker, &self.airframe, thrusts_n)
+    pub fn started(&self, thrusts_n: &Vector4<f64>) -> Option<MotorLoop<'_>> {
+        MotorLoop::new(self.controller().ok()?, self.airframe(), thrusts_n)
+    }
+
+    fn controller(&self) -> Result<CoreController<'_>, ControllerError> {
+        match &self.flown {
+            Flown::Gain(gain) => Ok(CoreController::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE)),
+            Flown::ByBodyRates(law, limits) => Ok(CoreController::new(*law, *limits).with_actuation(&self.actuation)),
+            Flown::Table(table) => table.controller(&Settings {
+                limits: Limits::NONE,
+                actuation: Some(&self.actuation),
+                feed_forward: FeedForward::Without,
+                error_form: ErrorForm::HeadingFrame,
+                player_rate: motor_loop::RATE,
+            }),
+        }
     }
 }
 

@@ -5,7 +5,7 @@
 use nalgebra::{Quaternion, UnitQuaternion, Vector3, Vector4};
 use quatrack::airframe::{AirframeError, AirframeFigures};
 use quatrack::{
-    ActuatorMemory, Airframe, FifthOrderSample, FlatSample, MotorReference, MotorTracker, Rate, ReferenceError, State,
+    Airframe, Controller, FifthOrderSample, FlatSample, Memory, MotorReference, Rate, ReferenceError, State,
 };
 use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::trajectory::fifth_order::FifthOrder;
@@ -83,18 +83,18 @@ pub fn state_on(point: &FifthOrder, airframe: &Airframe) -> Result<RigidState, R
     })
 }
 
-/// A tracker with its memory.
+/// A controller with its memory.
 pub struct MotorLoop<'a> {
-    tracker: MotorTracker<'a>,
+    controller: Controller<'a>,
     airframe: Airframe,
-    memory: ActuatorMemory,
+    memory: Memory,
 }
 
 impl<'a> MotorLoop<'a> {
     /// A loop whose motors start with the given thrusts, N; nothing where one of them is not finite.
-    pub fn new(tracker: MotorTracker<'a>, airframe: &Airframe, thrusts_n: &Vector4<f64>) -> Option<Self> {
-        let memory = ActuatorMemory::new(std::array::from_fn(|i| thrusts_n[i] as f32))?;
-        Some(Self { tracker, airframe: *airframe, memory })
+    pub fn new(controller: Controller<'a>, airframe: &Airframe, thrusts_n: &Vector4<f64>) -> Option<Self> {
+        let memory = Memory::new(std::array::from_fn(|i| thrusts_n[i] as f32))?;
+        Some(Self { controller, airframe: *airframe, memory })
     }
 
     /// One control step towards a point of a course.
@@ -111,7 +111,10 @@ impl<'a> MotorLoop<'a> {
             velocity_m_s: vector(&measured.velocity_m_s),
         };
         let state = quatrack::RigidState { state, body_rates_rad_s: vector(&measured.body_rates_rad_s) };
-        let step = self.tracker.step(&mut self.memory, &state, &reference).map_err(|error| error.to_string())?;
+        let step = self
+            .controller
+            .step_to_motors(&mut self.memory, (&state).into(), (&reference).into())
+            .map_err(|error| error.to_string())?;
         Ok(MotorCommand { forces_n: Vector4::from(step.forces_n.map(f64::from)), limited: step.limited.any() })
     }
 }

@@ -150,7 +150,7 @@ pub fn report(vehicle: &Vehicle) -> Result<Report, FlightError> {
                 }
             } else {
                 let (radius, worst) = (table.certificate.spectral_radius, table.certificate.worst);
-                let reason = format!("its spectral radius is {radius:.5} at {worst:?}");
+                let reason = format!("its spectral radius is {radius:.5} at {worst}");
                 report.not_certified.push(Grounded { law, lag_ms: 1e3 * lag_s, reason });
             }
         }

@@ -1,12 +1,12 @@
 //! A design carried out: design in; gains, certificate and table out, or the figure that fails.
 
-use quatrack::gains::table::{ActuatorTable, GainTable, Hash, Name, ScheduleRows, TableError, TableHead, Vehicle};
+use quatrack::gains::table::{Hash, Name, ScheduleRows, TableError, TableHead, Vehicle};
 use quatrack_design::certify::{Certificate, Minimum, RegionCertificate, certify_region, motor_lag_limit, require};
 use serde::Serialize;
 
 use super::GainsError;
 use super::design::{Design, Problem};
-use super::designed::{Designed, TableRows};
+use super::designed::{Designed, Gains, TableRows};
 use super::statement::{Statement, sha256};
 use super::table::Table;
 use crate::vehicles;
@@ -79,23 +79,19 @@ impl Design {
             certificate: statement.on_board(),
         };
         let table = if designed.past_command_gains.is_empty() {
-            Some(self.table(head, &designed.gains.rows()).map_err(GainsError::Table)?)
+            Some(self.table(head, &designed.gains).map_err(GainsError::Table)?)
         } else {
             None
         };
         Ok(Certified { design: self.clone(), design_hash, designed, certificate, region, statement, table })
     }
 
-    fn table(&self, head: TableHead, rows: &TableRows) -> Result<Table, TableError> {
-        match rows {
-            TableRows::Fixed(rows) => GainTable::new(head, rows).map(|table| Table::Gains(Box::new(table))),
-            TableRows::Motors(rows) => {
-                let lag_s = self.problem.motor_lag_s().unwrap_or_default();
-                ActuatorTable::new(head, lag_s as f32, rows).map(|table| Table::Actuator(Box::new(table)))
-            }
+    fn table(&self, head: TableHead, gains: &Gains) -> Result<Table, TableError> {
+        match gains.rows(self.problem.motor_lag_s().unwrap_or_default() as f32) {
+            TableRows::Fixed(rows) => Table::new(head, &rows),
             TableRows::OverTime(gains) => {
                 let (trajectory, steps_per_knot) = self.problem.schedule().unwrap_or_default();
-                Table::over_time(head, &ScheduleRows { trajectory, steps_per_knot, gains })
+                Table::over_time(&head, &ScheduleRows { trajectory, steps_per_knot, gains: &gains })
             }
         }
     }

@@ -112,8 +112,6 @@ pub enum Gains {
 pub enum TableRows {
     /// One gain.
     Fixed(Box<Rows>),
-    /// One gain of motor forces.
-    Motors(Box<[[f32; 19]; 4]>),
     /// A gain at each knot.
     OverTime(Vec<[[f32; 9]; 4]>),
 }
@@ -142,22 +140,23 @@ impl Gains {
     }
 
     /// As the core flies it, every entry the nearest f32.
-    pub fn rows(&self) -> TableRows {
+    ///
+    /// `motor_lag_s` is what gains for motor forces reckon with.
+    pub fn rows(&self, motor_lag_s: f32) -> TableRows {
         TableRows::Fixed(Box::new(match self {
             Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),
             Self::FlatOutput(gain) => Rows::FlatOutput(rounded(gain)),
             Self::Integral(gain) => Rows::Integral(rounded(gain)),
-            Self::ActuatorAware(gain) => return TableRows::Motors(Box::new(rounded(gain))),
+            Self::ActuatorAware(gain) => Rows::ActuatorAware { motor_lag_s, rows: rounded(gain) },
             Self::Along(along) => return TableRows::OverTime(rounded_along(along)),
         }))
     }
 
     /// The same, each row a list; of gains over time the rows of one knot after those of the other.
     pub fn by_rows(&self) -> Vec<Vec<f32>> {
-        let rows = self.rows();
+        let rows = self.rows(0.0);
         let entries = match &rows {
             TableRows::Fixed(rows) => rows.entries(),
-            TableRows::Motors(rows) => rows.as_flattened(),
             TableRows::OverTime(knots) => knots.as_flattened().as_flattened(),
         };
         entries.chunks(usize::from(self.kind().dimensions().1)).map(<[f32]>::to_vec).collect()

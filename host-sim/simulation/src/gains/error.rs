@@ -76,7 +76,7 @@ pub enum GainsError {
     Minimum(#[from] MarginTooSmall),
     /// The gain is not stable all over the region that the design asks for.
     #[error(
-        "refused: in its region the spectral radius reaches {spectral_radius:.6} at {worst:?}; it must stay below 1: \
+        "refused: in its region the spectral radius reaches {spectral_radius:.6} at {worst}; it must stay below 1: \
          raise motor_lag_ms, lower the weights or narrow [region]"
     )]
     Region {

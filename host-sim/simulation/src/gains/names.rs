@@ -122,5 +122,7 @@ pub fn signals(kind: TableKind) -> (&'static [Signal], &'static [Signal]) {
         TableKind::Equilibrium | TableKind::AlongTrajectory => (&EQUILIBRIUM_INPUTS, &EQUILIBRIUM_STATES),
         TableKind::FlatOutput => (&FLAT_INPUTS, &FLAT_STATES),
         TableKind::ActuatorAware => (&MOTOR_INPUTS, &MOTOR_STATES),
+        // A kind that the core has and no design makes.
+        _ => (&[], &[]),
     }
 }

@@ -22,6 +22,12 @@ impl RigidBody {
         }
     }
 
+    /// Of a mass, kg, and an inertia, kg m^2; none where that is not positive definite.
+    pub fn new(mass_kg: f64, inertia_kg_m2: Matrix3<f64>) -> Option<Self> {
+        let inverse_inertia = inertia_kg_m2.cholesky()?.inverse();
+        Some(Self { mass_kg, inertia_kg_m2, inverse_inertia })
+    }
+
     /// The same with mass and inertia multiplied by positive factors, each.
     pub fn scaled(&self, mass_factor: f64, inertia_factor: f64) -> Self {
         Self {

@@ -14,6 +14,13 @@ pub struct Wrench {
     pub torque_n_m: Vector3<f64>,
 }
 
+impl std::ops::AddAssign for Wrench {
+    fn add_assign(&mut self, other: Self) {
+        self.force_n += other.force_n;
+        self.torque_n_m += other.torque_n_m;
+    }
+}
+
 /// Something that pushes.
 pub trait Load {
     /// Force in the world frame and torque in the body frame.

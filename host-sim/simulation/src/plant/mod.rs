@@ -1,19 +1,53 @@
 //! Plants to fly against: commanded motor forces in, the motion of a craft out.
 //!
 //! A [`Craft`] is put together from parts that know nothing of each other: a [`RigidBody`] that turns forces and torques
-//! into motion, a [`MotorBank`] that turns commands into thrusts and their sum into force and torque, and any number of
-//! [`Load`]s, whatever else pushes the body. The state is position, velocity (world frame), attitude, body rates (body
-//! frame) and the four thrusts. What stands between plant and controller, sensors and the way of a command, belongs to
-//! the flight.
+//! into motion, a [`MotorBank`] that turns commands into thrusts and their sum into force and torque, an [`Airflow`] for what
+//! the air does to it, and any number of [`Load`]s, whatever else pushes the body. Its state is position, velocity (world
+//! frame), attitude, body rates (body frame) and the four thrusts. A [`Plant`] is a craft in one flight: with a wind that
+//! blows, commands on their way, and a battery that empties. Sensors belong to the flight.
+//!
+//! ```text
+//! in_flight                Plant: one flight's craft, wind, delay, battery
+//!   environment            what a flight takes place in, and what the craft really is; checked once
+//!   craft                  the equations of motion, and their steps
+//!     air, propeller       drag, moment, lift; momentum and speed of the rotors
+//!     motors, body         lag and limits; mass and inertia
+//!     loads, contact, ground_effect
+//!   wind, dryden, random   what the air does; turbulence; numbers that repeat
+//!   supply, delay          force by command and voltage, battery; transport delay
+//! ```
 
+mod air;
 mod body;
+mod contact;
 mod craft;
+mod delay;
+mod dryden;
+mod environment;
+mod ground_effect;
+mod in_flight;
 mod loads;
 mod motors;
+mod propeller;
+mod random;
+mod refused;
 mod state;
+mod supply;
+mod wind;
 
+pub use air::{Airflow, RotorDrag};
 pub use body::RigidBody;
-pub use craft::Craft;
+pub use contact::{Contact, Wall};
+pub use craft::{Craft, LinearWind, Motion};
+pub use dryden::Dryden;
+pub use environment::{Air, Environment, Truth};
+pub use ground_effect::GroundEffect;
+pub use in_flight::Plant;
 pub use loads::{Ground, Load, Shove, Wrench};
 pub use motors::{Motor, MotorBank};
+pub use propeller::{Propeller, SpeedResponse};
+pub use random::{Source, Stream};
+pub use refused::PlantError;
 pub use state::RigidState;
+pub use supply::{Battery, CURVE_POINTS, ForceMap, Supply};
+pub use wind::{Gust, Wind};

@@ -8,7 +8,7 @@ use std::thread;
 use quatrack::gains::paper;
 use quatrack::gains::table::KNOTS_MAX;
 use quatrack::law::{EquilibriumGain, FlatOutputGain, GainSchedule, IntegralGain, Knot};
-use quatrack::{AlongTrajectory, Equilibrium, FeedForward, FlatOutput, FlightLaw, IntegralAction, Limits, Piece, Rate};
+use quatrack::{AlongTrajectory, Equilibrium, FeedForward, FlatOutput, IntegralAction, Law, Limits, Piece, Rate};
 use quatrack_design::design::DesignError;
 use quatrack_design::design::along::gains_along;
 use quatrack_design::design::codegen::{rounded, rounded_along};
@@ -163,13 +163,7 @@ fn fly_course(trajectory: &PiecewisePolynomial) -> Result<ByMethod, DesignError>
 }
 
 /// Nothing where the core refuses trajectory or rate, which it does for neither of the paper's, or the flight is lost.
-fn fly(
-    trajectory: &PiecewisePolynomial,
-    pieces: &[Piece],
-    rate_hz: u32,
-    law: FlightLaw<'_>,
-    ahead: bool,
-) -> Option<f64> {
+fn fly(trajectory: &PiecewisePolynomial, pieces: &[Piece], rate_hz: u32, law: Law<'_>, ahead: bool) -> Option<f64> {
     let rate = Rate::from_hz(rate_hz)?;
     let mut core = if ahead {
         CoreLoop::with_input_ahead(pieces, rate, law, Limits::NONE).ok()??
@@ -215,8 +209,8 @@ impl Designs {
     }
 
     /// The law of a method, errors in the heading frame.
-    fn law(&self, method: Method, feed_forward: FeedForward) -> Option<FlightLaw<'_>> {
-        fn equilibrium(gain: &EquilibriumGain, feed_forward: FeedForward) -> FlightLaw<'_> {
+    fn law(&self, method: Method, feed_forward: FeedForward) -> Option<Law<'_>> {
+        fn equilibrium(gain: &EquilibriumGain, feed_forward: FeedForward) -> Law<'_> {
             Equilibrium { feed_forward, ..Equilibrium::new(gain) }.into()
         }
         let rate = self.rate?;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use quatrack::law::{EquilibriumGain as CoreEquilibriumGain, FlatOutputGain as CoreFlatOutputGain};
-use quatrack::{AnyLaw, Equilibrium, ErrorForm, FeedForward, FlatOutput, Limits, Rate, gains::paper};
+use quatrack::{Equilibrium, ErrorForm, FeedForward, FlatOutput, Law as CoreLaw, Limits, Rate, gains::paper};
 use quatrack_design::design::DesignError;
 use quatrack_design::design::synthesis::{
     EquilibriumWeights, FlatWeights, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat,
@@ -216,11 +216,11 @@ fn fly_published(trajectory: &PiecewisePolynomial, gain: AnyGain<'_>) -> Flight 
 }
 
 /// The committed tables in the core, by name; errors formed as in the paper.
-pub fn core_law(controller: Controller) -> AnyLaw<'static> {
-    let equilibrium = |gain: &'static CoreEquilibriumGain| -> AnyLaw<'static> {
+pub fn core_law(controller: Controller) -> CoreLaw<'static> {
+    let equilibrium = |gain: &'static CoreEquilibriumGain| -> CoreLaw<'static> {
         Equilibrium { gain, error_form: ErrorForm::Paper, feed_forward: FeedForward::Without }.into()
     };
-    let flat_output = |gain: &'static CoreFlatOutputGain| -> AnyLaw<'static> { FlatOutput::new(gain).into() };
+    let flat_output = |gain: &'static CoreFlatOutputGain| -> CoreLaw<'static> { FlatOutput::new(gain).into() };
     match controller {
         Controller::LyapF => flat_output(&paper::LYAP_F),
         Controller::LyapE => equilibrium(&paper::LYAP_E),

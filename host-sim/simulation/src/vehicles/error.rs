@@ -31,6 +31,14 @@ pub enum VehicleFileError {
         /// What the parser says, in one line.
         reason: String,
     },
+    /// What is wrong in a file.
+    #[error("{}: {error}", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// What is wrong.
+        error: Box<VehicleFileError>,
+    },
     /// A name or a figure that no vehicle has.
     #[error(transparent)]
     Refused(#[from] VehicleError),

@@ -12,26 +12,39 @@ use quatrack_design::vehicle::{Vehicle, VehicleError, VehicleFile};
 
 pub use error::VehicleFileError;
 
-/// The built-in vehicles: what they are asked for by, and their file.
-const BUILT_IN: [(&str, &str); 3] = [
-    ("crazyflie-2.1", include_str!("../../../../gains/vehicles/crazyflie-2.1.toml")),
-    ("crazyflie-2.1-upgrade-kit", include_str!("../../../../gains/vehicles/crazyflie-2.1-upgrade-kit.toml")),
-    ("crazyflie-2.1-brushless", include_str!("../../../../gains/vehicles/crazyflie-2.1-brushless.toml")),
+/// The built-in vehicles: what they are asked for by, their own name, which is short enough for a table, and their file.
+const BUILT_IN: [(&str, &str, &str); 4] = [
+    ("crazyflie-2.1", "crazyflie-2.1", include_str!("../../../../gains/vehicles/crazyflie-2.1.toml")),
+    (
+        "crazyflie-2.1-upgrade-kit",
+        "crazyflie-2.1-upgrade",
+        include_str!("../../../../gains/vehicles/crazyflie-2.1-upgrade-kit.toml"),
+    ),
+    (
+        "crazyflie-2.1-brushless",
+        "crazyflie-2.1-brushless",
+        include_str!("../../../../gains/vehicles/crazyflie-2.1-brushless.toml"),
+    ),
+    (
+        "crazyflie-2.1-brushless-guards-decks",
+        "crazyflie-2.1-brushl-45g",
+        include_str!("../../../../gains/vehicles/crazyflie-2.1-brushless-guards-decks.toml"),
+    ),
 ];
 
 /// Names of the built-in vehicles.
-pub fn names() -> [&'static str; 3] {
-    BUILT_IN.map(|(name, _)| name)
+pub fn names() -> [&'static str; 4] {
+    BUILT_IN.map(|(name, ..)| name)
 }
 
-/// A built-in vehicle, by one of [`names`] or by its own name, which is shorter for the upgrade kit.
+/// A built-in vehicle, by one of [`names`] or by its own name, which is shorter for some.
 ///
 /// # Errors
 /// [`VehicleFileError::Unknown`].
 pub fn by_name(name: &str) -> Result<Vehicle, VehicleFileError> {
-    let (_, text) = BUILT_IN
+    let (_, _, text) = BUILT_IN
         .iter()
-        .find(|(held, _)| *held == name || held.strip_suffix("-kit") == Some(name))
+        .find(|(asked, own, _)| *asked == name || *own == name)
         .ok_or_else(|| VehicleFileError::Unknown { name: name.to_owned(), known: names().join(", ") })?;
     from_toml(text)
 }
@@ -49,11 +62,11 @@ pub fn from_toml(text: &str) -> Result<Vehicle, VehicleFileError> {
 /// A vehicle from a file.
 ///
 /// # Errors
-/// As [`from_toml`], and [`VehicleFileError::Unreadable`].
+/// [`VehicleFileError::Unreadable`], and [`VehicleFileError::File`] around those of [`from_toml`].
 pub fn from_file(path: &Path) -> Result<Vehicle, VehicleFileError> {
     let text = std::fs::read_to_string(path)
         .map_err(|error| VehicleFileError::Unreadable { path: path.to_owned(), reason: error.to_string() })?;
-    from_toml(&text)
+    from_toml(&text).map_err(|error| VehicleFileError::File { path: path.to_owned(), error: Box::new(error) })
 }
 
 /// What commands of thrust and body rates are cut to on board.

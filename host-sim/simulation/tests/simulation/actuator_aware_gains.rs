@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use quatrack::Rate;
-use quatrack::gains::table::ActuatorTable;
+use quatrack::gains::ConstantGain;
+use quatrack::gains::table::GainTable;
 use quatrack_design::certify::Region;
 use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
 use quatrack_simulation::flight::motor_laws::{AwareTable, default_lag_s};
@@ -25,13 +26,13 @@ fn committed_tables_are_those_that_the_flights_are_flown_with() {
     ] {
         let vehicle = vehicles::by_name(vehicle).expect("built in");
         let bytes = std::fs::read(folder().join(format!("generated/{design}.bin"))).expect("committed");
-        let table = ActuatorTable::from_bytes(&bytes).expect("sound");
+        let table = GainTable::from_bytes(&bytes).expect("sound");
         assert_eq!((table.head().vehicle.id, table.head().rate.hz()), (vehicles::id(&vehicle), 500), "{design}");
         let lag_s = default_lag_s(&vehicle);
-        assert_eq!(table.lag().lag_s(), lag_s as f32, "{design}");
+        assert_eq!(table.lag().map(|lag| lag.lag_s()), Some(lag_s as f32), "{design}");
         let weights = &ActuatorAwareWeights::STANDARD;
         let flown = AwareTable::new(&vehicle, lag_s, weights, &Region::of_any_crazyflie()).expect("designed");
-        assert_eq!(table.gain(), flown.gain(), "{design}");
+        assert_eq!(table.gain(), Some(&ConstantGain::ActuatorAware(*flown.gain())), "{design}");
         let board = quatrack::gains::table::Vehicle { id: vehicles::id(&vehicle), ..table.head().vehicle };
         assert!(table.accept_for(&board, Rate::from_hz(500).expect("in range")).is_ok(), "{design}");
     }

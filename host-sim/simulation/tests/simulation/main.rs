@@ -7,6 +7,7 @@ mod gains_along;
 mod gains_design;
 mod gains_export;
 mod gains_tables;
+mod plant;
 mod reproduction;
 mod reproduction_beyond;
 mod rigid;

@@ -24,7 +24,8 @@ fn the_board_flies_tables_for_the_vehicle_that_they_are_designed_for() {
 fn built_in_vehicles_hover_between_their_limits() {
     for name in vehicles::names() {
         let vehicle = vehicles::by_name(name).expect("built in");
-        assert_eq!(vehicle.name(), name.strip_suffix("-kit").unwrap_or(name));
+        // A table carries 24 bytes.
+        assert!(vehicle.name().len() <= 24 && name.starts_with(vehicle.name().trim_end_matches("-45g")), "{name}");
         assert_eq!(vehicles::by_name(vehicle.name()), Ok(vehicle.clone()));
         let [min, max] = vehicle.thrust_limits_m_s2();
         assert!(min < 9.81 && max > 1.5 * 9.81, "{name}: {min} to {max} m/s^2");
@@ -59,7 +60,7 @@ fn the_id_tells_figures_and_names_apart_and_ignores_comments() {
     assert_ne!(known, id(&TEXT.replace("name = \"crazyflie-2.1\"", "name = \"mine\"")));
     assert_ne!(known, id(&TEXT.replace("\nlag_s = 0.126", "\nlag_s = 0.1")));
     let all = vehicles::names().map(|name| vehicles::id(&vehicles::by_name(name).expect("built in")));
-    assert!(all[0] != all[1] && all[1] != all[2] && all[0] != all[2]);
+    assert!((0..4).all(|i| (0..i).all(|j| all[i] != all[j])));
 }
 
 #[test]
@@ -85,4 +86,81 @@ fn refusals_name_the_field() {
     assert!(matches!(refused("\narm_m", "\narm_mm"), VehicleFileError::Syntax { line, .. } if line == at));
     let unknown = vehicles::by_name("crazyflie").expect_err("refused").to_string();
     assert!(unknown.contains("crazyflie-2.1-upgrade-kit"), "{unknown}");
+}
+
+#[test]
+fn figures_of_flight_are_no_part_of_the_identity() {
+    let id = |text: &str| vehicles::id(&vehicles::from_toml(text).expect("valid"));
+    let (designed, flown) = TEXT.split_once("\n[motors.flown]").expect("has them");
+    let (_, limits) = flown.split_once("\n[limits]").expect("has them");
+    let without = format!("{designed}\n[limits]{limits}");
+    assert_eq!(id(&without), id(TEXT));
+    let bare = vehicles::from_toml(&without).expect("valid");
+    assert!(bare.flown().air.is_none() && vehicles::from_toml(TEXT).expect("valid").flown().air.is_some());
+}
+
+#[test]
+fn a_figure_in_another_unit_is_the_one_that_is_named() {
+    let refused = |changes: &[(&str, &str)]| {
+        let text = changes.iter().fold(TEXT.to_owned(), |text, (from, to)| {
+            assert!(text.contains(from), "{from}");
+            text.replace(from, to)
+        });
+        vehicles::from_toml(&text).expect_err("refused").to_string()
+    };
+    let inertia = |unit: &str| {
+        refused(&[
+            ("16.571710e-6", &format!("16.571710{unit}")),
+            ("16.655602e-6", &format!("16.655602{unit}")),
+            ("29.261652e-6", &format!("29.261652{unit}")),
+        ])
+    };
+    let cases = [
+        (
+            refused(&[("mass_kg = 0.029", "mass_kg = 29.0")]),
+            "vehicle: body.mass_kg = 29: must be from ",
+            "29 g are 0.029",
+        ),
+        (refused(&[("arm_m = 0.046", "arm_m = 46.0")]), "vehicle: motors.arm_m = 46: must be from ", "46 mm are 0.046"),
+        (inertia(""), "vehicle: body.inertia_kg_m2 = ", "kg m^2"),
+        (inertia("e-9"), "vehicle: body.inertia_kg_m2 = ", "kg m^2"),
+        (
+            refused(&[("\nlag_s = 0.126", "\nlag_s = 126.0")]),
+            "vehicle: motors.lag_s = 126: must be from 0.001 to 1 ",
+            "67 ms",
+        ),
+        (
+            refused(&[("rise_lag_s = 0.067", "rise_lag_s = 67.0")]),
+            "vehicle: motors.flown.rise_lag_s = 67: must be",
+            "67 ms",
+        ),
+        (
+            refused(&[("drag_per_s = [0.39", "drag_per_s = [39.0")]),
+            "vehicle: air.drag_per_s = 39: must be from 0 to 10",
+            "mass",
+        ),
+        (
+            refused(&[("capacity_a_h = 0.25", "capacity_a_h = -0.25")]),
+            "vehicle: battery.capacity_a_h = -0.25: must be",
+            "0.25",
+        ),
+    ];
+    for (found, start, remedy) in cases {
+        assert!(found.starts_with(start) && found.contains(remedy) && found.lines().count() == 1, "{found}");
+    }
+    // Ranges are those of the body: 0.029 kg (0.1 * 0.046 m)^2 and 9e2 times that.
+    assert!(inertia("").contains("from 6.14e-7 to 5.52e-4 "), "{}", inertia(""));
+    let unknown = refused(&[("\n[air]\n", "\n[air]\ndensity = 1.2\n")]);
+    assert!(unknown.contains("density") && unknown.lines().count() == 1, "{unknown}");
+    let control = refused(&[("name = \"crazyflie-2.1\"", "name = \"a\\nb\"")]);
+    assert!(control.contains("name = \"a?b\"") && control.lines().count() == 1, "{control}");
+}
+
+#[test]
+fn a_refusal_names_the_file() {
+    let path = std::env::temp_dir().join(format!("quatrack-vehicle-{}.toml", std::process::id()));
+    std::fs::write(&path, TEXT.replace("arm_m = 0.046", "arm_m = 46.0")).expect("written");
+    let found = vehicles::from_file(&path).expect_err("refused").to_string();
+    std::fs::remove_file(&path).expect("removed");
+    assert!(found.starts_with(&format!("{}: vehicle: motors.arm_m = 46", path.display())), "{found}");
 }

@@ -3,32 +3,29 @@
 use nalgebra::Vector4;
 use quatrack::gains::paper;
 use quatrack::nalgebra::Vector3;
-use quatrack::{
-    ActuatorMemory, Airframe, BodyRateLoop, ByBodyRates, Equilibrium, FeedForward, MotorLag, MotorLaw, MotorReference,
-    MotorTracker, Rate, Tracker,
-};
+use quatrack::{Airframe, Controller, Equilibrium, FeedForward, Memory, MotorReference, Rate};
 use quatrack_simulation::plant::{Craft, RigidState};
 use quatrack_simulation::vehicles;
 
-use super::law::{RATE_HZ, designed, tracker};
+use super::law::{RATE_HZ, actuation, controller, designed};
 use super::{Eight, measured, on};
 
 /// Position error over time, each sampled at a step, and where the flight ends.
 fn fly(
     craft: &Craft,
-    tracker: &MotorTracker<'_>,
+    controller: &Controller<'_>,
     duration_s: f64,
     start: RigidState,
     reference: impl Fn(f64) -> MotorReference,
 ) -> (Vec<f64>, RigidState) {
     let period_s = 1.0 / f64::from(RATE_HZ);
-    let mut memory = ActuatorMemory::new([0, 1, 2, 3].map(|i| start.thrusts_n[i] as f32)).unwrap();
+    let mut memory = Memory::new([0, 1, 2, 3].map(|i| start.thrusts_n[i] as f32)).unwrap();
     let (mut x, mut errors) = (start, Vec::new());
     for k in 0..(duration_s * f64::from(RATE_HZ)) as u32 {
         let t = f64::from(k) * period_s;
         let goal = reference(t);
         errors.push((x.position_m - goal.state().position_m.map(f64::from)).norm());
-        let step = tracker.step(&mut memory, &measured(&x), &goal).unwrap();
+        let step = controller.step_to_motors(&mut memory, (&measured(&x)).into(), (&goal).into()).unwrap();
         x = craft.hold(&x, &Vector4::from(step.forces_n).map(f64::from), t, period_s);
     }
     (errors, x)
@@ -46,10 +43,11 @@ fn the_figure_eight_at_two_metres_a_second_is_flown_within_a_twentieth_of_a_mill
     for lag_s in [0.0635, 0.126] {
         let (craft, airframe) = craft(lag_s);
         let gain = designed("crazyflie-2.1", lag_s);
-        let tracker = tracker(&gain, &airframe);
+        let actuation = actuation(&airframe);
+        let controller = controller(&gain, &actuation);
         for eight in [Eight::LEVEL, Eight::TURNING] {
             let start = on(&eight.reference(0.0, &airframe));
-            let (errors, _) = fly(&craft, &tracker, 12.0, start, |t| eight.reference(t, &airframe));
+            let (errors, _) = fly(&craft, &controller, 12.0, start, |t| eight.reference(t, &airframe));
             let iae = errors.iter().sum::<f64>() / f64::from(RATE_HZ);
             // 0.00026 to 0.00053 m s: what is left of the forces' curvature over a period of 2 ms. Commands that are not ahead
             // by half of it: 0.00074 to 0.0013.
@@ -62,13 +60,14 @@ fn the_figure_eight_at_two_metres_a_second_is_flown_within_a_twentieth_of_a_mill
 fn an_offset_dies_out_the_same_way_at_every_heading() {
     let (craft, airframe) = craft(0.126);
     let gain = designed("crazyflie-2.1", 0.126);
-    let tracker = tracker(&gain, &airframe);
+    let actuation = actuation(&airframe);
+    let controller = controller(&gain, &actuation);
     for k in 0..8 {
         let heading = std::f64::consts::TAU * f64::from(k) / 8.0;
         let reference = MotorReference::hover(Vector3::new(0.0, 0.0, 1.0), heading as f32, &airframe).unwrap();
         let mut start = on(&reference);
         start.position_m += Vector3::new(0.2, -0.1, 0.1);
-        let (errors, _) = fly(&craft, &tracker, 6.0, start, |_| reference);
+        let (errors, _) = fly(&craft, &controller, 6.0, start, |_| reference);
         // Without the turn into the heading frame the loop is unstable from 45 degrees on.
         assert!(errors.last().unwrap() < &2e-3, "heading {heading}: {} m left", errors.last().unwrap());
         assert!(errors.iter().all(|error| *error < 0.3), "heading {heading}");
@@ -79,19 +78,14 @@ fn an_offset_dies_out_the_same_way_at_every_heading() {
 fn the_papers_law_flies_through_rate_loop_and_mixer_where_motors_are_quick_and_not_at_126_ms() {
     let error_at_end = |lag_s: f64| {
         let (craft, airframe) = craft(lag_s);
-        let law = ByBodyRates {
-            tracker: Tracker::new(
-                Equilibrium { feed_forward: FeedForward::With, ..Equilibrium::new(&paper::LQR_E) },
-                vehicles::limits(&vehicles::by_name("crazyflie-2.1").unwrap()).unwrap(),
-            ),
-            body_rates: BodyRateLoop::behind_lag(&airframe),
-            lag: MotorLag::new(lag_s as f32, Rate::from_hz(RATE_HZ).unwrap()).unwrap(),
-        };
-        let tracker = MotorTracker::new(MotorLaw::BodyRates(law), &airframe);
+        let actuation = actuation(&airframe);
+        let law = Equilibrium { feed_forward: FeedForward::With, ..Equilibrium::new(&paper::LQR_E) };
+        let limits = vehicles::limits(&vehicles::by_name("crazyflie-2.1").unwrap()).unwrap();
+        let controller = Controller::new(law, limits).with_actuation(&actuation);
         let reference = MotorReference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0, &airframe).unwrap();
         let mut start = on(&reference);
         start.position_m.x += 0.05;
-        let (errors, _) = fly(&craft, &tracker, 8.0, start, |_| reference);
+        let (errors, _) = fly(&craft, &controller, 8.0, start, |_| reference);
         errors[errors.len() - 1000..].iter().copied().fold(0.0, f64::max)
     };
     let (quick, slow) = (error_at_end(0.01), error_at_end(0.126));

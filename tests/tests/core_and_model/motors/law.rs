@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector, Vector4};
 use quatrack::error::{Field, StateError, StepError};
 use quatrack::nalgebra::Vector3;
 use quatrack::{
-    ActuatorAware, ActuatorAwareGain, ActuatorMemory, Airframe, MotorLaw, MotorReference, MotorStep, MotorTracker,
+    Actuation, ActuatorAware, ActuatorAwareGain, Airframe, Controller, Limits, Memory, MotorReference, MotorStep,
     Quaternion, Rate, RigidState,
 };
 use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
@@ -22,9 +22,12 @@ pub(crate) fn designed(name: &str, lag_s: f64) -> ActuatorAwareGain {
     ActuatorAwareGain::new(rounded(&design.gain.fixed_resize::<4, 19>(0.0))).unwrap()
 }
 
-pub(crate) fn tracker<'a>(gain: &'a ActuatorAwareGain, airframe: &Airframe) -> MotorTracker<'a> {
-    let law = ActuatorAware::new(gain, airframe, Rate::from_hz(RATE_HZ).unwrap()).unwrap();
-    MotorTracker::new(MotorLaw::ActuatorAware(law), airframe)
+pub(crate) fn actuation(airframe: &Airframe) -> Actuation {
+    Actuation::new(airframe, Rate::from_hz(RATE_HZ).unwrap()).unwrap()
+}
+
+pub(crate) fn controller<'a>(gain: &'a ActuatorAwareGain, actuation: &'a Actuation) -> Controller<'a> {
+    Controller::new(ActuatorAware::new(gain, actuation), Limits::NONE)
 }
 
 /// A gain without any structure: every entry moved a little, each by another amount.
@@ -37,12 +40,7 @@ fn without_structure(gain: &ActuatorAwareGain) -> ActuatorAwareGain {
 }
 
 /// The law in f64, before saturation.
-fn formula(
-    gain: &ActuatorAwareGain,
-    memory: &ActuatorMemory,
-    x: &RigidState,
-    reference: &MotorReference,
-) -> Vector4<f64> {
+fn formula(gain: &ActuatorAwareGain, memory: &Memory, x: &RigidState, reference: &MotorReference) -> Vector4<f64> {
     let goal = on(reference);
     let to_f64 = |v: Vector3<f32>| v.map(f64::from);
     let (sin, cos) = {
@@ -99,13 +97,15 @@ fn both_forms_of_the_gain_compute_the_formula() {
     let airframe = Airframe::CRAZYFLIE_2_1;
     let decoupled = designed("crazyflie-2.1", 0.126);
     for gain in [decoupled, without_structure(&decoupled)] {
-        let tracker = tracker(&gain, &airframe);
-        let mut memory = ActuatorMemory::hovering(&airframe);
+        let actuation = actuation(&airframe);
+        let controller = controller(&gain, &actuation);
+        let mut memory = Memory::hovering(&airframe);
         for case in 0..500 {
             let reference = Eight::TURNING.reference(0.02 * f64::from(case), &airframe);
             let x = near(&reference, case);
             let exact = formula(&gain, &memory, &x, &reference);
-            let MotorStep { forces_n, .. } = tracker.step(&mut memory, &x, &reference).unwrap();
+            let MotorStep { forces_n, .. } =
+                controller.step_to_motors(&mut memory, (&x).into(), (&reference).into()).unwrap();
             let cut = exact.map(|u| u.max(f64::from(0.012_817_578_f32)).min(f64::from(0.12_f32)));
             // Nineteen products of up to 0.1 N, each rounded; positions and reference are given to 6e-8 of 1 m.
             let error = (Vector4::from(forces_n).map(f64::from) - cut).amax();
@@ -120,13 +120,14 @@ fn both_forms_of_the_gain_compute_the_formula() {
 fn memory_predicts_the_motors_and_the_integral_holds_while_one_is_cut() {
     let airframe = Airframe::CRAZYFLIE_2_1;
     let gain = designed("crazyflie-2.1", 0.126);
-    let tracker = tracker(&gain, &airframe);
+    let actuation = actuation(&airframe);
+    let controller = controller(&gain, &actuation);
     let reference = MotorReference::hover(Vector3::new(0.0, 0.0, 1.0), 0.5, &airframe).unwrap();
-    let mut memory = ActuatorMemory::hovering(&airframe);
+    let mut memory = Memory::hovering(&airframe);
     let mut x = measured(&on(&reference));
     x.state.position_m += Vector3::new(1e-3, -2e-3, 3e-3);
     let before = memory;
-    let step = tracker.step(&mut memory, &x, &reference).unwrap();
+    let step = controller.step_to_motors(&mut memory, (&x).into(), (&reference).into()).unwrap();
     assert!(!step.limited.any());
     // i+ = i + h r, in the world frame.
     assert!((memory.integral_m_s() - Vector3::new(2e-6, -4e-6, 6e-6)).amax() < 1e-9);
@@ -137,7 +138,7 @@ fn memory_predicts_the_motors_and_the_integral_holds_while_one_is_cut() {
     }
     x.state.position_m.x += 1.0;
     let held = memory;
-    let step = tracker.step(&mut memory, &x, &reference).unwrap();
+    let step = controller.step_to_motors(&mut memory, (&x).into(), (&reference).into()).unwrap();
     assert!(step.limited.motors());
     let ends = [airframe.figures().force_min_n, airframe.figures().force_max_n];
     assert!(step.forces_n.iter().any(|force| ends.contains(force)), "{:?}", step.forces_n);
@@ -149,15 +150,19 @@ fn memory_predicts_the_motors_and_the_integral_holds_while_one_is_cut() {
 fn either_sign_of_the_quaternion_gives_the_same_forces() {
     let airframe = Airframe::CRAZYFLIE_2_1;
     let gain = designed("crazyflie-2.1", 0.126);
-    let tracker = tracker(&gain, &airframe);
+    let actuation = actuation(&airframe);
+    let controller = controller(&gain, &actuation);
     for case in 0..200 {
         let reference = Eight::TURNING.reference(0.05 * f64::from(case), &airframe);
         let x = near(&reference, case);
         let mut flipped = x;
         flipped.state.attitude = -x.state.attitude;
-        let memory = ActuatorMemory::hovering(&airframe);
+        let memory = Memory::hovering(&airframe);
         let (mut a, mut b) = (memory, memory);
-        assert_eq!(tracker.step(&mut a, &x, &reference), tracker.step(&mut b, &flipped, &reference));
+        assert_eq!(
+            controller.step_to_motors(&mut a, (&x).into(), (&reference).into()),
+            controller.step_to_motors(&mut b, (&flipped).into(), (&reference).into())
+        );
         assert_eq!(a, b);
     }
 }
@@ -168,7 +173,8 @@ fn what_is_not_finite_is_refused_by_name_and_leaves_the_memory_alone() {
     let decoupled = designed("crazyflie-2.1", 0.126);
     let reference = MotorReference::hover(Vector3::new(0.0, 0.0, 1.0), 0.5, &airframe).unwrap();
     for gain in [decoupled, without_structure(&decoupled)] {
-        let tracker = tracker(&gain, &airframe);
+        let actuation = actuation(&airframe);
+        let controller = controller(&gain, &actuation);
         for bad in [f32::NAN, -f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             for i in 0..13 {
                 let mut x = measured(&on(&reference));
@@ -191,19 +197,19 @@ fn what_is_not_finite_is_refused_by_name_and_leaves_the_memory_alone() {
                         Field::Attitude
                     }
                 };
-                let mut memory = ActuatorMemory::hovering(&airframe);
-                let refused = tracker.step(&mut memory, &x, &reference).unwrap_err();
+                let mut memory = Memory::hovering(&airframe);
+                let refused = controller.step_to_motors(&mut memory, (&x).into(), (&reference).into()).unwrap_err();
                 let StepError::State(StateError::NonFinite { field: found, value }) = refused else {
                     panic!("{refused:?}")
                 };
                 assert_eq!((found, value.to_bits()), (field, bad.to_bits()), "input {i}");
-                assert_eq!(memory, ActuatorMemory::hovering(&airframe));
+                assert_eq!(memory, Memory::hovering(&airframe));
             }
         }
         let mut x = measured(&on(&reference));
         x.state.attitude = Quaternion::new(1.1, 0.0, 0.0, 0.0);
-        let mut memory = ActuatorMemory::hovering(&airframe);
-        let refused = tracker.step(&mut memory, &x, &reference);
+        let mut memory = Memory::hovering(&airframe);
+        let refused = controller.step_to_motors(&mut memory, (&x).into(), (&reference).into());
         assert!(matches!(refused, Err(StepError::State(StateError::QuaternionNorm { .. }))));
     }
 }

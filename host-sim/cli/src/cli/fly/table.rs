@@ -4,8 +4,8 @@ mod motors;
 
 use std::path::Path;
 
-use quatrack::gains::table::{AcceptError, GainTable, ScheduleTable, TableHead, TableKind};
-use quatrack::{FlightLaw, Rate, Trajectory};
+use quatrack::gains::table::{AcceptError, GainTable, TableKind};
+use quatrack::{Limits, Rate, Settings, Trajectory};
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::reference::{Exact, Reference};
@@ -21,29 +21,41 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Flown,
         return Err(Failure::input("--precision f64: a table is flown by the f32 core; leave --precision out"));
     }
     let bytes = bytes(path)?;
-    let kind = TableKind::of(&bytes).map_err(|error| refused(path, &error))?;
-    let trajectory = load(args)?;
+    let table = GainTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
+    let (kind, head) = (table.kind(), *table.head());
+    if kind == TableKind::ActuatorAware {
+        return motors::fly(args, path, &table, rate, &load(args)?);
+    }
+    let rate = rate.unwrap_or(head.rate);
+    let accepted = table.accept_for(&head.vehicle, rate).map_err(|error| not_accepted(path, &error))?;
+    let mut trajectory = load(args)?;
     if kind == TableKind::AlongTrajectory {
-        let table = ScheduleTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
-        let head = *table.head();
-        let rate = rate.unwrap_or(head.rate);
-        let accepted = table.accept_for(&head.vehicle, rate).map_err(|error| not_accepted(path, &error))?;
-        let trajectory = stored(&args.trajectory).unwrap_or(trajectory);
+        trajectory = stored(&args.trajectory).unwrap_or(trajectory);
         let pieces = on_board::pieces(&trajectory);
         if !Trajectory::new(&pieces).is_ok_and(|flown| accepted.is_for(&flown)) {
             let reason = format!("its gains are for another trajectory than --trajectory {}", args.trajectory);
             return Err(refused(path, &reason));
         }
-        return flown(args, &head, kind, &trajectory, accepted.law(rate, args.feed_forward()).into());
     }
-    if kind == TableKind::ActuatorAware {
-        return motors::fly(args, path, &bytes, rate, &trajectory);
-    }
-    let table = GainTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
-    let head = *table.head();
-    let rate = rate.unwrap_or(head.rate);
-    let accepted = table.accept_for(&head.vehicle, rate).map_err(|error| not_accepted(path, &error))?;
-    flown(args, &head, kind, &trajectory, accepted.law(args.feed_forward(), args.error_form()))
+    let settings = Settings {
+        limits: Limits::NONE,
+        actuation: None,
+        feed_forward: args.feed_forward(),
+        error_form: args.error_form(),
+        player_rate: rate,
+    };
+    let law = accepted.law(&settings).map_err(|error| refused(path, &error))?;
+    let limits = args
+        .limits
+        .clone()
+        .unwrap_or_else(|| LimitsChoice { name: format!("of the table, {}", head.vehicle.name), limits: head.limits });
+    Ok(Flown {
+        law: format!("{} ({kind})", head.name),
+        clock: format!("f32 core, {} Hz hold", head.rate.hz()),
+        limits: limits.name,
+        duration_s: Exact(&trajectory).duration_s(),
+        flight: fly_law(args, law, &trajectory, head.rate, limits.limits)?,
+    })
 }
 
 /// The paper's trajectories as they stand on board: gains over time belong to their bits, and those of one that is planned
@@ -53,26 +65,6 @@ fn stored(name: &str) -> Option<PiecewisePolynomial> {
         .then(|| Course::named(name, Path::new("")).ok())
         .flatten()
         .map(|course| course.trajectory().clone())
-}
-
-fn flown(
-    args: &Args,
-    head: &TableHead,
-    kind: TableKind,
-    trajectory: &PiecewisePolynomial,
-    law: FlightLaw<'_>,
-) -> Result<Flown, Failure> {
-    let limits = args
-        .limits
-        .clone()
-        .unwrap_or_else(|| LimitsChoice { name: format!("of the table, {}", head.vehicle.name), limits: head.limits });
-    Ok(Flown {
-        law: format!("{} ({kind})", head.name),
-        clock: format!("f32 core, {} Hz hold", head.rate.hz()),
-        limits: limits.name,
-        duration_s: Exact(trajectory).duration_s(),
-        flight: fly_law(args, law, trajectory, head.rate, limits.limits)?,
-    })
 }
 
 fn refused(path: &Path, reason: &dyn std::fmt::Display) -> Failure {

@@ -127,7 +127,7 @@ fn of_table(table: &Table) -> String {
     let (rows, columns) = (names(rows), names(columns));
     let entries: Vec<Vec<f64>> =
         table.by_rows().iter().map(|row| row.iter().map(|k| f64::from(*k)).collect()).collect();
-    if let Table::OverTime(table) = table {
+    if let Some(table) = table.along() {
         let trajectory = format!("{:08x}", table.trajectory).into();
         let _ = writeln!(out, "  {}", told_knots(table.gains.len(), &table.steps_per_knot.into(), &trajectory));
         let gains: Vec<_> = entries.chunks(rows.len()).map(<[_]>::to_vec).collect();
@@ -180,7 +180,7 @@ fn table_json(table: &Table) -> Value {
         "motor_lag_s": table.motor_lag_s(),
         "k_f32": table.by_rows(),
     });
-    if let Table::OverTime(table) = table {
+    if let Some(table) = table.along() {
         document["k_f32"] = json!(table.gains);
         document["steps_per_knot"] = json!(table.steps_per_knot);
         document["trajectory"] = json!(format!("{:08x}", table.trajectory));

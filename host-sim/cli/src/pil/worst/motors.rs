@@ -7,8 +7,8 @@
 
 use quatrack::law::ActuatorAwareGain;
 use quatrack::{
-    ActuatorAware, ActuatorMemory, Airframe, MotorLaw, MotorReference, MotorTracker, Piece, Player, Rate, RigidState,
-    State, Trajectory,
+    Actuation, ActuatorAware, Airframe, Controller, Limits, Memory, MotorReference, Output, Piece, Player, Rate,
+    RigidState, State, Target, Trajectory,
 };
 use quatrack_plan::plan::paper::Course;
 use quatrack_plan::plan::stored;
@@ -49,11 +49,11 @@ pub(super) fn dense() -> [[f32; 19]; 4] {
 /// The core on the host.
 pub(in crate::pil) struct Motors {
     dense: ActuatorAwareGain,
-    airframe: Airframe,
+    actuation: Actuation,
     rate: Rate,
     stored: Player<'static>,
     worst: Vec<Piece>,
-    memories: [ActuatorMemory; 9],
+    memories: [Memory; 9],
 }
 
 impl Motors {
@@ -65,17 +65,17 @@ impl Motors {
     fn of(course: Course) -> Option<Self> {
         let rate = Rate::from_hz(RATE_HZ)?;
         let pieces = stored::pieces(course);
-        let airframe = Airframe::CRAZYFLIE_2_1.commanded_at(rate);
-        let hover = ActuatorMemory::hovering(&airframe);
+        let actuation = Actuation::new(&Airframe::CRAZYFLIE_2_1.commanded_at(rate), rate).ok()?;
+        let hover = Memory::hovering(actuation.airframe());
         let mut memories = [hover; 9];
         for (index, memory) in memories.iter_mut().skip(1).enumerate() {
             let mut forces_n = hover.forces_n();
             *forces_n.get_mut(index / 2)? += if index % 2 == 0 { APART_N } else { -APART_N };
-            *memory = ActuatorMemory::new(forces_n)?;
+            *memory = Memory::new(forces_n)?;
         }
         Some(Self {
             dense: ActuatorAwareGain::new(dense()).ok()?,
-            airframe,
+            actuation,
             rate,
             stored: Player::new(Trajectory::new(pieces).ok()?, rate),
             worst: turn(&septic(pieces), TURN),
@@ -89,24 +89,25 @@ impl Motors {
     }
 
     fn hash(&mut self, step: u32, recorded: &State) -> Option<u32> {
-        let tracker = |gain| {
-            let law = ActuatorAware::new(gain, &self.airframe, self.rate).ok()?;
-            Some(MotorTracker::new(MotorLaw::ActuatorAware(law), &self.airframe))
-        };
-        let trackers = [tracker(&table::ACTUATOR_AWARE)?, tracker(&self.dense)?];
+        let airframe = self.actuation.airframe();
+        let controller = |gain| Controller::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE);
+        let controllers = [controller(&table::ACTUATOR_AWARE), controller(&self.dense)];
         let next = self.worst.first()?.duration_ns.div_ceil(1_000_000_000 / u64::from(RATE_HZ)) as u32;
         let mut worst = Player::new(Trajectory::new(&self.worst).ok()?, self.rate);
-        let mut hash = of_reference(HASH, &self.stored.motor_reference(step, &self.airframe).ok()?);
+        let mut hash = of_reference(HASH, &self.stored.motor_reference(step, airframe).ok()?);
         for step in [next, step] {
-            let reference = worst.motor_reference(step, &self.airframe).ok()?;
+            let reference = worst.motor_reference(step, airframe).ok()?;
             hash = of_reference(hash, &reference);
             let turned = recorded.attitude * reference.reference().heading().quaternion();
             let attitude = if step.is_multiple_of(2) { turned } else { -turned };
             let state = State { attitude, ..*recorded };
             let state = RigidState { state, body_rates_rad_s: reference.body_rates_rad_s() };
-            for tracker in &trackers {
+            for controller in &controllers {
                 for mut memory in self.memories {
-                    let step = tracker.step(&mut memory, &state, &reference).ok()?;
+                    let target = Target::with_forces(&reference);
+                    let Output::Forces(step) = controller.step(&mut memory, (&state).into(), target).ok()? else {
+                        return None;
+                    };
                     hash = hashed(hash, step.forces_n.map(f32::to_bits));
                     hash = hashed(hash, memory.forces_n().map(f32::to_bits));
                     hash = hashed(hash, [u32::from(step.limited.bits())]);

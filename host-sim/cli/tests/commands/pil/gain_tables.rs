@@ -2,8 +2,8 @@
 
 use quatrack::gains::paper;
 use quatrack::gains::table::{
-    AcceptError, AcceptedTable, Certificate, GainTable, Hash, LoadError, Margins, Name, Rows, TABLE_BYTES_MAX,
-    TableError, TableHead, TableKind, Vehicle,
+    AcceptError, Certificate, GainTable, Hash, LoadError, Margins, Name, Rows, TABLE_BYTES_MAX, TableError, TableHead,
+    Vehicle,
 };
 use quatrack::link::{
     BlobError, BlobKind, FromBoard, LawChoice, LimitsSetting, Parameter, ParameterId, Refusal, Table, ToBoard,
@@ -11,7 +11,10 @@ use quatrack::link::{
 };
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::Mode;
-use quatrack::{AnyLaw, Crossfade, ErrorForm, FeedForward, Limits, Player, Rate, State, Step, Tracker, Trajectory};
+use quatrack::{
+    Controller, ErrorForm, FeedForward, Handover, Law, Limits, Measured, Memory, Output, Player, Progress, Rate,
+    Settings, State, Step, Target, Trajectory,
+};
 use quatrack_cli::pil::client::Client;
 use quatrack_plan::plan::paper::Course;
 use quatrack_plan::plan::stored;
@@ -56,25 +59,38 @@ fn head(name: &str, vehicle: Vehicle, rate: Rate) -> TableHead {
 }
 
 /// LQR-E times a factor, for a vehicle and a rate.
-fn scaled(factor: f32, vehicle: Vehicle, rate: Rate) -> GainTable {
+fn scaled(factor: f32, vehicle: Vehicle, rate: Rate) -> GainTable<'static> {
     let rows = paper::LQR_E.gain().rows().map(|row| row.map(|entry| factor * entry));
     GainTable::new(head("scaled", vehicle, rate), &Rows::Equilibrium(rows)).unwrap()
 }
 
-fn bytes(table: &GainTable) -> Vec<u8> {
+fn bytes(table: &GainTable<'_>) -> Vec<u8> {
     table.to_bytes(&mut [0; TABLE_BYTES_MAX]).unwrap().to_vec()
 }
 
-fn accepted(table: &GainTable) -> AcceptedTable {
-    (*table).accept_for(&VEHICLE, rate()).unwrap()
+fn controller<'a>(law: impl Into<Law<'a>>) -> Controller<'a> {
+    Controller::new(law, limits())
 }
 
-fn tracker<'a>(law: impl Into<AnyLaw<'a>>) -> Tracker<'a> {
-    Tracker::new(law, limits())
+/// A loaded table as the board flies it.
+fn loaded<'t>(table: &'t GainTable<'_>) -> Controller<'t> {
+    let settings = Settings {
+        limits: limits(),
+        actuation: None,
+        feed_forward: FeedForward::Without,
+        error_form: ErrorForm::HeadingFrame,
+        player_rate: Rate::from_hz(TICK_HZ).unwrap(),
+    };
+    table.accept_for(&VEHICLE, rate()).unwrap().controller(&settings).unwrap()
 }
 
-fn loaded(table: &AcceptedTable) -> Tracker<'_> {
-    tracker(table.law(FeedForward::Without, ErrorForm::HeadingFrame).fixed().unwrap())
+/// The command of a law that remembers nothing.
+fn step(controller: &Controller<'_>, state: &State, reference: &quatrack::Reference) -> Step {
+    command(controller.step(&mut Memory::at_rest(), Measured::new(state), Target::new(reference)).unwrap())
+}
+
+fn command(output: Output) -> Step {
+    *output.command().expect("it gives a command")
 }
 
 fn choice(table: Table) -> LawChoice {
@@ -167,9 +183,10 @@ impl Flight {
 }
 
 /// A way of the board's length, stepped on the host.
-fn fading<'a>(old: Tracker<'a>, new: Tracker<'a>) -> impl FnMut(&State, &quatrack::Reference) -> Step + use<'a> {
-    let mut fade = Crossfade::over(FADE_STEPS);
-    move |state, reference| fade.step(&old, &new, state, reference).unwrap()
+fn fading<'a>(old: Controller<'a>, new: Controller<'a>) -> impl FnMut(&State, &quatrack::Reference) -> Step + use<'a> {
+    let mut memory = Memory::at_rest();
+    let mut way = Handover::begin(FADE_STEPS, old.law(), new.law(), &mut memory);
+    move |state, reference| command(way.step((&old, &new), &mut memory, state.into(), reference.into()).unwrap())
 }
 
 #[test]
@@ -178,17 +195,16 @@ fn a_table_uploaded_in_flight_is_swapped_in_bit_for_bit() {
         return;
     }
     let (first, second) = (scaled(1.25, VEHICLE, rate()), scaled(0.75, VEHICLE, rate()));
-    let (first_accepted, second_accepted) = (accepted(&first), accepted(&second));
-    let (first_law, second_law) = (loaded(&first_accepted), loaded(&second_accepted));
-    let built_in = tracker(choice(Table::LqrE).built_in().unwrap());
+    let (first_law, second_law) = (loaded(&first), loaded(&second));
+    let built_in = controller(choice(Table::LqrE).built_in().unwrap());
     let ahead = FADE_STEPS.into();
     let mut flight = Flight::begin();
 
-    flight.fly(20, |state, reference| built_in.step(state, reference).unwrap());
+    flight.fly(20, |state, reference| step(&built_in, state, reference));
     assert_eq!(flight.refusal(&ToBoard::SelectLaw(choice(Table::Loaded(0)))), Refusal::NoTable);
     let id = flight.upload(&bytes(&first), 0);
     flight.request(&ToBoard::UploadCommit { id });
-    flight.fly(20, |state, reference| built_in.step(state, reference).unwrap());
+    flight.fly(20, |state, reference| step(&built_in, state, reference));
 
     // From the built-in law to the loaded table, over the board's own number of steps, the last of which is the table's.
     flight.request(&ToBoard::SelectLaw(choice(Table::Loaded(0))));
@@ -197,11 +213,11 @@ fn a_table_uploaded_in_flight_is_swapped_in_bit_for_bit() {
     assert_eq!(flight.refusal(&ToBoard::SelectLaw(choice(Table::LqrE))), Refusal::LawChanging);
     flight.request(&ToBoard::SelectLaw(choice(Table::Loaded(0))));
     flight.fly(ahead, &mut way);
-    flight.fly(20, |state, reference| first_law.step(state, reference).unwrap());
+    flight.fly(20, |state, reference| step(&first_law, state, reference));
 
     // The next table takes the place of the one that is flown. A commit that comes twice does it once.
     let id = flight.upload(&bytes(&second), 0);
-    flight.fly(5, |state, reference| first_law.step(state, reference).unwrap());
+    flight.fly(5, |state, reference| step(&first_law, state, reference));
     flight.request(&ToBoard::UploadCommit { id });
     let mut way = fading(first_law, second_law);
     flight.fly(25, &mut way);
@@ -215,7 +231,7 @@ fn a_table_uploaded_in_flight_is_swapped_in_bit_for_bit() {
     flight.request(&ToBoard::Disarm);
     flight.start();
     flight.step = 0;
-    flight.fly(50, |state, reference| first_law.step(state, reference).unwrap());
+    flight.fly(50, |state, reference| step(&first_law, state, reference));
     assert_eq!(flight.refused(), 0);
 }
 
@@ -224,28 +240,21 @@ fn bad_tables_are_refused_each_for_its_reason_and_the_flight_goes_on() {
     if !has_emulator() {
         return;
     }
-    let built_in = tracker(choice(Table::LqrE).built_in().unwrap());
+    let built_in = controller(choice(Table::LqrE).built_in().unwrap());
     let good = bytes(&scaled(1.25, VEHICLE, rate()));
     let other_vehicle = Vehicle { id: 1, ..VEHICLE };
     let slower = Rate::from_hz(100).unwrap();
     let mut flipped = good.clone();
     flipped[200] ^= 1;
-    let mut integral = [[0.0; 12]; 4];
-    for (row, gains) in integral.iter_mut().zip(paper::LQR_E.gain().rows()) {
-        row[..9].copy_from_slice(gains);
-        row[9..].copy_from_slice(&[20.0, 20.0, 50.0]);
-    }
-    let integral = GainTable::new(head("lqi", VEHICLE, rate()), &Rows::Integral(integral)).unwrap();
-
     let mut flight = Flight::begin();
     let mut count = 0;
     let mut refusal = |blob: &[u8], damage: u32| {
-        flight.fly(10, |state, reference| built_in.step(state, reference).unwrap());
+        flight.fly(10, |state, reference| step(&built_in, state, reference));
         let id = flight.upload(blob, damage);
         let reason = flight.refusal(&ToBoard::UploadCommit { id });
         count += 1;
         assert_eq!(flight.refused(), count);
-        flight.fly(10, |state, reference| built_in.step(state, reference).unwrap());
+        flight.fly(10, |state, reference| step(&built_in, state, reference));
         assert_eq!(flight.refusal(&ToBoard::SelectLaw(choice(Table::Loaded(0)))), Refusal::NoTable);
         assert_eq!(flight.client.telemetry().unwrap().mode, Mode::Flying);
         reason
@@ -265,9 +274,73 @@ fn bad_tables_are_refused_each_for_its_reason_and_the_flight_goes_on() {
         table_error(&bytes(&scaled(1.25, VEHICLE, slower))),
         LoadError::Accept(AcceptError::Rate { table_hz: 100, loop_hz: 500 })
     );
-    // Sound, but it remembers from step to step, which this loop does not.
-    assert_eq!(
-        table_error(&bytes(&integral)),
-        LoadError::Table(TableError::Kind { found: TableKind::Integral.number() })
-    );
+}
+
+/// LQI as it is designed in the repository, and gains along the aggressive trajectory.
+const LQI: &[u8] = include_bytes!("../../../../../gains/generated/lqi-e.bin");
+const ALONG: &[u8] = include_bytes!("../../../../../gains/generated/along-aggressive.bin");
+
+#[test]
+fn tables_that_remember_or_follow_a_clock_fly_bit_for_bit() {
+    if !has_emulator() {
+        return;
+    }
+    for blob in [LQI, ALONG] {
+        let table = GainTable::from_bytes(blob).unwrap();
+        let (built_in, new) = (controller(choice(Table::LqrE).built_in().unwrap()), loaded(&table));
+        let trajectory = Trajectory::new(stored::pieces(Course::Aggressive)).unwrap().checksum();
+        let mut flight = Flight::begin();
+        flight.fly(20, |state, reference| step(&built_in, state, reference));
+        let id = flight.upload(blob, 0);
+        flight.request(&ToBoard::UploadCommit { id });
+        flight.request(&ToBoard::SelectLaw(choice(Table::Loaded(0))));
+        // Over the way to it and on for a second: what it integrates, and where on the trajectory it is, counts.
+        let mut memory = Memory::at_rest();
+        let mut way = Handover::begin(FADE_STEPS, built_in.law(), new.law(), &mut memory);
+        let mut tick = 20 * TICKS_PER_STEP;
+        flight.fly(550, |state, reference| {
+            let target = Target::new(reference).at(Some(Progress { trajectory, tick }));
+            tick += TICKS_PER_STEP;
+            command(way.step((&built_in, &new), &mut memory, state.into(), target).unwrap())
+        });
+        assert_eq!(
+            memory.integral_m_s() != Vector3::zeros(),
+            table.kind() == quatrack::gains::table::TableKind::Integral
+        );
+        // And back to a law that does not.
+        flight.request(&ToBoard::SelectLaw(choice(Table::LqrE)));
+        let mut way = Handover::begin(FADE_STEPS, new.law(), built_in.law(), &mut memory);
+        flight.fly(100, |state, reference| {
+            let target = Target::new(reference).at(Some(Progress { trajectory, tick }));
+            tick += TICKS_PER_STEP;
+            command(way.step((&new, &built_in), &mut memory, state.into(), target).unwrap())
+        });
+    }
+}
+
+#[test]
+fn a_loaded_tables_own_limits_hold() {
+    if !has_emulator() {
+        return;
+    }
+    let tight = Limits::new(9.0, 10.5, Vector3::new(1.0, 1.0, 0.5)).unwrap();
+    let rows = Rows::Equilibrium(*paper::LQR_E.gain().rows());
+    let table = GainTable::new(TableHead { limits: tight, ..head("tight", VEHICLE, rate()) }, &rows).unwrap();
+    let new = loaded(&table);
+    assert_eq!(*new.limits(), tight, "tighter than the board's");
+    let built_in = controller(choice(Table::LqrE).built_in().unwrap());
+    let mut flight = Flight::begin();
+    let id = flight.upload(&bytes(&table), 0);
+    flight.request(&ToBoard::UploadCommit { id });
+    flight.request(&ToBoard::SelectLaw(choice(Table::Loaded(0))));
+    let mut way = fading(built_in, new);
+    flight.fly(FADE_STEPS.into(), &mut way);
+    let mut cut = 0;
+    flight.fly(500, |state, reference| {
+        let step = step(&new, state, reference);
+        assert!((9.0..=10.5).contains(&step.command.thrust_m_s2));
+        cut += u32::from(step.limited.any());
+        step
+    });
+    assert!(cut > 100, "{cut} of 500 steps are cut on the aggressive trajectory");
 }

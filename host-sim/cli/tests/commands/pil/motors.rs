@@ -1,13 +1,18 @@
 //! The emulated board down to its motors: forces in answer to states with body rates, and what ends them.
 
+use quatrack::gains::table::{GainTable, Name, Vehicle};
 use quatrack::link::{
-    FromBoard, LawChoice, NoCommand, Parameter, ParameterId, RigidStateIn, StateIn, Table, ToBoard, TrajectoryCommand,
-    TrajectoryId,
+    BlobKind, FromBoard, LawChoice, NoCommand, Parameter, ParameterId, RigidStateIn, StateIn, Table, ToBoard,
+    TrajectoryCommand, TrajectoryId, UploadBegin,
 };
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{Mode, StopReason};
-use quatrack::{Airframe, RigidState, State};
+use quatrack::{
+    Actuation, Airframe, ErrorForm, FeedForward, Limits, Memory, Player, Rate, RigidState, Settings, State, Trajectory,
+};
 use quatrack_cli::pil::client::Client;
+use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::stored;
 
 use super::emulated::connected;
 use super::support::has_emulator;
@@ -77,4 +82,55 @@ fn the_battery_is_told_in_flight_and_the_rate_loop_is_not() {
     client.request(&ToBoard::Disarm).unwrap();
     assert!(client.set(Parameter::BodyRateBandwidth([20.0, 0.0, 20.0])).is_err(), "an axis without a loop");
     client.set(Parameter::BodyRateBandwidth([20.0, 20.0, 10.0])).unwrap();
+}
+
+#[test]
+fn a_table_for_motor_forces_flies_bit_for_bit() {
+    if !has_emulator() {
+        return;
+    }
+    // Designed for motors of 63.5 ms: the board reckons with the table's lag, not with its own craft's.
+    let blob: &[u8] = include_bytes!("../../../../../gains/generated/actuator-aware-63ms.bin");
+    let (rate, ticks) = (Rate::from_hz(500).unwrap(), Rate::from_hz(1000).unwrap());
+    let vehicle = Vehicle { name: Name::literal("crazyflie-2.1"), id: 0x8983_3c06 };
+    let table = GainTable::from_bytes(blob).unwrap();
+    let accepted = table.accept_for(&vehicle, rate).unwrap();
+    let actuation = accepted.actuation(&Actuation::new(&Airframe::CRAZYFLIE_2_1, rate).unwrap());
+    assert_eq!(actuation.lag().lag_s(), 0.0635);
+    let controller = accepted.controller(&Settings {
+        limits: Limits::NONE,
+        actuation: Some(&actuation),
+        feed_forward: FeedForward::Without,
+        error_form: ErrorForm::HeadingFrame,
+        player_rate: ticks,
+    });
+    let controller = controller.unwrap();
+
+    let mut client = connected();
+    client.set(Parameter::Decimation(0)).unwrap();
+    client.set(Parameter::StateAgeMaxTicks(10_000)).unwrap();
+    client.set(Parameter::LinkSilenceMaxTicks(10_000)).unwrap();
+    let begin = UploadBegin::of(BlobKind::GainTable, 1, blob).unwrap();
+    let mut answer = client.ask(&ToBoard::UploadBegin(begin)).unwrap();
+    while let FromBoard::Upload(wanted) = answer {
+        let Some(chunk) = wanted.next_chunk(blob) else { break };
+        answer = client.ask(&ToBoard::UploadChunk(chunk)).unwrap();
+    }
+    client.request(&ToBoard::UploadCommit { id: 1 }).unwrap();
+    client.request(&ToBoard::SelectLaw(LawChoice::new(Table::Loaded(0)))).unwrap();
+    client.request(&ToBoard::Trajectory(TrajectoryCommand::Start(TrajectoryId::Mild))).unwrap();
+    client.request(&ToBoard::Arm).unwrap();
+
+    let mut player = Player::new(Trajectory::new(stored::pieces(Course::Mild)).unwrap(), ticks);
+    let mut memory = Memory::at_rest();
+    for step in 0..500_u16 {
+        let tick = 2 * u32::from(step);
+        let reference = player.motor_reference(tick, actuation.airframe()).unwrap();
+        let mut measured = RigidState { state: *reference.state(), body_rates_rad_s: reference.body_rates_rad_s() };
+        measured.state.position_m.z -= 0.01 + 1e-5 * f32::from(step);
+        measured.body_rates_rad_s.x += 0.1;
+        let expected = controller.step_to_motors(&mut memory, (&measured).into(), (&reference).into()).unwrap();
+        let found = client.step_rigid(tick, &measured).unwrap().result;
+        assert_eq!(found, Ok(expected), "step {step}");
+    }
 }

@@ -5,7 +5,7 @@ use quatrack::link::{
     TrajectoryCommand, TrajectoryId, UploadBegin, encode_trajectory,
 };
 use quatrack::nalgebra::Vector3;
-use quatrack::{FlatSample, Limits, Player, Rate, Reference, State, Tracker, Trajectory};
+use quatrack::{Controller, FlatSample, Limits, Memory, Player, Rate, Reference, State, Step, Trajectory};
 use quatrack_cli::pil::client::Client;
 use quatrack_plan::plan::paper::Course;
 use quatrack_plan::plan::stored;
@@ -17,8 +17,8 @@ use super::support::has_emulator;
 const TICK_HZ: u32 = 1000;
 const TICKS_PER_STEP: u32 = 2;
 
-/// A connected board that steps when a state comes, with limits that the host's tracker has too.
-fn ready() -> (Client, Tracker<'static>) {
+/// A connected board that steps when a state comes, with limits that the host's controller has too.
+fn ready() -> (Client, Controller<'static>) {
     let mut client = connected();
     client.set(Parameter::Decimation(0)).unwrap();
     client.set(Parameter::StateAgeMaxTicks(10_000)).unwrap();
@@ -27,9 +27,15 @@ fn ready() -> (Client, Tracker<'static>) {
     client.set(Parameter::Limits(limits)).unwrap();
     let law = LawChoice::new(Table::LqrE);
     client.request(&ToBoard::SelectLaw(law)).unwrap();
-    let tracker =
-        Tracker::new(law.built_in().unwrap(), Limits::new(0.0, 16.5, Vector3::new(20.0, 20.0, 20.0)).unwrap());
-    (client, tracker)
+    let controller =
+        Controller::new(law.built_in().unwrap(), Limits::new(0.0, 16.5, Vector3::new(20.0, 20.0, 20.0)).unwrap());
+    (client, controller)
+}
+
+/// The command of a law that remembers nothing.
+fn command_of(controller: &Controller<'_>, state: &State, reference: &Reference) -> Step {
+    let output = controller.step(&mut Memory::at_rest(), state.into(), reference.into()).unwrap();
+    *output.command().expect("it gives a command")
 }
 
 /// Two centimetres beside a reference, and moving.
@@ -52,7 +58,7 @@ fn an_uploaded_trajectory_flies_bit_for_bit() {
     if !has_emulator() {
         return;
     }
-    let (mut client, tracker) = ready();
+    let (mut client, controller) = ready();
     let start = ToBoard::Trajectory(TrajectoryCommand::Start(TrajectoryId::Uploaded));
     assert!(client.request(&start).is_err(), "there is nothing to fly yet");
 
@@ -83,7 +89,7 @@ fn an_uploaded_trajectory_flies_bit_for_bit() {
         let reference = player.reference(tick).unwrap();
         let state = near(&reference);
         let found = client.step(tick, &state).unwrap().result;
-        assert_eq!(found, Ok(tracker.step(&state, &reference).unwrap()), "step {step}");
+        assert_eq!(found, Ok(command_of(&controller, &state, &reference)), "step {step}");
     }
 }
 
@@ -92,7 +98,7 @@ fn a_reference_beside_each_state_flies_bit_for_bit() {
     if !has_emulator() {
         return;
     }
-    let (mut client, tracker) = ready();
+    let (mut client, controller) = ready();
     let sample = |step: u32| {
         let t = step as f32 * 0.002;
         FlatSample {
@@ -111,7 +117,7 @@ fn a_reference_beside_each_state_flies_bit_for_bit() {
             FromBoard::Command(command) => command.result,
             other => panic!("a state is answered by {other:?}"),
         };
-        (found, tracker.step(&state, &reference).unwrap())
+        (found, command_of(&controller, &state, &reference))
     };
     // The first one is not flown: there was no reference to arm with.
     assert!(step_with(&mut client, 0).0.is_err());

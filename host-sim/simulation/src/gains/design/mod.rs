@@ -99,7 +99,7 @@ fn vehicle(written: &str, folder: &Path) -> Result<Vehicle, GainsError> {
 /// The vehicle's limits, or tighter ones.
 fn limits(entry: &LimitsEntry, vehicle: &Vehicle, written: &str) -> Result<Limits, GainsError> {
     let refused = |reason: String| GainsError::Vehicle { vehicle: written.to_owned(), reason };
-    let whole = vehicles::limits(&vehicle).map_err(|error| refused(error.to_string()))?;
+    let whole = vehicles::limits(vehicle).map_err(|error| refused(error.to_string()))?;
     let (least, most) = (f64::from(whole.thrust_min_m_s2()), f64::from(whole.thrust_max_m_s2()));
     let min = entry.thrust_min_m_s2.unwrap_or(least);
     let max = entry.thrust_max_m_s2.unwrap_or(most);

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use quatrack::Rate;
-use quatrack::gains::table::{ActuatorTable, TableKind};
+use quatrack::gains::table::{GainTable, TableKind};
 use quatrack_plan::trajectory::fifth_order::Course as _;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::motor_laws::{CraftLaw, fly as fly_motors};
@@ -20,14 +20,13 @@ use crate::cli::Failure;
 pub(super) fn fly(
     args: &Args,
     path: &Path,
-    bytes: &[u8],
+    table: &GainTable<'_>,
     rate: Option<Rate>,
     trajectory: &PiecewisePolynomial,
 ) -> Result<Flown, Failure> {
     if args.limits.is_some() {
         return Err(refused(path, &"its limits are those of its vehicle's motors; leave --limits out"));
     }
-    let table = ActuatorTable::from_bytes(bytes).map_err(|error| refused(path, &error))?;
     let head = *table.head();
     if head.rate != RATE {
         return Err(refused(path, &format!("for {} Hz; the rigid plant is flown at {} Hz", head.rate.hz(), RATE.hz())));
@@ -39,8 +38,8 @@ pub(super) fn fly(
         .ok_or_else(|| refused(path, &format!("no built-in vehicle is its {}", head.vehicle)))?;
     let accepted =
         table.accept_for(&head.vehicle, rate.unwrap_or(head.rate)).map_err(|error| not_accepted(path, &error))?;
-    let law = CraftLaw::of_table(&vehicle, &accepted).map_err(|error| refused(path, &error))?;
-    let lag_s = f64::from(table.lag().lag_s());
+    let law = CraftLaw::of_table(&vehicle, accepted).map_err(|error| refused(path, &error))?;
+    let lag_s = table.lag().map_or_else(|| vehicle.motors().lag_s, |lag| f64::from(lag.lag_s()));
     let mut craft = Craft::new(&vehicle);
     craft.motors = craft.motors.with_lag(lag_s, lag_s);
     let start = state_on(&trajectory.at(0.0), law.airframe())

@@ -1,0 +1,184 @@
+//! One control step of any law: what is measured and what is to be followed in, an output within the limits out, or the
+//! reason for none.
+
+use super::actuation::Actuation;
+use super::input::{Measured, Target};
+use super::law::Law;
+use super::memory::Memory;
+use super::output::{MotorStep, Output, Step};
+use super::registers;
+use crate::command::Limits;
+use crate::error::{StateError, StepError};
+use crate::law::{ActuatorAware, AlongTrajectory, IntegralAction};
+
+/// A law, the limits that its commands keep to, and what carries them to the motors. To be called at a fixed rate.
+///
+/// What is remembered is apart, in [`Memory`]: a flight begins with a new one, and another controller can take over between
+/// two steps with the same.
+#[derive(Clone, Copy, Debug)]
+pub struct Controller<'a> {
+    pub(super) law: Law<'a>,
+    pub(super) limits: Limits,
+    pub(super) actuation: Option<&'a Actuation>,
+}
+
+impl<'a> Controller<'a> {
+    /// A controller that flies `law` within `limits`. A law of motor forces keeps to the motors' range instead, and has brought
+    /// what it needs to know of them.
+    #[inline]
+    pub fn new(law: impl Into<Law<'a>>, limits: Limits) -> Self {
+        let law = law.into();
+        let actuation = match &law {
+            Law::ActuatorAware(law) => Some(law.actuation),
+            _ => None,
+        };
+        Self { law, limits, actuation }
+    }
+
+    /// With what carries commands to the motors; a law of motor forces keeps its own.
+    #[inline]
+    pub const fn with_actuation(self, actuation: &'a Actuation) -> Self {
+        match self.law {
+            Law::ActuatorAware(_) => self,
+            _ => Self { actuation: Some(actuation), ..self },
+        }
+    }
+
+    /// The law.
+    pub const fn law(&self) -> &Law<'a> {
+        &self.law
+    }
+
+    /// The limits.
+    pub const fn limits(&self) -> &Limits {
+        &self.limits
+    }
+
+    /// What carries commands to the motors.
+    pub const fn actuation(&self) -> Option<&'a Actuation> {
+        self.actuation
+    }
+
+    /// The output for this step.
+    ///
+    /// # Errors
+    /// [`StepError`] where the state is no state, the law has no answer, or lacks what it takes. There is then no output, and
+    /// the memory is as it was: the caller stops or levels, and never holds the last output.
+    #[inline(always)]
+    pub fn step(&self, memory: &mut Memory, measured: Measured<'_>, target: Target<'_>) -> Result<Output, StepError> {
+        // Looked at by itself, before all others: it is to cost nothing.
+        if let Law::Equilibrium(_) = &self.law {
+            return registers::equilibrium(self, measured.state, target.reference);
+        }
+        match &self.law {
+            Law::Equilibrium(_) => registers::equilibrium(self, measured.state, target.reference),
+            Law::FlatOutput(_) => registers::flat_output(self, measured.state, target.reference),
+            Law::IntegralAction(law) => integral(law, &self.limits, memory, measured, target),
+            Law::AlongTrajectory(law) => along(law, &self.limits, measured, target),
+            Law::ActuatorAware(law) => actuator_aware(law, memory, measured, target),
+        }
+    }
+
+    /// Motor forces for what a step gave, at the body rates that it was taken on; those of a law that gives forces as they
+    /// are.
+    ///
+    /// # Errors
+    /// [`StepError::NoBodyRates`] and [`StepError::NoActuation`] where a command cannot be carried; [`StepError::State`] for
+    /// body rates that are not finite.
+    #[inline]
+    pub fn carry(&self, memory: &mut Memory, output: &Output, measured: Measured<'_>) -> Result<MotorStep, StepError> {
+        carry(self.actuation, memory, output, measured)
+    }
+
+    /// Both in one: a step down to the motors.
+    ///
+    /// # Errors
+    /// As [`Self::step`] and [`Self::carry`].
+    pub fn step_to_motors(
+        &self,
+        memory: &mut Memory,
+        measured: Measured<'_>,
+        target: Target<'_>,
+    ) -> Result<MotorStep, StepError> {
+        let mut after = *memory;
+        let output = self.step(&mut after, measured, target)?;
+        let step = self.carry(&mut after, &output, measured)?;
+        *memory = after;
+        Ok(step)
+    }
+}
+
+/// Motor forces for an output.
+#[inline]
+pub(super) fn carry(
+    actuation: Option<&Actuation>,
+    memory: &mut Memory,
+    output: &Output,
+    measured: Measured<'_>,
+) -> Result<MotorStep, StepError> {
+    match output {
+        Output::Forces(step) => Ok(*step),
+        Output::Command(step) => {
+            let body_rates_rad_s = measured.body_rates_rad_s.ok_or(StepError::NoBodyRates)?;
+            actuation.ok_or(StepError::NoActuation)?.carry(memory, step, body_rates_rad_s)
+        }
+    }
+}
+
+// Each out of line, so that no law pays for the registers of another.
+
+#[inline(never)]
+fn integral(
+    law: &IntegralAction<'_>,
+    limits: &Limits,
+    memory: &mut Memory,
+    measured: Measured<'_>,
+    target: Target<'_>,
+) -> Result<Output, StepError> {
+    let Some(state) = measured.state.normalized() else { return Err(refuse(measured)) };
+    let sum = &mut memory.integral_m_s;
+    let Some((command, limited)) = limits.saturate(&law.command(sum, &state, target.reference)) else {
+        return Err(refuse(measured));
+    };
+    *sum = law.advanced(sum, measured.state, target.reference, limited);
+    Ok(Output::Command(Step { command, limited }))
+}
+
+#[inline(never)]
+fn along(
+    law: &AlongTrajectory<'_>,
+    limits: &Limits,
+    measured: Measured<'_>,
+    target: Target<'_>,
+) -> Result<Output, StepError> {
+    let Some(state) = measured.state.normalized() else { return Err(refuse(measured)) };
+    match limits.saturate(&law.command(target.progress, &state, target.reference)) {
+        Some((command, limited)) => Ok(Output::Command(Step { command, limited })),
+        None => Err(refuse(measured)),
+    }
+}
+
+#[inline(never)]
+fn actuator_aware(
+    law: &ActuatorAware<'_>,
+    memory: &mut Memory,
+    measured: Measured<'_>,
+    target: Target<'_>,
+) -> Result<Output, StepError> {
+    let Some(body_rates_rad_s) = measured.body_rates_rad_s else { return Err(StepError::NoBodyRates) };
+    let Some(reference) = target.motors else { return Err(StepError::NoForces) };
+    if measured.state.normalized().is_some()
+        && let Some((forces_n, limited)) = law.step(memory, measured.state, body_rates_rad_s, reference)
+    {
+        return Ok(Output::Forces(MotorStep { forces_n, limited }));
+    }
+    Err(refuse(measured))
+}
+
+/// Why there is no output. The reference has been checked when it was made.
+#[cold]
+#[inline(never)]
+fn refuse(measured: Measured<'_>) -> StepError {
+    let rates = || measured.body_rates_rad_s.and_then(StateError::of_body_rates);
+    measured.state.fault().or_else(rates).map_or(StepError::Singular, StepError::State)
+}

@@ -1,0 +1,72 @@
+//! Any law with its gain, to be chosen at run time.
+
+use crate::law::{ActuatorAware, AlongTrajectory, Equilibrium, FlatOutput, IntegralAction};
+
+/// Any law.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub enum Law<'a> {
+    /// Linear in the state's error around hover.
+    Equilibrium(Equilibrium<'a>),
+    /// Linear in the flat state's error, through the flat map.
+    FlatOutput(FlatOutput<'a>),
+    /// Around hover with the integral of the position error.
+    IntegralAction(IntegralAction<'a>),
+    /// Gains over time along a trajectory.
+    AlongTrajectory(AlongTrajectory<'a>),
+    /// Straight to motor forces, with the motors' lag in the model.
+    ActuatorAware(ActuatorAware<'a>),
+}
+
+impl Law<'_> {
+    /// Whether it gives motor forces: it then takes measured body rates, and a target made with
+    /// [`super::Target::with_forces`] for the craft of its [`super::Actuation`].
+    #[inline]
+    pub const fn follows_forces(&self) -> bool {
+        matches!(self, Self::ActuatorAware(_))
+    }
+
+    /// Whether it moves on the integral of the position error.
+    #[inline]
+    pub const fn integrates(&self) -> bool {
+        matches!(self, Self::ActuatorAware(_) | Self::IntegralAction(_))
+    }
+
+    /// Whether what one has integrated means the same to the other: both are of one kind that integrates.
+    pub(crate) const fn integrates_like(&self, other: &Self) -> bool {
+        matches!(
+            (self, other),
+            (Self::ActuatorAware(_), Self::ActuatorAware(_)) | (Self::IntegralAction(_), Self::IntegralAction(_))
+        )
+    }
+}
+
+impl<'a> From<Equilibrium<'a>> for Law<'a> {
+    fn from(law: Equilibrium<'a>) -> Self {
+        Self::Equilibrium(law)
+    }
+}
+
+impl<'a> From<FlatOutput<'a>> for Law<'a> {
+    fn from(law: FlatOutput<'a>) -> Self {
+        Self::FlatOutput(law)
+    }
+}
+
+impl<'a> From<IntegralAction<'a>> for Law<'a> {
+    fn from(law: IntegralAction<'a>) -> Self {
+        Self::IntegralAction(law)
+    }
+}
+
+impl<'a> From<AlongTrajectory<'a>> for Law<'a> {
+    fn from(law: AlongTrajectory<'a>) -> Self {
+        Self::AlongTrajectory(law)
+    }
+}
+
+impl<'a> From<ActuatorAware<'a>> for Law<'a> {
+    fn from(law: ActuatorAware<'a>) -> Self {
+        Self::ActuatorAware(law)
+    }
+}

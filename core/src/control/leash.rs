@@ -1,0 +1,53 @@
+//! The leash: how far away a goal may be.
+
+use nalgebra::Vector3;
+
+use crate::math::sqrt;
+use crate::state::State;
+
+/// Farthest that a position is asked for from the measured one, m, and a velocity, m/s: one length for both.
+///
+/// The laws are linear, and would turn the craft over for a goal metres away, or for a stop in full flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leash {
+    /// Its length, m and m/s.
+    pub length_m: f32,
+}
+
+impl Leash {
+    /// Draws a position and a velocity that are too far away towards the craft, a metre a second counting like a metre.
+    #[inline]
+    pub fn draw(&self, position_m: &mut Vector3<f32>, velocity_m_s: &mut Vector3<f32>, measured: &State) {
+        let (r, w) = (&measured.position_m, &measured.velocity_m_s);
+        let (p, v) = (&*position_m, &*velocity_m_s);
+        let (dx, dy, dz) = (p.x - r.x, p.y - r.y, p.z - r.z);
+        let (ex, ey, ez) = (v.x - w.x, v.y - w.y, v.z - w.z);
+        let squared = (dx * dx + dy * dy + dz * dz) + (ex * ex + ey * ey + ez * ez);
+        if squared > self.length_m * self.length_m {
+            let share = self.length_m / sqrt(squared);
+            *position_m = Vector3::new(r.x + dx * share, r.y + dy * share, r.z + dz * share);
+            *velocity_m_s = Vector3::new(w.x + ex * share, w.y + ey * share, w.z + ez * share);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_goal_beyond_the_leash_comes_to_its_end_and_one_within_stays() {
+        let measured =
+            State { velocity_m_s: Vector3::new(0.0, 0.5, 0.0), ..State::at_rest(Vector3::new(1.0, 2.0, 3.0)) };
+        let leash = Leash { length_m: 1.0 };
+        let (mut position, mut velocity) = (Vector3::new(4.0, 2.0, 3.0), Vector3::new(0.0, 4.5, 0.0));
+        leash.draw(&mut position, &mut velocity, &measured);
+        // 3 m and 4 m/s away: five leashes, so a fifth of the way.
+        assert!((position - Vector3::new(1.6, 2.0, 3.0)).norm() < 1e-6, "{position}");
+        assert!((velocity - Vector3::new(0.0, 1.3, 0.0)).norm() < 1e-6, "{velocity}");
+        let (near, slow) = (Vector3::new(1.5, 2.0, 3.0), Vector3::new(0.0, 1.0, 0.0));
+        let (mut position, mut velocity) = (near, slow);
+        leash.draw(&mut position, &mut velocity, &measured);
+        assert_eq!((position, velocity), (near, slow));
+    }
+}

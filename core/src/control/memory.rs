@@ -1,0 +1,70 @@
+//! What a controller remembers from one step to the next.
+
+use nalgebra::Vector3;
+
+use crate::airframe::Airframe;
+use crate::motor_lag::MotorForces;
+
+/// What is remembered from step to step: one record for every law, so that another law can take over.
+///
+/// The forces that the motors should have by now are kept up whenever motor forces come of a step; they are not measured. The
+/// integral of the position error is moved on by the laws that have one, and is cleared where a law without one hands over
+/// ([`super::Handover`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Memory {
+    /// Forces that the motors should have, N.
+    pub(crate) forces_n: MotorForces,
+    /// Integral of the position error in the world frame, m s.
+    pub(crate) integral_m_s: Vector3<f32>,
+}
+
+impl Memory {
+    /// Motors at some forces (N), and nothing integrated. Nothing where a force is not finite.
+    pub fn new(forces_n: MotorForces) -> Option<Self> {
+        let finite = forces_n.iter().all(|force| force.is_finite());
+        finite.then_some(Self { forces_n, ..Self::at_rest() })
+    }
+
+    /// Motors that stand still: before a take-off, and for who has no motors.
+    pub const fn at_rest() -> Self {
+        Self { forces_n: [0.0; 4], integral_m_s: Vector3::new(0.0, 0.0, 0.0) }
+    }
+
+    /// A craft that hovers: for taking over in flight from somebody of whose motors nothing is known.
+    pub const fn hovering(airframe: &Airframe) -> Self {
+        Self { forces_n: [airframe.hover_force_n(); 4], ..Self::at_rest() }
+    }
+
+    /// Takes the motors to be at the forces of hover, where nobody has kept what they were commanded in flight.
+    pub const fn assume_hovering(&mut self, airframe: &Airframe) {
+        self.forces_n = [airframe.hover_force_n(); 4];
+    }
+
+    /// Motors that are switched off run down: this share of their forces is left.
+    pub fn run_down(&mut self, share: f32) {
+        let [a, b, c, d] = self.forces_n;
+        self.forces_n = [a * share, b * share, c * share, d * share];
+    }
+
+    /// Forces that the motors should have, N.
+    pub const fn forces_n(&self) -> MotorForces {
+        self.forces_n
+    }
+
+    /// Integral of the position error in the world frame, m s.
+    pub const fn integral_m_s(&self) -> Vector3<f32> {
+        self.integral_m_s
+    }
+
+    /// Forgets the integral: before another trajectory that begins elsewhere.
+    pub const fn clear_integral(&mut self) {
+        self.integral_m_s = Vector3::new(0.0, 0.0, 0.0);
+    }
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self::at_rest()
+    }
+}

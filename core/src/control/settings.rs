@@ -1,0 +1,63 @@
+//! How a gain of any kind is flown: what the board decides beside the table.
+
+use core::fmt;
+
+use super::actuation::Actuation;
+use crate::clock::Rate;
+use crate::command::Limits;
+use crate::law::{ErrorForm, FeedForward};
+
+/// What a board decides of a controller that it makes of a gain table.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings<'a> {
+    /// What the craft can be asked for; the table's own limits hold beside.
+    pub limits: Limits,
+    /// What carries commands to the motors; a table for motor forces takes that of its own lag
+    /// ([`crate::gains::table::AcceptedTable::actuation`]).
+    pub actuation: Option<&'a Actuation>,
+    /// Whether the reference's input is added.
+    pub feed_forward: FeedForward,
+    /// How the equilibrium law forms its error; the others have one form only.
+    pub error_form: ErrorForm,
+    /// Ticks a second of the player whose progress a table along a trajectory is given.
+    pub player_rate: Rate,
+}
+
+impl Settings<'_> {
+    /// Limits and the rate of the player alone: no motors, no feed-forward, errors in the heading frame.
+    pub const fn new(limits: Limits, player_rate: Rate) -> Self {
+        let (feed_forward, error_form) = (FeedForward::Without, ErrorForm::HeadingFrame);
+        Self { limits, actuation: None, feed_forward, error_form, player_rate }
+    }
+}
+
+/// Why a table becomes no controller.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum ControllerError {
+    /// Its law gives motor forces, and there is nothing to carry any.
+    NoActuation,
+    /// The actuation reckons with another motor lag than the table.
+    MotorLag {
+        /// The table's, s.
+        table_s: f32,
+        /// The actuation's, s.
+        actuation_s: f32,
+    },
+}
+
+impl fmt::Display for ControllerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoActuation => f.write_str("controller: the table is for motor forces; give an actuation"),
+            Self::MotorLag { table_s, actuation_s } => write!(
+                f,
+                "controller: the table reckons with a motor lag of {table_s} s, the actuation with {actuation_s} s; take \
+                 the table's"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ControllerError {}

@@ -1,0 +1,246 @@
+//! One flight's plant: a vehicle, its surroundings and what it really is in; state, wind and what the sensors feel out.
+
+use nalgebra::{Vector3, Vector4};
+use quatrack_design::vehicle::Vehicle;
+
+use super::craft::{LinearWind, STEP_MAX_S};
+use super::delay::DelayLine;
+use super::environment::{Environment, Truth};
+use super::ground_effect::GroundEffect;
+use super::refused::PlantError;
+use super::supply::{ForceMap, Supply};
+use super::wind::Blowing;
+use super::{Airflow, Contact, Craft, Ground, Load, Motion, RigidBody, RigidState, RotorDrag};
+
+/// A craft in flight. It moves by [`Self::advance`] alone; the same vehicle, figures and seed give the same bits.
+///
+/// ```
+/// use nalgebra::{Vector3, Vector4};
+/// use quatrack_simulation::plant::{Environment, Plant, RigidState, Truth, Wind};
+/// use quatrack_simulation::vehicles;
+///
+/// let vehicle = vehicles::by_name("crazyflie-2.1").unwrap();
+/// let mut environment = Environment { wind: Wind::constant(Vector3::new(1.0, 0.0, 0.0)), ..Environment::VACUUM };
+/// environment.air.drag_per_s = [0.4; 3];
+/// let hovering = RigidState::at_rest(Vector3::z(), vehicle.hover_thrust_n());
+/// let mut plant = Plant::new(&vehicle, &environment, &Truth::as_designed(&vehicle), &hovering, 1).unwrap();
+/// plant.advance(&Vector4::repeat(vehicle.hover_thrust_n()), 1.0);
+/// // v = 1 - exp(-0.4 t): the wind takes it along.
+/// assert!((plant.state().velocity_m_s.x - (1.0 - f64::exp(-0.4))).abs() < 1e-9);
+/// ```
+pub struct Plant {
+    craft: Craft,
+    wind: Blowing,
+    line: DelayLine,
+    supply: Supply,
+    converter: Converter,
+    /// The commands that acted last, for which powers have been taken; none before the first.
+    acting: Option<Acting>,
+    time_s: f64,
+    state: RigidState,
+    wind_m_s: Vector3<f64>,
+}
+
+/// From commands to the thrusts that the motors go to.
+#[derive(Clone, Copy, Debug)]
+struct Converter {
+    /// Of the commands, N.
+    limits_n: [f64; 2],
+    map: Option<ForceMap>,
+    strength: [f64; 4],
+    factor: f64,
+    factor_per_s: f64,
+}
+
+/// Commands that act, N; as the map has them, of a sound motor at full voltage, 1 or N.
+#[derive(Clone, Copy, Debug)]
+struct Acting {
+    commands_n: Vector4<f64>,
+    mapped: Vector4<f64>,
+}
+
+impl Converter {
+    /// Commands within their limits, with their powers taken.
+    fn acting(&self, commands_n: &Vector4<f64>) -> Acting {
+        let [least_n, most_n] = self.limits_n;
+        let mapped = commands_n.map(|command_n| {
+            let command_n = command_n.max(least_n).min(most_n);
+            self.map.map_or(command_n, |map| map.share(command_n / most_n))
+        });
+        Acting { commands_n: *commands_n, mapped }
+    }
+
+    /// Thrusts that the motors go to at a time and a voltage, N.
+    fn goals_n(&self, mapped: &Vector4<f64>, time_s: f64, voltage_v: f64) -> Vector4<f64> {
+        let factor = (self.factor + self.factor_per_s * time_s).max(0.0);
+        let all = factor * self.map.map_or(1.0, |map| map.most_n(voltage_v));
+        Vector4::from_fn(|i, _| all * self.strength[i] * mapped[i])
+    }
+}
+
+impl Plant {
+    /// At the start, with the commands that keep the thrusts it starts with.
+    ///
+    /// # Errors
+    /// [`PlantError`] with the first figure that is out of range.
+    pub fn new(
+        vehicle: &Vehicle,
+        environment: &Environment,
+        truth: &Truth,
+        start: &RigidState,
+        seed: u64,
+    ) -> Result<Self, PlantError> {
+        environment.check()?;
+        truth.check()?;
+        let mut wind = Blowing::new(&environment.wind, seed);
+        Ok(Self {
+            craft: craft(vehicle, environment, truth),
+            wind_m_s: wind.at(0.0),
+            wind,
+            line: DelayLine::new(truth.delay_s),
+            acting: None,
+            supply: truth.supply,
+            converter: Converter {
+                limits_n: [vehicle.motors().thrust_min_n, vehicle.motors().thrust_max_n],
+                map: truth.force_map,
+                strength: truth.motor_strength,
+                factor: truth.thrust_factor,
+                factor_per_s: truth.thrust_factor_per_s,
+            },
+            time_s: 0.0,
+            state: *start,
+        })
+    }
+
+    /// The same with one more load.
+    pub fn with_load(mut self, load: impl Load + 'static) -> Self {
+        self.craft = self.craft.with_load(load);
+        self
+    }
+
+    /// The same with drag rotor by rotor, as RotorPy has it; needs [`Truth::propeller`].
+    pub fn with_rotor_drag(mut self, rotors: RotorDrag) -> Self {
+        self.craft.air = Some(Airflow { rotors: Some(rotors), ..self.craft.air.unwrap_or_default() });
+        self
+    }
+
+    /// Gives commands, N, and flies on for a time, s: Runge-Kutta 4 in steps of at most 2 ms, between which the voltage, and
+    /// in which the slope of the wind stays the same. Steps end where delayed commands begin to act.
+    pub fn advance(&mut self, commands_n: &Vector4<f64>, duration_s: f64) {
+        self.line.give(self.time_s, commands_n);
+        let end_s = self.time_s + duration_s;
+        while self.time_s < end_s - 1e-9 {
+            let (commands_n, until_s) = self.line.at(self.time_s);
+            if self.acting.map(|acting| acting.commands_n) != commands_n {
+                self.acting = commands_n.map(|commands_n| self.converter.acting(&commands_n));
+            }
+            let part_s = until_s.min(end_s) - self.time_s;
+            let steps = (part_s / STEP_MAX_S - 1e-9).ceil().max(1.0);
+            let from_s = self.time_s;
+            for k in 1..=steps as u32 {
+                self.step(from_s + part_s * f64::from(k) / steps);
+            }
+        }
+        self.time_s = end_s;
+    }
+
+    fn step(&mut self, to_s: f64) {
+        let step_s = to_s - self.time_s;
+        let goals_n = self.goals_n(self.acting);
+        let from_m_s = self.wind_m_s;
+        self.wind_m_s = self.wind.at(to_s);
+        let wind = LinearWind { from_s: self.time_s, from_m_s, slope_m_s2: (self.wind_m_s - from_m_s) / step_s };
+        self.supply.drain(&self.state.thrusts_n, step_s);
+        self.state = self.craft.step_in_wind(&self.state, &goals_n, &wind, self.time_s, step_s);
+        self.time_s = to_s;
+    }
+
+    /// Before the first command acts, the thrusts stay.
+    fn goals_n(&self, acting: Option<Acting>) -> Vector4<f64> {
+        acting.map_or(self.state.thrusts_n, |acting| {
+            self.converter.goals_n(&acting.mapped, self.time_s, self.voltage_v())
+        })
+    }
+
+    /// Where it is.
+    pub fn state(&self) -> &RigidState {
+        &self.state
+    }
+
+    /// Time since the start, s.
+    pub fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// Velocity of the air at the craft, world frame, m/s.
+    pub fn wind_m_s(&self) -> &Vector3<f64> {
+        &self.wind_m_s
+    }
+
+    /// Root mean square of the turbulence so far, along the mean wind, across it and upwards, m/s.
+    pub fn realised_gust_rms_m_s(&self) -> Option<Vector3<f64>> {
+        self.wind.realised_rms_m_s()
+    }
+
+    /// Voltage at the motors, V; 0 where nothing depends on it.
+    pub fn voltage_v(&self) -> f64 {
+        self.supply.voltage_v(&self.state.thrusts_n)
+    }
+
+    /// Charge of the battery from 0 to 1, where there is one.
+    pub fn charge(&self) -> Option<f64> {
+        match self.supply {
+            Supply::Constant(_) => None,
+            Supply::Battery { charge, .. } => Some(charge),
+        }
+    }
+
+    /// Least and most thrust that each motor can be commanded to now, N.
+    pub fn thrust_limits_n(&self) -> [Vector4<f64>; 2] {
+        self.converter.limits_n.map(|limit_n| self.goals_n(Some(self.converter.acting(&Vector4::repeat(limit_n)))))
+    }
+
+    /// What is felt at the centre of mass under the commands that act now.
+    pub fn motion(&mut self) -> Motion {
+        let (commands_n, _) = self.line.at(self.time_s);
+        let goals_n = self.goals_n(commands_n.map(|commands_n| self.converter.acting(&commands_n)));
+        let wind = LinearWind { from_s: self.time_s, from_m_s: self.wind_m_s, slope_m_s2: Vector3::zeros() };
+        self.craft.motion(&self.state, &goals_n, &wind, self.time_s)
+    }
+}
+
+/// The vehicle with every figure that is true of it, in its surroundings.
+fn craft(vehicle: &Vehicle, environment: &Environment, truth: &Truth) -> Craft {
+    let mut craft = Craft::new(vehicle);
+    // The inertia has been looked at.
+    craft.body = RigidBody::new(truth.mass_kg, truth.inertia_kg_m2).unwrap_or(craft.body);
+    craft.motors = craft.motors.with_lag(truth.rise_lag_s, truth.fall_lag_s).around(&truth.centre_of_mass_m);
+    craft.motors.propeller = truth.propeller;
+    craft.motors.torque_bias_n_m = truth.torque_bias_n_m;
+    for motor in &mut craft.motors.motors {
+        // The plant cuts commands, by its voltage.
+        (motor.thrust_min_n, motor.thrust_max_n) = (0.0, f64::INFINITY);
+    }
+    let air = &environment.air;
+    let mass_kg = vehicle.mass_kg();
+    if *air != (super::Air { wind_max_m_s: air.wind_max_m_s, ..super::Air::VACUUM }) {
+        craft.air = Some(Airflow {
+            drag_n_s_m: Vector3::from(air.drag_per_s) * mass_kg,
+            moment_n_s: air.moment_n_m_per_m_s,
+            lift_n_s2_m2: air.lift_per_m * mass_kg,
+            rotors: None,
+        });
+    }
+    if environment.floor {
+        craft = craft.with_load(Ground::under(vehicle));
+    }
+    if let Some(radius_m) = environment.ground_effect_radius_m {
+        let effect = GroundEffect::of(&craft.motors, radius_m);
+        craft = craft.with_load(effect);
+    }
+    for wall in &environment.walls {
+        let contact = Contact::new(*wall, &craft.motors, environment.guard_reach_m, truth.mass_kg);
+        craft = craft.with_load(contact);
+    }
+    craft
+}

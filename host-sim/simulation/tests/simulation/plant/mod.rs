@@ -1,0 +1,7 @@
+//! The plant in air: alone against what mechanics says, and beside the plants of other simulators.
+
+mod airborne;
+mod contact;
+mod motors;
+mod peers;
+mod refusals;
