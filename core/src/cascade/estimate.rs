@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use super::bounds::within;
 use crate::math::sqrt;
 use crate::quaternion::Quaternion;
-use crate::rigid_state::RigidState;
+use crate::state::State;
 
 /// Longest time that an estimate is carried on, s.
 const CARRIED_MAX_S: f32 = 0.012;
@@ -63,8 +63,7 @@ impl Carried {
 
     /// The estimate at this step, a period after the last one; nothing where its quaternion is no attitude.
     #[inline(always)]
-    pub(super) fn at_step(&mut self, state: &RigidState, period_s: f32) -> Option<Now> {
-        let (estimate, w) = (&state.state, &state.body_rates_rad_s);
+    pub(super) fn at_step(&mut self, estimate: &State, w: &Vector3<f32>, period_s: f32) -> Option<Now> {
         let (p, v) = (&estimate.position_m, &estimate.velocity_m_s);
         if *p == self.position && estimate.attitude == self.given {
             if self.age_s < CARRIED_MAX_S {
@@ -137,24 +136,24 @@ impl HeldVelocity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::state::State;
 
     const H: f32 = 0.002;
 
-    fn moving(position_m: Vector3<f32>, velocity_m_s: Vector3<f32>) -> RigidState {
-        let state = State { velocity_m_s, ..State::at_rest(position_m) };
-        RigidState { state, body_rates_rad_s: Vector3::new(0.0, 0.0, 1.0) }
+    const TURNING: Vector3<f32> = Vector3::new(0.0, 0.0, 1.0);
+
+    fn moving(position_m: Vector3<f32>, velocity_m_s: Vector3<f32>) -> State {
+        State { velocity_m_s, ..State::at_rest(position_m) }
     }
 
     #[test]
     fn an_estimate_is_carried_on_by_velocity_and_gyro_and_not_for_ever() {
         let (state, mut carried) = (moving(Vector3::zeros(), Vector3::new(1.0, 0.0, 0.0)), Carried::NONE);
-        let fresh = carried.at_step(&state, H).unwrap();
+        let fresh = carried.at_step(&state, &TURNING, H).unwrap();
         assert_eq!((fresh.position.x, fresh.attitude), (0.0, Quaternion::IDENTITY));
-        let later = (0..4).filter_map(|_| carried.at_step(&state, H)).last().unwrap();
+        let later = (0..4).filter_map(|_| carried.at_step(&state, &TURNING, H)).last().unwrap();
         // 8 ms at 1 m/s and 1 rad/s; small angles.
         assert!((later.position.x - 0.008).abs() < 1e-7 && (later.attitude.z - 0.004).abs() < 1e-7);
-        let last = (0..100).filter_map(|_| carried.at_step(&state, H)).last().unwrap();
+        let last = (0..100).filter_map(|_| carried.at_step(&state, &TURNING, H)).last().unwrap();
         assert!((last.position.x - 0.012).abs() < 1e-6);
     }
 
@@ -162,8 +161,8 @@ mod tests {
     fn a_quaternion_is_scaled_to_norm_1_or_refused() {
         for (norm, sound) in [(0.98, true), (1.05, true), (0.4, false), (2.1, false), (f32::NAN, false)] {
             let mut state = moving(Vector3::zeros(), Vector3::zeros());
-            state.state.attitude = Quaternion::new(0.6 * norm, 0.0, 0.8 * norm, 0.0);
-            let now = Carried::NONE.at_step(&state, H);
+            state.attitude = Quaternion::new(0.6 * norm, 0.0, 0.8 * norm, 0.0);
+            let now = Carried::NONE.at_step(&state, &TURNING, H);
             assert_eq!(now.is_some(), sound, "{norm}");
             if let Some(now) = now {
                 assert!((now.attitude.dot(now.attitude) - 1.0).abs() < 3e-7);
@@ -178,7 +177,7 @@ mod tests {
         for _ in 0..1000 {
             x += H;
             let state = moving(Vector3::new(x, 0.0, 0.0), Vector3::new(1.3, 0.0, 0.0));
-            let mut now = Carried::NONE.at_step(&state, H).unwrap();
+            let mut now = Carried::NONE.at_step(&state, &TURNING, H).unwrap();
             held.step(&mut now, H);
             found = now.velocity.x;
         }
@@ -191,8 +190,9 @@ mod tests {
         let mut held = HeldVelocity::NONE;
         for step in 0..500_u16 {
             let x = 0.5 * H * f32::from(step) + if step > 250 { 5.0 } else { 0.0 };
-            let mut now =
-                Carried::NONE.at_step(&moving(Vector3::new(x, 0.0, 0.0), Vector3::new(0.5, 0.0, 0.0)), H).unwrap();
+            let mut now = Carried::NONE
+                .at_step(&moving(Vector3::new(x, 0.0, 0.0), Vector3::new(0.5, 0.0, 0.0)), &TURNING, H)
+                .unwrap();
             held.step(&mut now, H);
             // Rounding of positions of 5 m.
             assert!((now.velocity.x - 0.5).abs() < 3e-5, "{step}");

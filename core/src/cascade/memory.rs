@@ -9,7 +9,6 @@ use super::ground::Ground;
 use super::torque_observer::Imbalance;
 use super::yield_learner::MotorYield;
 use crate::mixer::Parts;
-use crate::motor_lag::MotorForces;
 use crate::quaternion::Quaternion;
 
 /// The memory of a [`super::Cascade`], which makes one: at rest or hovering.
@@ -17,8 +16,6 @@ use crate::quaternion::Quaternion;
 pub struct CascadeMemory {
     pub(super) carried: Carried,
     pub(super) held: HeldVelocity,
-    /// Forces that the motors should have, in parts, N.
-    pub(super) forces: Parts,
     pub(super) disturbance: Disturbance,
     pub(super) imbalance: Imbalance,
     pub(super) air: SeenAir,
@@ -55,13 +52,13 @@ pub(super) struct Seen {
 }
 
 impl CascadeMemory {
-    pub(super) const fn new(forces: Parts, air: SeenAir, stands: bool) -> Self {
+    pub(super) const fn new(air: SeenAir, stands: bool) -> Self {
+        let forces = Parts { thrust: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0 };
         let (zero, up) = (Vector3::new(0.0, 0.0, 0.0), Vector3::new(0.0, 0.0, 1.0));
         let now = Now { position: zero, velocity: zero, attitude: Quaternion::IDENTITY, body_rates: zero };
         Self {
             carried: Carried::NONE,
             held: HeldVelocity::NONE,
-            forces,
             disturbance: Disturbance::NONE,
             imbalance: Imbalance::NONE,
             air,
@@ -78,11 +75,6 @@ impl CascadeMemory {
                 undisturbed: false,
             },
         }
-    }
-
-    /// Forces that the motors should have, N.
-    pub fn forces_n(&self) -> MotorForces {
-        self.forces.forces()
     }
 
     /// Whether the craft is taken to stand, or to be held.

@@ -58,19 +58,19 @@ use self::torque_observer::TorqueObserver;
 use self::yield_learner::MotorYield;
 use crate::airframe::Airframe;
 use crate::clock::Rate;
-use crate::error::{Field, StateError, StepError};
+use crate::control::Actuation;
+use crate::error::{StateError, StepError};
 use crate::law::difference;
 use crate::mixer::{MotorLimited, Parts};
-use crate::motor_lag::{MotorForces, MotorLag, MotorLagError};
+use crate::motor_lag::{MotorForces, MotorLagError};
 use crate::motor_reference::FifthOrderSample;
 use crate::quaternion::Heading;
-use crate::rigid_state::RigidState;
+use crate::state::State;
 
 /// The cascade for a craft at a control rate. What it remembers is apart, in [`CascadeMemory`].
 #[derive(Clone, Copy, Debug)]
 pub struct Cascade {
-    airframe: Airframe,
-    lag: MotorLag,
+    actuation: Actuation,
     drag_along_share: f32,
     outer: OuterLoop,
     inner: InnerLoop,
@@ -83,8 +83,10 @@ pub struct Cascade {
 /// What a step is given.
 #[derive(Clone, Copy, Debug)]
 pub struct CascadeInput<'a> {
-    /// The estimate, and the gyroscope's body rates.
-    pub state: &'a RigidState,
+    /// The estimate.
+    pub state: &'a State,
+    /// The gyroscope's body rates, rad/s.
+    pub body_rates_rad_s: &'a Vector3<f32>,
     /// The reference; its own angle of heading is not looked at.
     pub sample: &'a FifthOrderSample,
     /// The reference's heading.
@@ -103,14 +105,13 @@ impl Cascade {
         limits: &CascadeLimits,
         air: &Air,
     ) -> Result<Self, MotorLagError> {
-        let lag = match MotorLag::new(airframe.figures().motor_lag_s, rate) {
-            Ok(lag) => lag,
+        let actuation = match Actuation::new(&airframe.commanded_at(rate), rate) {
+            Ok(actuation) => actuation,
             Err(error) => return Err(error),
         };
-        let period_s = lag.period_s();
+        let period_s = actuation.lag.period_s();
         Ok(Self {
-            airframe: airframe.commanded_at(rate),
-            lag,
+            actuation,
             drag_along_share: air.drag_along_share,
             outer: OuterLoop::new(gains, airframe, limits),
             inner: InnerLoop::new(gains),
@@ -128,18 +129,22 @@ impl Cascade {
 
     /// The craft, with the lead of its commands.
     pub const fn airframe(&self) -> &Airframe {
-        &self.airframe
+        self.actuation.airframe()
+    }
+
+    /// What carries commands of other laws to its motors, with the lag that it reckons with.
+    pub const fn actuation(&self) -> &Actuation {
+        &self.actuation
     }
 
     /// What a craft that stands with its motors off remembers.
     pub const fn at_rest(&self) -> CascadeMemory {
-        CascadeMemory::new(Parts { thrust: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0 }, self.air_learner.beginning(), true)
+        CascadeMemory::new(self.air_learner.beginning(), true)
     }
 
-    /// What a craft that hovers remembers: after a selection in flight.
-    pub const fn hovering(&self) -> CascadeMemory {
-        let thrust = self.airframe.hover_force_n();
-        CascadeMemory::new(Parts { thrust, roll: 0.0, pitch: 0.0, yaw: 0.0 }, self.air_learner.beginning(), false)
+    /// What a craft in flight remembers that has seen nothing yet: after a selection in flight.
+    pub const fn in_flight(&self) -> CascadeMemory {
+        CascadeMemory::new(self.air_learner.beginning(), false)
     }
 
     /// Drag (1/s) and moment (N s) that are flown with, told or learned.
@@ -148,17 +153,19 @@ impl Cascade {
         (now.drag, self.air_learner.moment_n_s(now))
     }
 
-    /// One step with all that follows it, with the specific force in the body frame (m/s^2) where an accelerometer gives one.
+    /// One step with all that follows it, with the specific force in the body frame (m/s^2) where an accelerometer gives one;
+    /// `forces_n` are those that the motors should have, and move on.
     ///
     /// # Errors
     /// Those of [`Self::command`].
     pub fn step(
         &self,
         memory: &mut CascadeMemory,
+        forces_n: &mut MotorForces,
         input: &CascadeInput<'_>,
         accelerometer: Option<&Vector3<f32>>,
     ) -> Result<(MotorForces, MotorLimited), StepError> {
-        let stepped = self.command(memory, input)?;
+        let stepped = self.command(memory, forces_n, input)?;
         self.observe(memory, accelerometer);
         Ok(stepped)
     }
@@ -171,15 +178,21 @@ impl Cascade {
     pub fn command(
         &self,
         memory: &mut CascadeMemory,
+        forces_n: &mut MotorForces,
         input: &CascadeInput<'_>,
     ) -> Result<(MotorForces, MotorLimited), StepError> {
-        self.stepped(memory, input).ok_or_else(|| refusal(input))
+        self.stepped(memory, forces_n, input).ok_or_else(|| refusal(input))
     }
 
     #[inline(always)]
-    fn stepped(&self, memory: &mut CascadeMemory, input: &CascadeInput<'_>) -> Option<(MotorForces, MotorLimited)> {
-        let (mut carried, mut held, period_s) = (memory.carried, memory.held, self.lag.period_s());
-        let mut now = carried.at_step(input.state, period_s)?;
+    fn stepped(
+        &self,
+        memory: &mut CascadeMemory,
+        forces_n: &mut MotorForces,
+        input: &CascadeInput<'_>,
+    ) -> Option<(MotorForces, MotorLimited)> {
+        let (mut carried, mut held, period_s) = (memory.carried, memory.held, self.actuation.lag.period_s());
+        let mut now = carried.at_step(input.state, input.body_rates_rad_s, period_s)?;
         held.step(&mut now, period_s);
 
         let (standing, disturbance, air) = (memory.ground.is_standing(), &memory.disturbance, memory.air.now);
@@ -189,7 +202,7 @@ impl Cascade {
             slope: disturbance.slope,
             wind: memory.air.wind,
         };
-        let reference = InAir::of(input.sample, input.heading, &around, now.attitude, &self.airframe).ok()?;
+        let reference = InAir::of(input.sample, input.heading, &around, now.attitude, self.airframe()).ok()?;
 
         let flat = &input.sample.flat;
         let position = difference(&now.position, &flat.position_m);
@@ -209,13 +222,15 @@ impl Cascade {
         let drag_apart = air.drag * (self.drag_along_share - 1.0);
         let v = &now.velocity;
         let moved = drag_apart * (axis.x * v.x + axis.y * v.y + axis.z * v.z);
-        let thrust = self.airframe.mixing.quarter_mass_kg * (along - disturbance.along + moved);
-        let asked = self.inner.commands(thrust, [&reference.forces, &reference.commands], &memory.forces, &errors);
+        let thrust = self.airframe().mixing.quarter_mass_kg * (along - disturbance.along + moved);
         let MotorYield { share, inverse } = memory.motors;
+        let forces = turned(&parts_of(forces_n), share);
+        let asked = self.inner.commands(thrust, [&reference.forces, &reference.commands], &forces, &errors);
         let (commands, limited) = self.allocation.allocate(turned(&asked, inverse))?;
 
         // Nothing has been remembered so far; from here on nothing fails.
-        let forces_next = self.next(&memory.forces, &turned(&commands, share));
+        let commands_n = commands.forces().map(|force| self.allocation.cut(force));
+        *forces_n = self.actuation.lag.next(forces_n, &commands_n);
         let far = position.x * position.x + position.y * position.y + position.z * position.z > FAR_M * FAR_M;
         memory.seen = Seen {
             now,
@@ -225,22 +240,22 @@ impl Cascade {
             body_velocity: reference.body_velocity,
             undisturbed: !(far || limited.any()),
         };
-        memory.coming = middle(&memory.forces, &forces_next);
-        (memory.carried, memory.held, memory.forces) = (carried, held, forces_next);
-        Some((commands.forces().map(|force| self.allocation.cut(force)), limited))
+        memory.coming = middle(&forces, &turned(&parts_of(forces_n), share));
+        (memory.carried, memory.held) = (carried, held);
+        Some((commands_n, limited))
     }
 
     /// What follows a step: the observers, the air, the ground.
     pub fn observe(&self, memory: &mut CascadeMemory, accelerometer: Option<&Vector3<f32>>) {
         let (seen, before) = (memory.seen, memory.before);
-        let (flew, period_s) = (memory.ground.is_flying(), self.lag.period_s());
+        let (flew, period_s) = (memory.ground.is_flying(), self.actuation.lag.period_s());
         memory.before = Before { velocity: seen.now.velocity, axis: seen.axis, answer: seen.answer };
         let push = memory.disturbance.along;
         memory.ground.step(&seen.now, memory.disturbance.is_on_bound(), push, period_s);
         if !(flew && memory.ground.is_flying()) {
             return self.stand(memory, &seen);
         }
-        let thrust = seen.mean_forces.thrust / self.airframe.mixing.quarter_mass_kg;
+        let thrust = seen.mean_forces.thrust / self.airframe().mixing.quarter_mass_kg;
         let drag = smaller(memory.air.now.drag, BELIEVED_DRAG_MAX_PER_S);
         let pushed = Pushed {
             velocity: seen.now.velocity,
@@ -274,24 +289,6 @@ impl Cascade {
         memory.imbalance.rest(&seen.now.body_rates);
         self.air_learner.rest(&mut memory.air);
     }
-
-    /// The motors' forces a period later.
-    #[inline(always)]
-    fn next(&self, forces: &Parts, commands: &Parts) -> Parts {
-        let left = self.lag.decay();
-        let next = |f: f32, u: f32| u + (f - u) * left;
-        Parts {
-            thrust: next(forces.thrust, commands.thrust),
-            roll: next(forces.roll, commands.roll),
-            pitch: next(forces.pitch, commands.pitch),
-            yaw: next(forces.yaw, commands.yaw),
-        }
-    }
-}
-
-#[inline(always)]
-fn mean(a: &Vector3<f32>, b: &Vector3<f32>) -> Vector3<f32> {
-    Vector3::new(0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.z + b.z))
 }
 
 /// Most of the drag that the force observer believes, 1/s: the rest is a disturbance to it. Certificates go as far.
@@ -299,6 +296,18 @@ const BELIEVED_DRAG_MAX_PER_S: f32 = 0.6;
 
 /// Distance from the reference beyond which nothing is learned, m.
 const FAR_M: f32 = 0.4;
+
+#[inline(always)]
+fn mean(a: &Vector3<f32>, b: &Vector3<f32>) -> Vector3<f32> {
+    Vector3::new(0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.z + b.z))
+}
+
+/// The parts of motor forces.
+#[inline(always)]
+fn parts_of(forces_n: &MotorForces) -> Parts {
+    let Parts { thrust, roll, pitch, yaw } = Parts::four_times_of(*forces_n);
+    Parts { thrust: 0.25 * thrust, roll: 0.25 * roll, pitch: 0.25 * pitch, yaw: 0.25 * yaw }
+}
 
 /// The same with the torques' parts times a factor.
 #[inline(always)]
@@ -321,7 +330,6 @@ fn middle(a: &Parts, b: &Parts) -> Parts {
 #[cold]
 #[inline(never)]
 fn refusal(input: &CascadeInput<'_>) -> StepError {
-    let of_rates = |value: &f32| StateError::NonFinite { field: Field::BodyRates, value: *value };
-    let rates = || input.state.body_rates_rad_s.iter().find(|rate| !rate.is_finite()).map(of_rates);
-    input.state.state.fault().or_else(rates).map_or(StepError::Singular, StepError::State)
+    let rates = || StateError::of_body_rates(input.body_rates_rad_s);
+    input.state.fault().or_else(rates).map_or(StepError::Singular, StepError::State)
 }
