@@ -119,7 +119,8 @@ impl From<MotorLimited> for u16 {
 }
 
 /// Parts of the motor forces: M1 to M4 are sums and differences of them.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Parts {
     pub(crate) thrust: f32,
     pub(crate) roll: f32,

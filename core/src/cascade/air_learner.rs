@@ -72,7 +72,8 @@ impl Coefficients {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct SeenAir {
-    pub(super) now: Coefficients,
+    /// What was learned; nothing while what is told is flown with.
+    pub(super) learned: Option<Coefficients>,
     /// The wind's moment that is answered, as parts: roll and pitch, N.
     pub(super) wind: [f32; 2],
     /// Low-passed: felt force, velocity, body rates, torque as parts; x and y each.
@@ -100,6 +101,24 @@ pub(super) struct Felt<'a> {
     pub(super) undisturbed: bool,
 }
 
+impl SeenAir {
+    /// Nothing seen yet.
+    pub(super) const NONE: Self = Self {
+        learned: None,
+        wind: [0.0; 2],
+        low: [[0.0; 2]; 4],
+        slow: [[0.0; 2]; 3],
+        products: [0.0; 3],
+        squares: [0.0; 3],
+        wait: 0,
+    };
+
+    /// Nothing is learned and no wind answered while the craft stands; what was learned stays.
+    pub(super) fn rest(&mut self) {
+        *self = Self { learned: self.learned, products: self.products, squares: self.squares, ..Self::NONE };
+    }
+}
+
 impl AirLearner {
     /// For a craft that is told of air, at a control period.
     pub(super) const fn new(air: &Air, airframe: &Airframe, period_s: f32) -> Self {
@@ -122,16 +141,11 @@ impl AirLearner {
         }
     }
 
-    /// Nothing seen yet.
-    pub(super) const fn beginning(&self) -> SeenAir {
-        SeenAir {
-            now: self.told,
-            wind: [0.0; 2],
-            low: [[0.0; 2]; 4],
-            slow: [[0.0; 2]; 3],
-            products: [0.0; 3],
-            squares: [0.0; 3],
-            wait: 0,
+    /// The air that is flown with.
+    pub(super) const fn now(&self, seen: &SeenAir) -> Coefficients {
+        match seen.learned {
+            Some(learned) => learned,
+            None => self.told,
         }
     }
 
@@ -154,11 +168,6 @@ impl AirLearner {
             Some(accelerometer) => self.update(seen, felt, [accelerometer.x, accelerometer.y]),
             None => seen.wind = [0.0; 2],
         }
-    }
-
-    /// Nothing is learned and no wind answered while the craft stands.
-    pub(super) fn rest(&self, seen: &mut SeenAir) {
-        *seen = SeenAir { now: seen.now, products: seen.products, squares: seen.squares, ..self.beginning() };
     }
 
     #[inline(never)]
@@ -188,12 +197,13 @@ impl AirLearner {
             }
         }
 
-        let drag = seen.now.drag;
+        let now = self.now(seen);
+        let drag = now.drag;
         let [fx, fy] = force;
         let [vx, vy] = velocity;
         let [rx, ry] = shortened([fx + drag * vx, fy + drag * vy], WIND_MAX_M_S2);
         let per_drag = self.gust / if drag > DRAG_LEAST_PER_S { drag } else { DRAG_LEAST_PER_S };
-        let ([cx, cy], [most_x, most_y]) = (seen.now.moment, self.ratio_most);
+        let ([cx, cy], [most_x, most_y]) = (now.moment, self.ratio_most);
         let (most_x, most_y) = (self.gust * most_x, self.gust * most_y);
         seen.wind = [between(cx * per_drag, 0.0, most_x) * ry, -between(cy * per_drag, 0.0, most_y) * rx];
     }
@@ -213,8 +223,9 @@ impl AirLearner {
         };
         let ([pd, px, py], [sd, sx, sy]) = (&mut seen.products, &mut seen.squares);
         let ([ad, ax, ay], [bd, bx, by]) = (products, squares);
-        seen.now.drag = of(pd, sd, (ad, bd), self.told.drag, Air::DRAG_MAX_PER_S);
-        seen.now.moment = [of(px, sx, (ax, bx), mx, most_x), of(py, sy, (ay, by), my, most_y)];
+        let drag = of(pd, sd, (ad, bd), self.told.drag, Air::DRAG_MAX_PER_S);
+        let moment = [of(px, sx, (ax, bx), mx, most_x), of(py, sy, (ay, by), my, most_y)];
+        seen.learned = Some(Coefficients { drag, moment });
     }
 }
 
@@ -249,7 +260,7 @@ mod tests {
     /// What is known after flying a circle of 1 m/s for some seconds, with an accelerometer that is off, in a wind.
     fn known(air: &Air, seconds: f32, bias: f32, wind: f32, speed: f32) -> (AirLearner, SeenAir) {
         let learner = AirLearner::new(air, &CRAFT, H);
-        let mut seen = learner.beginning();
+        let mut seen = SeenAir::NONE;
         for step in 0..(seconds / H) as u32 {
             let (sin, cos) = crate::math::sin_cos(1.5 * H * step as f32);
             let (vx, vy) = (speed * cos, speed * sin);
@@ -275,8 +286,8 @@ mod tests {
         let untold = Air { learn: true, ..Air::NONE };
         let (learner, seen) = known(&untold, 30.0, 0.5, 0.0, 1.0);
         // The told zero keeps 0.1 of 30 m^2/s for drag, of 15 for each moment.
-        assert!((seen.now.drag / DRAG - 1.0).abs() < 0.01, "{}", seen.now.drag);
-        for (found, wanted) in learner.moment_n_s(&seen.now).iter().zip(MOMENT) {
+        assert!((learner.now(&seen).drag / DRAG - 1.0).abs() < 0.01, "{}", learner.now(&seen).drag);
+        for (found, wanted) in learner.moment_n_s(&learner.now(&seen)).iter().zip(MOMENT) {
             assert!((found / wanted - 1.0).abs() < 0.02, "{found} {wanted}");
         }
     }
@@ -285,10 +296,10 @@ mod tests {
     fn a_wind_at_hover_teaches_nothing_and_is_answered_in_the_moment() {
         let air = Air::BRUSHLESS;
         let (learner, seen) = known(&air, 3.0, 0.0, 1.0, 0.0);
-        assert_eq!(seen.now, learner.told);
-        // Half of the moment of 1 m/s that c / d tells from a felt 0.45 m/s^2.
+        assert_eq!(learner.now(&seen), learner.told);
+        // The share of the moment of 1 m/s that c / d tells from a felt 0.45 m/s^2.
         let lever = 4.0 * CRAFT.figures().lever_arm_m;
-        let pitch = -0.5 * 7.3e-4 / 0.353 * DRAG / lever;
+        let pitch = -air.gust * 7.3e-4 / 0.353 * DRAG / lever;
         let [roll, found] = seen.wind;
         assert!(roll == 0.0 && (found / pitch - 1.0).abs() < 1e-5, "{found} {pitch}");
     }
@@ -296,7 +307,7 @@ mod tests {
     #[test]
     fn without_an_accelerometer_what_is_told_is_flown() {
         let learner = AirLearner::new(&Air::BRUSHED, &CRAFT, H);
-        let mut seen = learner.beginning();
+        let mut seen = SeenAir::NONE;
         for accelerometer in [None, Some(Vector3::new(f32::NAN, 0.0, 0.0)), Some(Vector3::new(0.0, 1e9, 0.0))] {
             for _ in 0..20 {
                 let felt = Felt {
@@ -309,15 +320,15 @@ mod tests {
                 learner.step(&mut seen, &felt);
             }
         }
-        assert_eq!((seen.now, seen.wind), (learner.told, [0.0; 2]));
+        assert_eq!((learner.now(&seen), seen.wind), (learner.told, [0.0; 2]));
     }
 
     #[test]
     fn it_forgets_nothing_at_rest_but_the_wind() {
         let (learner, mut seen) = known(&Air::BRUSHED, 10.0, 0.0, 1.0, 1.0);
-        let now = seen.now;
+        let now = learner.now(&seen);
         assert!(seen.wind != [0.0; 2]);
-        learner.rest(&mut seen);
-        assert_eq!((seen.now, seen.wind), (now, [0.0; 2]));
+        seen.rest();
+        assert_eq!((learner.now(&seen), seen.wind), (now, [0.0; 2]));
     }
 }

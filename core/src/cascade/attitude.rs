@@ -33,7 +33,7 @@ mod tests {
 
     #[test]
     fn it_is_the_product_of_quaternions() {
-        let wanted = Vector3::new(3.0, -4.0, 9.0);
+        let wanted = Vector3::new(3.0_f32, -4.0, 9.0);
         let n = wanted / wanted.norm();
         let root = (0.5 * (1.0 + n.z)).sqrt();
         let tilt = Quaternion::new(root, -n.y / (2.0 * root), n.x / (2.0 * root), 0.0);

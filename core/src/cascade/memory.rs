@@ -11,8 +11,9 @@ use super::yield_learner::MotorYield;
 use crate::mixer::Parts;
 use crate::quaternion::Quaternion;
 
-/// The memory of a [`super::Cascade`], which makes one: at rest or hovering.
-#[derive(Clone, Copy, Debug)]
+/// The memory of a [`super::Cascade`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CascadeMemory {
     pub(super) carried: Carried,
     pub(super) held: HeldVelocity,
@@ -29,7 +30,8 @@ pub struct CascadeMemory {
 }
 
 /// What the means over a step take of its beginning.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Before {
     pub(super) velocity: Vector3<f32>,
     pub(super) axis: Vector3<f32>,
@@ -37,7 +39,8 @@ pub(super) struct Before {
 }
 
 /// What a step leaves to the observers.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Seen {
     pub(super) now: Now,
     pub(super) axis: Vector3<f32>,
@@ -52,29 +55,56 @@ pub(super) struct Seen {
 }
 
 impl CascadeMemory {
-    pub(super) const fn new(air: SeenAir, stands: bool) -> Self {
-        let forces = Parts { thrust: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0 };
+    /// Of a craft that stands with its motors off.
+    pub const STANDING: Self = Self::new(Ground::STANDING);
+
+    /// Of a craft in flight that has seen nothing yet.
+    pub const IN_FLIGHT: Self = Self::new(Ground::FLYING);
+
+    const fn new(ground: Ground) -> Self {
         let (zero, up) = (Vector3::new(0.0, 0.0, 0.0), Vector3::new(0.0, 0.0, 1.0));
         let now = Now { position: zero, velocity: zero, attitude: Quaternion::IDENTITY, body_rates: zero };
+        let none = Parts { thrust: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0 };
         Self {
             carried: Carried::NONE,
             held: HeldVelocity::NONE,
             disturbance: Disturbance::NONE,
             imbalance: Imbalance::NONE,
-            air,
+            air: SeenAir::NONE,
             motors: MotorYield::TOLD,
-            ground: if stands { Ground::STANDING } else { Ground::FLYING },
-            coming: forces,
+            ground,
+            coming: none,
             before: Before { velocity: zero, axis: up, answer: [0.0; 2] },
             seen: Seen {
                 now,
                 axis: up,
-                mean_forces: forces,
+                mean_forces: none,
                 answer: [0.0; 2],
                 body_velocity: [0.0; 2],
                 undisturbed: false,
             },
         }
+    }
+
+    /// The cascade is selected in flight, after another law: what was learned of the air and of the motors stays.
+    pub(crate) fn begin_in_flight(&mut self) {
+        let mut air = self.air;
+        air.rest();
+        *self = Self { air, motors: self.motors, ..Self::IN_FLIGHT };
+    }
+
+    /// Observers that see nothing, as those of a craft that does not fly.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn rest(&mut self) {
+        self.disturbance.rest(&self.seen.now.velocity);
+        self.imbalance.rest(&self.seen.now.body_rates);
+        self.air.rest();
+    }
+
+    /// The motors are off: the craft stands until it moves.
+    pub(crate) fn motors_off(&mut self) {
+        self.ground = Ground::STANDING;
     }
 
     /// Whether the craft is taken to stand, or to be held.

@@ -137,20 +137,10 @@ impl Cascade {
         &self.actuation
     }
 
-    /// What a craft that stands with its motors off remembers.
-    pub const fn at_rest(&self) -> CascadeMemory {
-        CascadeMemory::new(self.air_learner.beginning(), true)
-    }
-
-    /// What a craft in flight remembers that has seen nothing yet: after a selection in flight.
-    pub const fn in_flight(&self) -> CascadeMemory {
-        CascadeMemory::new(self.air_learner.beginning(), false)
-    }
-
     /// Drag (1/s) and moment (N s) that are flown with, told or learned.
     pub const fn air(&self, memory: &CascadeMemory) -> (f32, [f32; 2]) {
-        let now = &memory.air.now;
-        (now.drag, self.air_learner.moment_n_s(now))
+        let now = self.air_learner.now(&memory.air);
+        (now.drag, self.air_learner.moment_n_s(&now))
     }
 
     /// One step with all that follows it, with the specific force in the body frame (m/s^2) where an accelerometer gives one;
@@ -195,7 +185,8 @@ impl Cascade {
         let mut now = carried.at_step(input.state, input.body_rates_rad_s, period_s)?;
         held.step(&mut now, period_s);
 
-        let (standing, disturbance, air) = (memory.ground.is_standing(), &memory.disturbance, memory.air.now);
+        let (standing, disturbance, air) =
+            (memory.ground.is_standing(), &memory.disturbance, self.air_learner.now(&memory.air));
         let around = Surroundings {
             air: if standing { air.without_moment() } else { air },
             disturbance: disturbance.across,
@@ -253,10 +244,10 @@ impl Cascade {
         let push = memory.disturbance.along;
         memory.ground.step(&seen.now, memory.disturbance.is_on_bound(), push, period_s);
         if !(flew && memory.ground.is_flying()) {
-            return self.stand(memory, &seen);
+            return memory.rest();
         }
         let thrust = seen.mean_forces.thrust / self.airframe().mixing.quarter_mass_kg;
-        let drag = smaller(memory.air.now.drag, BELIEVED_DRAG_MAX_PER_S);
+        let drag = smaller(self.air_learner.now(&memory.air).drag, BELIEVED_DRAG_MAX_PER_S);
         let pushed = Pushed {
             velocity: seen.now.velocity,
             mean_velocity: mean(&before.velocity, &seen.now.velocity),
@@ -279,15 +270,6 @@ impl Cascade {
             undisturbed: seen.undisturbed,
         };
         self.air_learner.step(&mut memory.air, &felt);
-    }
-
-    /// Observers that see nothing.
-    #[cold]
-    #[inline(never)]
-    fn stand(&self, memory: &mut CascadeMemory, seen: &Seen) {
-        memory.disturbance.rest(&seen.now.velocity);
-        memory.imbalance.rest(&seen.now.body_rates);
-        self.air_learner.rest(&mut memory.air);
     }
 }
 

@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn near_the_goal_it_is_the_lqrs_answer() {
-        let (outer, off, speed) = (outer(), 0.01, -0.02);
+        let (outer, off, speed) = (outer(), 0.01, 0.02);
         let found = outer.correction(&Vector3::new(off, off, off), &Vector3::new(speed, speed, speed), false);
         // The figures of the design: 10.4 1/s^2 and 5.1 1/s, the two directions within 2 % of it.
         let pitch = -9.81 * (0.2150 * off + 0.1060 * speed) / 0.2034;

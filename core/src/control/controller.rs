@@ -7,6 +7,7 @@ use super::law::Law;
 use super::memory::Memory;
 use super::output::{MotorStep, Output, Step};
 use super::registers;
+use crate::cascade::{Cascade, CascadeInput};
 use crate::command::Limits;
 use crate::error::{StateError, StepError};
 use crate::law::{ActuatorAware, AlongTrajectory, IntegralAction};
@@ -30,6 +31,7 @@ impl<'a> Controller<'a> {
         let law = law.into();
         let actuation = match &law {
             Law::ActuatorAware(law) => Some(law.actuation),
+            Law::Cascade(law) => Some(law.actuation()),
             _ => None,
         };
         Self { law, limits, actuation }
@@ -39,7 +41,7 @@ impl<'a> Controller<'a> {
     #[inline]
     pub const fn with_actuation(self, actuation: &'a Actuation) -> Self {
         match self.law {
-            Law::ActuatorAware(_) => self,
+            Law::ActuatorAware(_) | Law::Cascade(_) => self,
             _ => Self { actuation: Some(actuation), ..self },
         }
     }
@@ -76,6 +78,7 @@ impl<'a> Controller<'a> {
             Law::IntegralAction(law) => integral(law, &self.limits, memory, measured, target),
             Law::AlongTrajectory(law) => along(law, &self.limits, measured, target),
             Law::ActuatorAware(law) => actuator_aware(law, memory, measured, target),
+            Law::Cascade(law) => cascade(law, memory, measured, target),
         }
     }
 
@@ -100,11 +103,10 @@ impl<'a> Controller<'a> {
         measured: Measured<'_>,
         target: Target<'_>,
     ) -> Result<MotorStep, StepError> {
-        let mut after = *memory;
-        let output = self.step(&mut after, measured, target)?;
-        let step = self.carry(&mut after, &output, measured)?;
-        *memory = after;
-        Ok(step)
+        let integral_m_s = memory.integral_m_s;
+        let output = self.step(memory, measured, target)?;
+        // Forces of a law are carried as they are: only one that may integrate can fail to be.
+        self.carry(memory, &output, measured).inspect_err(|_| memory.integral_m_s = integral_m_s)
     }
 }
 
@@ -173,6 +175,21 @@ fn actuator_aware(
         return Ok(Output::Forces(MotorStep { forces_n, limited }));
     }
     Err(refuse(measured))
+}
+
+#[inline(never)]
+fn cascade(
+    law: &Cascade,
+    memory: &mut Memory,
+    measured: Measured<'_>,
+    target: Target<'_>,
+) -> Result<Output, StepError> {
+    let Some(body_rates_rad_s) = measured.body_rates_rad_s else { return Err(StepError::NoBodyRates) };
+    let Some((sample, heading)) = target.sample else { return Err(StepError::NoSample) };
+    let input = CascadeInput { state: measured.state, body_rates_rad_s, sample, heading };
+    let Memory { forces_n, cascade, .. } = memory;
+    let (forces_n, limited) = law.step(cascade, forces_n, &input, measured.specific_force_m_s2)?;
+    Ok(Output::Forces(MotorStep { forces_n, limited }))
 }
 
 /// Why there is no output. The reference has been checked when it was made.

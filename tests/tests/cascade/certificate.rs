@@ -1,8 +1,8 @@
 //! The design's gains against another solver's, and the certificate's loop against the core's own step.
 
 use nalgebra::{DMatrix, Vector3};
-use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits};
-use quatrack::{FifthOrderSample, Heading, Quaternion, Rate, RigidState, State};
+use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
+use quatrack::{FifthOrderSample, Heading, Quaternion, Rate, State};
 use quatrack_design::certify::cascade::{CascadeChain, CascadeCraft, CascadeRegion, CascadeVariation};
 use quatrack_design::design::cascade::{CascadeWeights, cascade};
 use quatrack_design::vehicle::Vehicle;
@@ -56,7 +56,7 @@ fn flown_by_the_core(
     })
     .unwrap();
     let core = Cascade::new(&gains, &airframe, Rate::from_hz(500).unwrap(), &CascadeLimits::STANDARD, air).unwrap();
-    let mut memory = core.hovering();
+    let (mut memory, mut forces_n) = (CascadeMemory::IN_FLIGHT, [airframe.hover_force_n(); 4]);
     let hover = f64::from(airframe.hover_force_n());
     let craft = crate::plant::Craft {
         mass_kg: vehicle.mass_kg(),
@@ -88,10 +88,10 @@ fn flown_by_the_core(
             attitude: Quaternion::new(q.w as f32, q.i as f32, q.j as f32, q.k as f32),
             velocity_m_s: plant.v.cast(),
         };
-        let state = RigidState { state, body_rates_rad_s: plant.w.cast() };
-        let input = CascadeInput { state: &state, sample: &sample, heading: Heading::ZERO };
+        let rates = plant.w.cast();
+        let input = CascadeInput { state: &state, body_rates_rad_s: &rates, sample: &sample, heading: Heading::ZERO };
         let felt = plant.felt.cast();
-        let (forces, _) = core.step(&mut memory, &input, Some(&felt)).unwrap();
+        let (forces, _) = core.step(&mut memory, &mut forces_n, &input, Some(&felt)).unwrap();
         for _ in 0..4 {
             plant.step(&forces.map(f64::from), &Vector3::zeros(), &Vector3::zeros());
         }

@@ -1,8 +1,11 @@
 //! A flight of the cascade on a plant: setpoints at 100 Hz to the jerk, estimates with noise, figures.
 
 use nalgebra::Vector3;
-use quatrack::cascade::{Cascade, CascadeInput, CascadeMemory, JerkFit};
-use quatrack::{FifthOrderSample, FlatSample, Heading, Quaternion, RigidState, State};
+use quatrack::cascade::{Cascade, CascadeMemory, JerkFit};
+use quatrack::{
+    Controller, FifthOrderSample, FlatSample, Heading, Limits, Measured, Memory, MotorStep, Quaternion, RigidState,
+    State, Target,
+};
 
 use crate::course::Course;
 use crate::filter::Filter;
@@ -111,7 +114,9 @@ impl<'a> Flight<'a> {
         if let Start::Tilted(rotation) = self.start {
             plant.q = nalgebra::UnitQuaternion::from_scaled_axis(rotation);
         }
-        let mut memory = if self.start == Start::Ground { self.cascade.at_rest() } else { self.cascade.hovering() };
+        let grounded = self.start == Start::Ground;
+        let mut memory = if grounded { Memory::at_rest() } else { Memory::hovering(self.cascade.airframe()) };
+        let controller = Controller::new(&self.cascade, Limits::NONE);
         let drag = if let Estimates::Filtered(drag) = self.estimates { drag } else { 0.0 };
         let mut filter = Filter::at(home, drag);
         let mut stream = Stream::new();
@@ -156,9 +161,11 @@ impl<'a> Flight<'a> {
             };
             let sample = if self.to_fifth { exact(&self.course, t) } else { stream.at(t) };
             let heading = Heading::from_angle(sample.flat.heading_rad);
-            let input = CascadeInput { state: &state, sample: &sample, heading };
             let felt = felt.cast();
-            let Ok((forces, limited)) = self.cascade.step(&mut memory, &input, self.accelerometer.then_some(&felt))
+            let measured = Measured::from(&state);
+            let measured = if self.accelerometer { measured.with_specific_force(&felt) } else { measured };
+            let target = Target::with_sample(&sample, heading);
+            let Ok(MotorStep { forces_n: forces, limited }) = controller.step_to_motors(&mut memory, measured, target)
             else {
                 figures.lost = true;
                 break;
@@ -171,7 +178,7 @@ impl<'a> Flight<'a> {
                 plant.step(&commands, &wind, &push);
             }
             let after = t + 0.002;
-            look(after, &plant, &memory);
+            look(after, &plant, memory.cascade());
             let error = (plant.p - self.course.at(after).0[0]).norm();
             let tilt = (plant.q * Vector3::z()).z.clamp(-1.0, 1.0).acos().to_degrees();
             if after > self.from_s {
@@ -196,7 +203,7 @@ impl<'a> Flight<'a> {
             }
         }
         figures.activity = (squares / f64::max(samples, 1.0)).sqrt();
-        let (drag, moment) = self.cascade.air(&memory);
+        let (drag, moment) = self.cascade.air(memory.cascade());
         figures.drag = f64::from(drag);
         figures.moment = moment.map(f64::from);
         figures
