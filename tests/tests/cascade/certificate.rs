@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, Vector3};
 use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
+use quatrack::gains::cascade as tables;
 use quatrack::{FifthOrderSample, Heading, Quaternion, Rate, State};
 use quatrack_design::certify::cascade::{CascadeChain, CascadeCraft, CascadeRegion, CascadeVariation};
 use quatrack_design::design::cascade::{CascadeWeights, cascade};
@@ -29,6 +30,26 @@ fn the_gains_are_those_of_another_solver() {
         let (_, numbers) = designed(name, lag_s);
         for (found, wanted) in numbers.into_iter().zip(wanted.numbers()) {
             assert!((found / f64::from(wanted) - 1.0).abs() < 5e-6, "{name}: {found} {wanted}");
+        }
+    }
+}
+
+#[test]
+fn the_tables_in_the_core_are_the_designs() {
+    for (name, lag_s, table) in [
+        ("crazyflie-2.1-brushless", 0.05, tables::BRUSHLESS_50_MS),
+        ("crazyflie-2.1-brushless", 0.02, tables::BRUSHLESS_20_MS),
+        ("crazyflie-2.1", 0.1, tables::CRAZYFLIE_2_1_100_MS),
+        ("crazyflie-2.1", 0.0635, tables::CRAZYFLIE_2_1_63_MS),
+        ("crazyflie-2.1", 0.02, tables::CRAZYFLIE_2_1_20_MS),
+        ("crazyflie-2.1-upgrade-kit", 0.1, tables::UPGRADE_KIT_100_MS),
+        ("crazyflie-2.1-upgrade-kit", 0.0635, tables::UPGRADE_KIT_63_MS),
+        ("crazyflie-2.1-upgrade-kit", 0.02, tables::UPGRADE_KIT_20_MS),
+    ] {
+        let (_, numbers) = designed(name, lag_s);
+        for (designed, held) in numbers.into_iter().zip(table.numbers()) {
+            // A rounding to f32, and one more where another processor's last bits differ.
+            assert!((designed / f64::from(held) - 1.0).abs() < 1.3e-7, "{name}: {designed} {held}");
         }
     }
 }
