@@ -29,6 +29,7 @@
 //!     control                 any law down to command or motor forces; what it remembers; from one to the next
 //!       supervisor            whether its output may pass
 //!       law                   equilibrium (E), flat output (F), integral action, gains along a trajectory, actuator-aware
+//!     cascade                 nested loops with limits, observers, air; with its gains
 //!         trajectory          pieces played by ticks
 //!           motor_reference   flat output -> motor forces and commands
 //!             body_rate, mixer  command -> wrench -> motor forces

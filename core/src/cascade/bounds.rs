@@ -22,6 +22,13 @@ pub(super) fn between(value: f32, least: f32, most: f32) -> f32 {
     if below < least { least } else { below }
 }
 
+/// Whether a number is beyond a bound either way, or no number.
+#[inline(always)]
+pub(super) fn is_beyond(value: f32, bound: f32) -> bool {
+    let is_within = value.abs() <= bound;
+    !is_within
+}
+
 /// The smaller of two numbers.
 #[inline(always)]
 pub(super) fn smaller(a: f32, b: f32) -> f32 {
@@ -53,6 +60,7 @@ mod tests {
 
     #[test]
     fn what_is_no_number_stays_so() {
+        assert!(is_beyond(f32::NAN, 1.0) && is_beyond(-1.1, 1.0) && !is_beyond(-1.0, 1.0));
         assert!(within(f32::NAN, 1.0).is_nan() && between(f32::NAN, 0.0, 1.0).is_nan());
         let [x, y] = shortened([f32::NAN, 0.0], 1.0);
         assert!(x.is_nan() && (y.is_nan() || y == 0.0));

@@ -9,7 +9,7 @@
 
 use nalgebra::Vector3;
 
-use super::bounds::within;
+use super::bounds::{is_beyond, within};
 use crate::math::sqrt;
 use crate::quaternion::Quaternion;
 use crate::state::State;
@@ -119,8 +119,7 @@ impl HeldVelocity {
         let axis = |p: f32, v: f32, held: f32, bias: f32, last: f32| {
             let moved = held + period_s * (0.5 * (v + last) - bias);
             let e = p - moved;
-            // Fails for NaN.
-            if !(e >= -JUMP_M && e <= JUMP_M) {
+            if is_beyond(e, JUMP_M) {
                 return (p, bias);
             }
             let bias = bias - period_s * HELD_RAD_S * HELD_RAD_S * e;

@@ -7,7 +7,7 @@
 
 use nalgebra::Vector3;
 
-use super::bounds::within;
+use super::bounds::{is_beyond, within};
 use crate::flatness::GRAVITY_M_S2;
 
 /// Largest disturbance across and along the thrust, m/s^2: the latter is that of motors that give 70 % of what they are told.
@@ -85,8 +85,7 @@ impl ForceObserver {
             known.z + h * (n.z * thrust - d * mean.z - GRAVITY_M_S2),
         );
         let (ex, ey, ez) = (v.x - expected.x, v.y - expected.y, v.z - expected.z);
-        let jumped = |e: f32| !(e >= -JUMP_M_S && e <= JUMP_M_S);
-        if jumped(ex) || jumped(ey) || jumped(ez) {
+        if is_beyond(ex, JUMP_M_S) || is_beyond(ey, JUMP_M_S) || is_beyond(ez, JUMP_M_S) {
             memory.velocity = *v;
             return;
         }

@@ -43,7 +43,7 @@ impl JerkFit {
         let kept = || self.jerks.iter().zip(&self.ages_s).take(usize::from(self.count));
         // Powers of time, in units of its mean square: all sums are then of the size of the count.
         let square = kept().fold(0.0, |sum, (_, age)| sum + age * age);
-        if !(square > 1e-8) {
+        if square.is_nan() || square <= 1e-8 {
             return [zero; 2];
         }
         let per = 1.0 / crate::math::sqrt(square / f32::from(self.count));

@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use super::bounds::within;
+use super::bounds::{is_beyond, within};
 use crate::airframe::Airframe;
 use crate::mixer::Parts;
 
@@ -82,8 +82,7 @@ impl TorqueObserver {
             known.z + pz * (forces.yaw + tz - gz * (w.x * w.y)),
         );
         let (ex, ey, ez) = (w.x - expected.x, w.y - expected.y, w.z - expected.z);
-        let jumped = |e: f32| !(e >= -JUMP_RAD_S && e <= JUMP_RAD_S);
-        if jumped(ex) || jumped(ey) || jumped(ez) {
+        if is_beyond(ex, JUMP_RAD_S) || is_beyond(ey, JUMP_RAD_S) || is_beyond(ez, JUMP_RAD_S) {
             memory.body_rates = *w;
             return;
         }

@@ -29,7 +29,7 @@ impl MotorYield {
     /// Moves on by a period with a thrust over mass as it was sent and its observed error, m/s^2.
     #[inline(always)]
     pub(super) fn step(&mut self, thrust: f32, error: f32, period_s: f32) {
-        if !(thrust >= THRUST_LEAST_M_S2) {
+        if thrust.is_nan() || thrust < THRUST_LEAST_M_S2 {
             return;
         }
         let seen = (thrust + error) / thrust;

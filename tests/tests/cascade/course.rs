@@ -107,9 +107,9 @@ fn w(t: f64) -> [Vector3<f64>; 4] {
                 let c = k.map(f64::from);
                 let mut d = [0.0; 4];
                 for (order, value) in d.iter_mut().enumerate() {
-                    for n in order..8 {
+                    for (n, c) in c.iter().enumerate().skip(order) {
                         let factor = (0..order).map(|i| (n - i) as f64).product::<f64>();
-                        *value += c[n] * factor * s.powi((n - order) as i32);
+                        *value += c * factor * s.powi((n - order) as i32);
                     }
                     if still && order > 0 {
                         *value = 0.0;

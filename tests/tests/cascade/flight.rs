@@ -197,7 +197,8 @@ impl<'a> Flight<'a> {
                 samples += 1.0;
             }
             figures.final_error = error;
-            if !(plant.p.norm() < 200.0) || (plant.p.z < -5.0) {
+            let away = plant.p.norm();
+            if away.is_nan() || away > 200.0 || plant.p.z < -5.0 {
                 figures.lost = true;
                 break;
             }

@@ -1,6 +1,6 @@
 //! A craft in air, f64: rigid body, motors with lag and delay, drag, the air's moment; for flights of the cascade.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 
 pub(crate) const GRAVITY: f64 = 9.81;
 /// Step of the integration, s.
@@ -65,10 +65,10 @@ impl Plant {
         let commands = self.waiting.pop_front().unwrap_or(*commands);
         let c = self.craft;
         let before = self.forces;
-        for i in 0..4 {
-            let wanted = (c.motors[i] * commands[i]).clamp(0.0, c.force_max_n);
-            let lag = if wanted > self.forces[i] { c.lag_s[0] } else { c.lag_s[1] };
-            self.forces[i] = wanted + (self.forces[i] - wanted) * (-STEP_S / lag).exp();
+        for (force, (command, share)) in self.forces.iter_mut().zip(commands.iter().zip(c.motors)) {
+            let wanted = (share * command).clamp(0.0, c.force_max_n);
+            let lag = if wanted > *force { c.lag_s[0] } else { c.lag_s[1] };
+            *force = wanted + (*force - wanted) * (-STEP_S / lag).exp();
         }
         let f: Vec<f64> = (0..4).map(|i| 0.5 * (before[i] + self.forces[i])).collect();
         let thrust = f.iter().sum::<f64>() / c.mass_kg;
@@ -95,7 +95,7 @@ impl Plant {
         let (a, b, felt) = rates(&v, &q, &w);
         self.p += v * STEP_S;
         self.v += a * STEP_S;
-        self.q = UnitQuaternion::new_normalize(Quaternion::from(*turned(&self.q, &w, STEP_S)));
+        self.q = UnitQuaternion::new_normalize(*turned(&self.q, &w, STEP_S));
         self.w += b * STEP_S;
         self.felt = felt;
         if self.on_ground && self.p.z <= 0.0 && self.v.z <= 0.0 {

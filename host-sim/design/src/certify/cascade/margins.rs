@@ -3,7 +3,6 @@
 use num_complex::Complex64;
 use serde::Serialize;
 
-use super::observers::AIR_TICK_S;
 use super::{CascadeChain, CascadeCraft, CascadeVariation};
 use crate::analysis::eigenvalues;
 use crate::certify::CertifyError;
@@ -59,5 +58,3 @@ impl CascadeChain {
 
 /// Longest delay that is tried, s.
 const DELAY_MOST_S: f64 = 0.2;
-
-const _: () = assert!(AIR_TICK_S > 0.0);

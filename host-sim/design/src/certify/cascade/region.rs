@@ -125,7 +125,7 @@ impl CascadeRegion {
         vary(masses, |point, value| point.mass_factor = value);
         vary(inertias, |point, value| point.inertia_factor = value);
         vary(if height { &self.command_factors } else { &self.torque_factors }, |point, value| {
-            point.command_factor = value
+            point.command_factor = value;
         });
         vary(&self.delays_s, |point, value| point.delay_s = value);
         vary(drags, |point, value| point.drag_per_s = value);
