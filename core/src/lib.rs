@@ -29,6 +29,7 @@
 //!     control                 any law down to command or motor forces; what it remembers; from one to the next
 //!       supervisor            whether its output may pass
 //!       law                   equilibrium (E), flat output (F), integral action, gains along a trajectory, actuator-aware
+//!     cascade                 nested loops with limits, observers, air; with its gains
 //!         trajectory          pieces played by ticks
 //!           motor_reference   flat output -> motor forces and commands
 //!             body_rate, mixer  command -> wrench -> motor forces
@@ -53,6 +54,7 @@ extern crate std;
 
 pub mod airframe;
 pub mod body_rate;
+pub mod cascade;
 pub mod checksum;
 pub mod clock;
 pub mod command;
@@ -82,6 +84,7 @@ pub use nalgebra;
 
 pub use airframe::{Airframe, AirframeFigures};
 pub use body_rate::BodyRateLoop;
+pub use cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};
 pub use control::{

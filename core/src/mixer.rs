@@ -80,6 +80,19 @@ impl MotorLimited {
         Self { bits: bits & Self::ALL }
     }
 
+    /// The same with thrust, attitude or yaw given up.
+    pub(crate) const fn with_thrust(self) -> Self {
+        Self { bits: self.bits | Self::THRUST }
+    }
+
+    pub(crate) const fn with_attitude(self) -> Self {
+        Self { bits: self.bits | Self::ATTITUDE }
+    }
+
+    pub(crate) const fn with_yaw(self) -> Self {
+        Self { bits: self.bits | Self::YAW }
+    }
+
     /// What was cut of a command, and nothing beside.
     #[inline]
     pub const fn of_command(limited: Limited) -> Self {
@@ -106,7 +119,8 @@ impl From<MotorLimited> for u16 {
 }
 
 /// Parts of the motor forces: M1 to M4 are sums and differences of them.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Parts {
     pub(crate) thrust: f32,
     pub(crate) roll: f32,

@@ -9,6 +9,7 @@ use super::law::Law;
 use super::memory::Memory;
 use super::output::{MotorStep, Output, Step};
 use super::registers;
+use crate::cascade::{Cascade, CascadeInput};
 use crate::command::Limits;
 use crate::error::{StateError, StepError};
 use crate::law::{ActuatorAware, AlongTrajectory, IntegralAction};
@@ -34,6 +35,7 @@ impl<'a> Controller<'a> {
         let law = law.into();
         let actuation = match &law {
             Law::ActuatorAware(law) => Some(law.actuation),
+            Law::Cascade(law) => Some(law.actuation()),
             _ => None,
         };
         Self { law, limits, actuation }
@@ -43,7 +45,7 @@ impl<'a> Controller<'a> {
     #[inline]
     pub const fn with_actuation(self, actuation: &'a Actuation) -> Self {
         match self.law {
-            Law::ActuatorAware(_) => self,
+            Law::ActuatorAware(_) | Law::Cascade(_) => self,
             _ => Self { actuation: Some(actuation), ..self },
         }
     }
@@ -80,6 +82,7 @@ impl<'a> Controller<'a> {
                 let Some(reference) = target.motors else { return Err(StepError::NoForces) };
                 actuator_aware(law, memory, measured.state, body_rates_rad_s, reference)
             }
+            Law::Cascade(law) => cascade(law, memory, measured, target),
         }
     }
 
@@ -104,11 +107,10 @@ impl<'a> Controller<'a> {
         measured: Measured<'_>,
         target: Target<'_>,
     ) -> Result<MotorStep, StepError> {
-        let mut after = *memory;
-        let output = self.step(&mut after, measured, target)?;
-        let step = self.carry(&mut after, &output, measured)?;
-        *memory = after;
-        Ok(step)
+        let integral_m_s = memory.integral_m_s;
+        let output = self.step(memory, measured, target)?;
+        // Forces of a law are carried as they are: only one that may integrate can fail to be.
+        self.carry(memory, &output, measured).inspect_err(|_| memory.integral_m_s = integral_m_s)
     }
 }
 
@@ -176,6 +178,21 @@ fn actuator_aware(
         return Ok(Output::Forces(MotorStep { forces_n, limited }));
     }
     Err(refuse(Measured::new(state).with_body_rates(body_rates_rad_s)))
+}
+
+#[inline(never)]
+fn cascade(
+    law: &Cascade,
+    memory: &mut Memory,
+    measured: Measured<'_>,
+    target: Target<'_>,
+) -> Result<Output, StepError> {
+    let Some(body_rates_rad_s) = measured.body_rates_rad_s else { return Err(StepError::NoBodyRates) };
+    let Some((sample, heading)) = target.sample else { return Err(StepError::NoSample) };
+    let input = CascadeInput { state: measured.state, body_rates_rad_s, sample, heading };
+    let Memory { forces_n, cascade, .. } = memory;
+    let (forces_n, limited) = law.step(cascade, forces_n, &input, measured.specific_force_m_s2)?;
+    Ok(Output::Forces(MotorStep { forces_n, limited }))
 }
 
 /// Why there is no output. The reference has been checked when it was made.

@@ -38,6 +38,9 @@ impl Handover {
         if !old.integrates_like(new) {
             memory.clear_integral();
         }
+        if new.follows_samples() && !old.follows_samples() {
+            memory.cascade.begin_in_flight();
+        }
         Self { steps, done: 0, memory: before }
     }
 

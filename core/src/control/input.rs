@@ -2,7 +2,9 @@
 
 use nalgebra::Vector3;
 
-use crate::motor_reference::MotorReference;
+use crate::command::Command;
+use crate::motor_reference::{FifthOrderSample, MotorReference};
+use crate::quaternion::{Heading, Quaternion};
 use crate::reference::Reference;
 use crate::rigid_state::RigidState;
 use crate::state::State;
@@ -13,19 +15,26 @@ use crate::trajectory::Progress;
 pub struct Measured<'a> {
     pub(crate) state: &'a State,
     pub(crate) body_rates_rad_s: Option<&'a Vector3<f32>>,
+    pub(crate) specific_force_m_s2: Option<&'a Vector3<f32>>,
 }
 
 impl<'a> Measured<'a> {
     /// An estimated state; its quaternion may have either sign.
     #[inline]
     pub const fn new(state: &'a State) -> Self {
-        Self { state, body_rates_rad_s: None }
+        Self { state, body_rates_rad_s: None, specific_force_m_s2: None }
     }
 
     /// With the gyroscope's body rates `p q r`, rad/s: what a law of motor forces takes, and who carries a command to them.
     #[inline]
     pub const fn with_body_rates(self, body_rates_rad_s: &'a Vector3<f32>) -> Self {
         Self { body_rates_rad_s: Some(body_rates_rad_s), ..self }
+    }
+
+    /// With the accelerometer's specific force in the body frame, m/s^2: what the cascade learns the air from.
+    #[inline]
+    pub const fn with_specific_force(self, specific_force_m_s2: &'a Vector3<f32>) -> Self {
+        Self { specific_force_m_s2: Some(specific_force_m_s2), ..self }
     }
 
     /// The estimated state.
@@ -57,19 +66,27 @@ pub struct Target<'a> {
     pub(crate) reference: &'a Reference,
     pub(crate) motors: Option<&'a MotorReference>,
     pub(crate) progress: Option<Progress>,
+    pub(crate) sample: Option<(&'a FifthOrderSample, Heading)>,
 }
 
 impl<'a> Target<'a> {
     /// State, thrust and body rates.
     #[inline]
     pub const fn new(reference: &'a Reference) -> Self {
-        Self { reference, motors: None, progress: None }
+        Self { reference, motors: None, progress: None, sample: None }
     }
 
     /// The same with the motor forces that fly it.
     #[inline]
     pub const fn with_forces(motors: &'a MotorReference) -> Self {
-        Self { reference: &motors.reference, motors: Some(motors), progress: None }
+        Self { reference: &motors.reference, motors: Some(motors), progress: None, sample: None }
+    }
+
+    /// The flat output itself, at a heading: the cascade makes a reference of its own, in the air that it knows. The sample's own
+    /// angle of heading is not looked at, and no other law can follow this.
+    #[inline]
+    pub const fn with_sample(sample: &'a FifthOrderSample, heading: Heading) -> Self {
+        Self { sample: Some((sample, heading)), ..Self::new(&NOWHERE) }
     }
 
     /// Where on which trajectory that is, for gains that change along one; without it they are those of its end.
@@ -78,6 +95,20 @@ impl<'a> Target<'a> {
         Self { progress, ..self }
     }
 }
+
+/// Of targets without a reference.
+static NOWHERE: Reference = Reference {
+    state: State {
+        position_m: Vector3::new(f32::NAN, f32::NAN, f32::NAN),
+        attitude: Quaternion::IDENTITY,
+        velocity_m_s: Vector3::new(0.0, 0.0, 0.0),
+    },
+    input: Command::ZERO,
+    acceleration_m_s2: Vector3::new(0.0, 0.0, 0.0),
+    jerk_m_s3: Vector3::new(0.0, 0.0, 0.0),
+    heading: Heading::ZERO,
+    heading_rate_rad_s: 0.0,
+};
 
 impl<'a> From<&'a Reference> for Target<'a> {
     fn from(reference: &'a Reference) -> Self {

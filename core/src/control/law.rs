@@ -1,5 +1,6 @@
 //! Any law with its gain, to be chosen at run time.
 
+use crate::cascade::Cascade;
 use crate::law::{ActuatorAware, AlongTrajectory, Equilibrium, FlatOutput, IntegralAction};
 
 /// Any law.
@@ -18,6 +19,8 @@ pub enum Law<'a> {
     AlongTrajectory(AlongTrajectory<'a>),
     /// Straight to motor forces, with the motors' lag in the model.
     ActuatorAware(ActuatorAware<'a>),
+    /// Straight to motor forces, in nested loops with limits, told of the air.
+    Cascade(&'a Cascade),
 }
 
 impl Law<'_> {
@@ -26,6 +29,12 @@ impl Law<'_> {
     #[inline]
     pub const fn follows_forces(&self) -> bool {
         matches!(self, Self::ActuatorAware(_))
+    }
+
+    /// Whether it takes a target made with [`super::Target::with_sample`], and measured body rates.
+    #[inline]
+    pub const fn follows_samples(&self) -> bool {
+        matches!(self, Self::Cascade(_))
     }
 
     /// Whether it moves on the integral of the position error.
@@ -70,5 +79,11 @@ impl<'a> From<AlongTrajectory<'a>> for Law<'a> {
 impl<'a> From<ActuatorAware<'a>> for Law<'a> {
     fn from(law: ActuatorAware<'a>) -> Self {
         Self::ActuatorAware(law)
+    }
+}
+
+impl<'a> From<&'a Cascade> for Law<'a> {
+    fn from(law: &'a Cascade) -> Self {
+        Self::Cascade(law)
     }
 }

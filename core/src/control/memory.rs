@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::airframe::Airframe;
+use crate::cascade::CascadeMemory;
 use crate::motor_lag::MotorForces;
 
 /// What is remembered from step to step: one record for every law, so that another law can take over.
@@ -17,6 +18,8 @@ pub struct Memory {
     pub(crate) forces_n: MotorForces,
     /// Integral of the position error in the world frame, m s.
     pub(crate) integral_m_s: Vector3<f32>,
+    /// Of the cascade.
+    pub(crate) cascade: CascadeMemory,
 }
 
 impl Memory {
@@ -28,12 +31,13 @@ impl Memory {
 
     /// Motors that stand still: before a take-off, and for who has no motors.
     pub const fn at_rest() -> Self {
-        Self { forces_n: [0.0; 4], integral_m_s: Vector3::new(0.0, 0.0, 0.0) }
+        Self { forces_n: [0.0; 4], integral_m_s: Vector3::new(0.0, 0.0, 0.0), cascade: CascadeMemory::STANDING }
     }
 
     /// A craft that hovers: for taking over in flight from somebody of whose motors nothing is known.
     pub const fn hovering(airframe: &Airframe) -> Self {
-        Self { forces_n: [airframe.hover_force_n(); 4], ..Self::at_rest() }
+        let forces_n = [airframe.hover_force_n(); 4];
+        Self { forces_n, cascade: CascadeMemory::IN_FLIGHT, ..Self::at_rest() }
     }
 
     /// Takes the motors to be at the forces of hover, where nobody has kept what they were commanded in flight.
@@ -45,6 +49,7 @@ impl Memory {
     pub fn run_down(&mut self, share: f32) {
         let [a, b, c, d] = self.forces_n;
         self.forces_n = [a * share, b * share, c * share, d * share];
+        self.cascade.motors_off();
     }
 
     /// Forces that the motors should have, N.
@@ -55,6 +60,11 @@ impl Memory {
     /// Integral of the position error in the world frame, m s.
     pub const fn integral_m_s(&self) -> Vector3<f32> {
         self.integral_m_s
+    }
+
+    /// What the cascade remembers.
+    pub const fn cascade(&self) -> &CascadeMemory {
+        &self.cascade
     }
 
     /// Forgets the integral: before another trajectory that begins elsewhere.

@@ -41,6 +41,6 @@ pub trait ControlLaw {
 
 /// `a - b`, component by component: three subtractions in registers, where the matrix type's operator loops over memory.
 #[inline]
-fn difference(a: &Vector3<f32>, b: &Vector3<f32>) -> Vector3<f32> {
+pub(crate) fn difference(a: &Vector3<f32>, b: &Vector3<f32>) -> Vector3<f32> {
     Vector3::new(a.x - b.x, a.y - b.y, a.z - b.z)
 }

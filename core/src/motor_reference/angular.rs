@@ -71,15 +71,15 @@ impl Turn {
 
 /// What the map gives; rates, accelerations and jerks in the body frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Turning {
-    pub(super) attitude: Quaternion,
-    pub(super) heading: Heading,
+pub(crate) struct Turning {
+    pub(crate) attitude: Quaternion,
+    pub(crate) heading: Heading,
     /// Thrust over mass, m/s^2, and its rate.
-    pub(super) thrust: f32,
-    pub(super) thrust_rate: f32,
-    pub(super) rates: [f32; 3],
-    pub(super) acceleration: [f32; 3],
-    pub(super) jerk: [f32; 3],
+    pub(crate) thrust: f32,
+    pub(crate) thrust_rate: f32,
+    pub(crate) rates: [f32; 3],
+    pub(crate) acceleration: [f32; 3],
+    pub(crate) jerk: [f32; 3],
 }
 
 impl Turning {
@@ -88,7 +88,7 @@ impl Turning {
     /// # Errors
     /// [`ReferenceError`] at the singularities of the flat map.
     #[inline(always)]
-    pub(super) fn of(motion: &Motion, turn: Option<&Turn>) -> Result<Self, ReferenceError> {
+    pub(crate) fn of(motion: &Motion, turn: Option<&Turn>) -> Result<Self, ReferenceError> {
         let (a, j, s, c) = (&motion.acceleration, &motion.jerk, &motion.snap, &motion.crackle);
         let hz = a.z + GRAVITY_M_S2;
         let thrust = sqrt(a.x * a.x + a.y * a.y + hz * hz);

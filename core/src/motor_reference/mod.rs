@@ -8,8 +8,7 @@ mod angular;
 
 use nalgebra::Vector3;
 
-use self::angular::Turning;
-pub(crate) use self::angular::{Motion, Turn};
+pub(crate) use self::angular::{Motion, Turn, Turning};
 use crate::airframe::Airframe;
 use crate::command::Command;
 use crate::error::{Field, ReferenceError, first_non_finite};
@@ -146,22 +145,8 @@ impl MotorReference {
         airframe: &Airframe,
     ) -> Result<Self, ReferenceError> {
         let turning = Turning::of(motion, turn)?;
-        let ([p, q, r], [p1, q1, r1], [p2, q2, r2]) = (turning.rates, turning.acceleration, turning.jerk);
-        // Euler's equations and their derivative, with inertia over four levers.
-        let mixing = &airframe.mixing;
-        let ([ix, iy, iz], [gx, gy, gz]) = (mixing.inertia, mixing.gyroscopic);
-        let forces = Parts {
-            thrust: mixing.quarter_mass_kg * turning.thrust,
-            roll: ix * p1 + gx * (q * r),
-            pitch: iy * q1 + gy * (p * r),
-            yaw: iz * r1 + gz * (p * q),
-        };
-        let rates = Parts {
-            thrust: mixing.quarter_mass_kg * turning.thrust_rate,
-            roll: ix * p2 + gx * (q1 * r + q * r1),
-            pitch: iy * q2 + gy * (p1 * r + p * r1),
-            yaw: iz * r2 + gz * (p1 * q + p * q1),
-        };
+        let ([p, q, r], [p1, q1, r1]) = (turning.rates, turning.acceleration);
+        let (forces, rates) = turning.force_parts(airframe);
         let lead_s = airframe.lead_s;
         let commands = Parts {
             thrust: forces.thrust + lead_s * rates.thrust,
@@ -218,6 +203,30 @@ impl MotorReference {
     /// with half a control period beside tau where that is [`Airframe::commanded_at`] a rate.
     pub fn commands_n(&self) -> MotorForces {
         self.commands_n
+    }
+}
+
+impl Turning {
+    /// The motor forces of the turning and their rates, in parts, N and N/s.
+    #[inline(always)]
+    pub(crate) fn force_parts(&self, airframe: &Airframe) -> (Parts, Parts) {
+        let ([p, q, r], [p1, q1, r1], [p2, q2, r2]) = (self.rates, self.acceleration, self.jerk);
+        // Euler's equations and their derivative, with inertia over four levers.
+        let mixing = &airframe.mixing;
+        let ([ix, iy, iz], [gx, gy, gz]) = (mixing.inertia, mixing.gyroscopic);
+        let forces = Parts {
+            thrust: mixing.quarter_mass_kg * self.thrust,
+            roll: ix * p1 + gx * (q * r),
+            pitch: iy * q1 + gy * (p * r),
+            yaw: iz * r1 + gz * (p * q),
+        };
+        let rates = Parts {
+            thrust: mixing.quarter_mass_kg * self.thrust_rate,
+            roll: ix * p2 + gx * (q1 * r + q * r1),
+            pitch: iy * q2 + gy * (p1 * r + p * r1),
+            yaw: iz * r2 + gz * (p1 * q + p * q1),
+        };
+        (forces, rates)
     }
 }
 

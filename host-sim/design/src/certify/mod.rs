@@ -9,12 +9,14 @@
 //!
 //! A loop that falls apart into independent chains, as those of hover do, is taken apart first: its figures are then
 //! exact for all channels at once, too. [`certify_along`] does the same for gains over time. [`certify_region`] holds an
-//! actuator-aware gain against a region of lags, masses, inertias and delays. [`require`] holds a certificate against the
+//! actuator-aware gain against a region of lags, masses, inertias and delays, [`mod@cascade`] the cascade with its observers and
+//! the air as well. [`require`] holds a certificate against the
 //! least that a design asks for.
 //!
 //! Reference: Seiler, Packard and Gahinet, An Introduction to Disk Margins, IEEE Control Systems Magazine 2020.
 
 mod along;
+pub mod cascade;
 mod certificate;
 mod constant;
 mod decrease;

@@ -9,11 +9,13 @@
 //! - [`discretise`]: a pair under held inputs, with or without a delay; [`sampled`]: gains for a control rate.
 //! - [`along`]: gains over time along a trajectory.
 //! - [`mod@actuator_aware`]: gains from 19 errors, motors' lag and integral among them, to four motor forces.
+//! - [`mod@cascade`]: the gains of the cascade, without the integral.
 //! - [`synthesis`]: (LYAP-F), (LYAP-E), (LQR-F), (LQR-E) with the paper's numbers; [`integral`]: E with the integral of
 //!   the position error.
 
 pub mod actuator_aware;
 pub mod along;
+pub mod cascade;
 pub mod codegen;
 mod dare;
 pub mod discretise;

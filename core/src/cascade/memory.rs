@@ -1,0 +1,125 @@
+//! What the cascade remembers from step to step.
+
+use nalgebra::Vector3;
+
+use super::air_learner::SeenAir;
+use super::estimate::{Carried, HeldVelocity, Now};
+use super::force_observer::Disturbance;
+use super::ground::Ground;
+use super::torque_observer::Imbalance;
+use super::yield_learner::MotorYield;
+use crate::mixer::Parts;
+use crate::quaternion::Quaternion;
+
+/// The memory of a [`super::Cascade`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct CascadeMemory {
+    pub(super) carried: Carried,
+    pub(super) held: HeldVelocity,
+    pub(super) disturbance: Disturbance,
+    pub(super) imbalance: Imbalance,
+    pub(super) air: SeenAir,
+    pub(super) motors: MotorYield,
+    pub(super) ground: Ground,
+    /// Mean of the forces over the step that has begun, in parts, N.
+    pub(super) coming: Parts,
+    pub(super) seen: Seen,
+    /// What was seen a step before.
+    pub(super) before: Before,
+}
+
+/// What the means over a step take of its beginning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Before {
+    pub(super) velocity: Vector3<f32>,
+    pub(super) axis: Vector3<f32>,
+    pub(super) answer: [f32; 2],
+}
+
+/// What a step leaves to the observers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Seen {
+    pub(super) now: Now,
+    pub(super) axis: Vector3<f32>,
+    /// Mean of the motors' forces over the step that has ended, in parts, N.
+    pub(super) mean_forces: Parts,
+    /// What of them answers the air: roll and pitch, N.
+    pub(super) answer: [f32; 2],
+    /// The reference's velocity in its own body frame, x and y, m/s.
+    pub(super) body_velocity: [f32; 2],
+    /// Whether the craft was where it was sent, with motors within their range.
+    pub(super) undisturbed: bool,
+}
+
+impl CascadeMemory {
+    /// Of a craft that stands with its motors off.
+    pub const STANDING: Self = Self::new(Ground::STANDING);
+
+    /// Of a craft in flight that has seen nothing yet.
+    pub const IN_FLIGHT: Self = Self::new(Ground::FLYING);
+
+    const fn new(ground: Ground) -> Self {
+        let (zero, up) = (Vector3::new(0.0, 0.0, 0.0), Vector3::new(0.0, 0.0, 1.0));
+        let now = Now { position: zero, velocity: zero, attitude: Quaternion::IDENTITY, body_rates: zero };
+        let none = Parts { thrust: 0.0, roll: 0.0, pitch: 0.0, yaw: 0.0 };
+        Self {
+            carried: Carried::NONE,
+            held: HeldVelocity::NONE,
+            disturbance: Disturbance::NONE,
+            imbalance: Imbalance::NONE,
+            air: SeenAir::NONE,
+            motors: MotorYield::TOLD,
+            ground,
+            coming: none,
+            before: Before { velocity: zero, axis: up, answer: [0.0; 2] },
+            seen: Seen {
+                now,
+                axis: up,
+                mean_forces: none,
+                answer: [0.0; 2],
+                body_velocity: [0.0; 2],
+                undisturbed: false,
+            },
+        }
+    }
+
+    /// The cascade is selected in flight, after another law: what was learned of the air and of the motors stays.
+    pub(crate) fn begin_in_flight(&mut self) {
+        let mut air = self.air;
+        air.rest();
+        *self = Self { air, motors: self.motors, ..Self::IN_FLIGHT };
+    }
+
+    /// Observers that see nothing, as those of a craft that does not fly.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn rest(&mut self) {
+        self.disturbance.rest(&self.seen.now.velocity);
+        self.imbalance.rest(&self.seen.now.body_rates);
+        self.air.rest();
+    }
+
+    /// The motors are off: the craft stands until it moves.
+    pub(crate) fn motors_off(&mut self) {
+        self.ground = Ground::STANDING;
+    }
+
+    /// Whether the craft is taken to stand, or to be held.
+    pub fn stands(&self) -> bool {
+        self.ground.is_standing()
+    }
+
+    /// The disturbance that is seen: x and y in the world frame and along the thrust, m/s^2.
+    pub fn disturbance_m_s2(&self) -> Vector3<f32> {
+        let [x, y] = self.disturbance.across;
+        Vector3::new(x, y, self.disturbance.along)
+    }
+
+    /// The imbalance that is seen, as roll, pitch and yaw parts of the motors' forces, N.
+    pub fn imbalance_n(&self) -> [f32; 3] {
+        self.imbalance.parts
+    }
+}
