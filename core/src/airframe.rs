@@ -15,7 +15,10 @@
 
 use core::fmt;
 
+use nalgebra::Vector3;
+
 use crate::clock::Rate;
+use crate::command::Limits;
 use crate::flatness::GRAVITY_M_S2;
 use crate::motor_lag::MotorLag;
 
@@ -223,6 +226,17 @@ impl Airframe {
     /// A quarter of the weight: the force of each motor at hover, N.
     pub const fn hover_force_n(&self) -> f32 {
         self.mixing.quarter_mass_kg * GRAVITY_M_S2
+    }
+}
+
+impl Limits {
+    /// What the four motors of a craft can do, within body rates of so many rad/s; a rate that is not positive binds nothing.
+    pub fn of(airframe: &Airframe, body_rates_max_rad_s: Vector3<f32>) -> Self {
+        let figures = airframe.figures();
+        let per_mass = 4.0 / figures.mass_kg;
+        let (min, max) = (figures.force_min_n * per_mass, figures.force_max_n * per_mass);
+        let any_rate = Self::NONE.body_rates_max_rad_s();
+        Self::new(min, max, body_rates_max_rad_s).or_else(|_| Self::new(min, max, any_rate)).unwrap_or(Self::NONE)
     }
 }
 

@@ -6,8 +6,6 @@ use core::num::NonZeroU8;
 
 use nalgebra::Vector3;
 
-use crate::airframe::Airframe;
-
 /// The paper's input `u = [T p q r]` (2b).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -167,18 +165,6 @@ impl Limits {
             Some(&max_rad_s) => Err(LimitsError::BodyRate { max_rad_s }),
             None => Ok(Self { thrust_min_m_s2, thrust_max_m_s2, body_rates_max_rad_s }),
         }
-    }
-
-    /// What the four motors of a craft can do, within body rates of so many rad/s; a rate that is not positive binds nothing.
-    pub fn of(airframe: &Airframe, body_rates_max_rad_s: Vector3<f32>) -> Self {
-        let figures = airframe.figures();
-        let per_mass = 4.0 / figures.mass_kg;
-        let (min, max) = (figures.force_min_n * per_mass, figures.force_max_n * per_mass);
-        Self::new(min, max, body_rates_max_rad_s).unwrap_or(Self {
-            thrust_min_m_s2: min,
-            thrust_max_m_s2: max,
-            ..Self::NONE
-        })
     }
 
     /// The tighter of these limits and a table's, each; where nothing is left of the thrust, the table's counts for nothing.

@@ -28,10 +28,11 @@
 //!   gains                     tables of every kind
 //!     control                 any law down to command or motor forces; what it remembers; from one to the next
 //!       supervisor            whether its output may pass
+//!       cascade               nested loops with limits, observers, air; with its gains
 //!       law                   equilibrium (E), flat output (F), integral action, gains along a trajectory, actuator-aware
-//!     cascade                 nested loops with limits, observers, air; with its gains
 //!         trajectory          pieces played by ticks
 //!           motor_reference   flat output -> motor forces and commands
+//!             actuation         a craft's way to its motors, at a control rate
 //!             body_rate, mixer  command -> wrench -> motor forces
 //!               airframe      mass, inertia, levers, range and lag of the motors
 //!           reference         flat output -> state and input, checked
@@ -52,6 +53,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod actuation;
 pub mod airframe;
 pub mod body_rate;
 pub mod cascade;
@@ -82,14 +84,14 @@ pub mod trajectory;
 
 pub use nalgebra;
 
+pub use actuation::Actuation;
 pub use airframe::{Airframe, AirframeFigures};
 pub use body_rate::BodyRateLoop;
 pub use cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};
 pub use control::{
-    Actuation, Controller, ControllerError, Handover, Law, Leash, Measured, Memory, MotorStep, Output, Settings, Step,
-    Target,
+    Controller, ControllerError, Handover, Law, Leash, Measured, Memory, MotorStep, Output, Settings, Step, Target,
 };
 pub use error::{ReferenceError, StateError, StepError};
 pub use law::{

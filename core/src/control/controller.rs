@@ -3,12 +3,12 @@
 
 use nalgebra::Vector3;
 
-use super::actuation::Actuation;
 use super::input::{Measured, Target};
 use super::law::Law;
 use super::memory::Memory;
 use super::output::{MotorStep, Output, Step};
 use super::registers;
+use crate::actuation::Actuation;
 use crate::cascade::{Cascade, CascadeInput};
 use crate::command::Limits;
 use crate::error::{StateError, StepError};
@@ -173,7 +173,8 @@ fn actuator_aware(
     reference: &MotorReference,
 ) -> Result<Output, StepError> {
     if state.normalized().is_some()
-        && let Some((forces_n, limited)) = law.step(memory, state, body_rates_rad_s, reference)
+        && let Some((forces_n, limited)) =
+            law.step((&mut memory.forces_n, &mut memory.integral_m_s), state, body_rates_rad_s, reference)
     {
         return Ok(Output::Forces(MotorStep { forces_n, limited }));
     }

@@ -6,12 +6,12 @@
 
 use nalgebra::Vector3;
 
-use super::actuation::Actuation;
 use super::controller::{Controller, carry};
 use super::input::{Measured, Target};
 use super::law::Law;
 use super::memory::Memory;
 use super::output::{MotorStep, Output, Step};
+use crate::actuation::Actuation;
 use crate::command::{Command, Limited};
 use crate::error::StepError;
 use crate::mixer::MotorLimited;

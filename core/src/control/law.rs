@@ -25,7 +25,7 @@ pub enum Law<'a> {
 
 impl Law<'_> {
     /// Whether it gives motor forces: it then takes measured body rates, and a target made with
-    /// [`super::Target::with_forces`] for the craft of its [`super::Actuation`].
+    /// [`super::Target::with_forces`] for the craft of its [`crate::Actuation`].
     #[inline]
     pub const fn follows_forces(&self) -> bool {
         matches!(self, Self::ActuatorAware(_))

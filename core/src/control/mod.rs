@@ -1,7 +1,7 @@
 //! The controller: what is measured and what is to be followed in, a command or motor forces out, by any law.
 //!
 //! One composition for every product. A [`Law`] is one of the laws with its gain; a [`Controller`] is a law with the limits
-//! that its commands keep to and what carries them to the motors ([`Actuation`]). What is remembered from step to step is
+//! that its commands keep to and what carries them to the motors ([`crate::Actuation`]). What is remembered from step to step is
 //! apart, in [`Memory`], and serves every law: another controller can take over between two steps, at once or over a
 //! [`Handover`].
 //!
@@ -27,7 +27,7 @@
 //! # Ok::<(), Box<dyn core::error::Error>>(())
 //! ```
 
-mod actuation;
+mod carry;
 mod controller;
 mod handover;
 mod input;
@@ -38,7 +38,6 @@ mod output;
 mod registers;
 mod settings;
 
-pub use actuation::Actuation;
 pub use controller::Controller;
 pub use handover::Handover;
 pub use input::{Measured, Target};

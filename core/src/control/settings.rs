@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::actuation::Actuation;
+use crate::actuation::Actuation;
 use crate::clock::Rate;
 use crate::command::Limits;
 use crate::law::{ErrorForm, FeedForward};

@@ -10,7 +10,7 @@
 use nalgebra::Vector3;
 
 use super::difference;
-use crate::control::{Actuation, Memory};
+use crate::actuation::Actuation;
 use crate::gain::{Gain, GainError};
 use crate::mixer::{MotorLimited, Parts};
 use crate::motor_lag::MotorForces;
@@ -48,7 +48,8 @@ struct Chains {
     yaw: [f32; 3],
 }
 
-/// The law: a gain on a craft's motors. What it remembers is apart, in [`Memory`].
+/// The law: a gain on a craft's motors. What it remembers is the caller's: predicted motor forces and the
+/// integral of the position error ([`crate::Memory`]).
 #[derive(Clone, Copy, Debug)]
 pub struct ActuatorAware<'a> {
     pub(crate) gain: &'a ActuatorAwareGain,
@@ -226,7 +227,7 @@ impl<'a> ActuatorAware<'a> {
     #[inline(always)]
     pub(crate) fn step(
         &self,
-        memory: &mut Memory,
+        (forces_n, integral_m_s): (&mut MotorForces, &mut Vector3<f32>),
         state: &State,
         body_rates_rad_s: &Vector3<f32>,
         reference: &MotorReference,
@@ -237,21 +238,21 @@ impl<'a> ActuatorAware<'a> {
         let velocity = difference(&state.velocity_m_s, &target.state.velocity_m_s);
         let attitude = target.state.attitude.conjugate() * state.attitude;
         let hemisphere = if attitude.w < 0.0 { -1.0 } else { 1.0 };
-        let ([f1, f2, f3, f4], [r1, r2, r3, r4]) = (memory.forces_n, reference.forces_n);
+        let ([f1, f2, f3, f4], [r1, r2, r3, r4]) = (*forces_n, reference.forces_n);
         let errors = Errors {
             position: heading.to_heading_frame(error),
             velocity: heading.to_heading_frame(velocity),
             half_rotation: Vector3::new(hemisphere * attitude.x, hemisphere * attitude.y, hemisphere * attitude.z),
             body_rates: difference(body_rates_rad_s, &target.input.body_rates_rad_s),
             forces: [f1 - r1, f2 - r2, f3 - r3, f4 - r4],
-            integral: heading.to_heading_frame(memory.integral_m_s),
+            integral: heading.to_heading_frame(*integral_m_s),
         };
         let asked = self.gain.feedback.added_to(reference.commands_n, &errors);
         let (commands, limited) = actuation.range.saturate(&asked)?;
-        memory.forces_n = actuation.lag.next(&memory.forces_n, &commands);
+        *forces_n = actuation.lag.next(forces_n, &commands);
         if !limited.any() {
-            let (h, i) = (actuation.lag.period_s(), &memory.integral_m_s);
-            memory.integral_m_s = Vector3::new(i.x + h * error.x, i.y + h * error.y, i.z + h * error.z);
+            let (h, i) = (actuation.lag.period_s(), *integral_m_s);
+            *integral_m_s = Vector3::new(i.x + h * error.x, i.y + h * error.y, i.z + h * error.z);
         }
         Some((commands, limited))
     }

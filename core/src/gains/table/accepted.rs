@@ -2,9 +2,10 @@
 
 use super::gains::{Content, Gains};
 use super::{AcceptError, TableHead, TableKind};
+use crate::actuation::Actuation;
 use crate::clock::Rate;
 use crate::command::Limits;
-use crate::control::{Actuation, Controller, ControllerError, Law, Settings};
+use crate::control::{Controller, ControllerError, Law, Settings};
 use crate::law::{AlongTrajectory, GainSchedule, Knot};
 use crate::motor_lag::MotorLag;
 use crate::trajectory::Trajectory;

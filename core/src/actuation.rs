@@ -2,8 +2,6 @@
 
 use nalgebra::Vector3;
 
-use super::memory::Memory;
-use super::output::{MotorStep, Step};
 use crate::airframe::Airframe;
 use crate::body_rate::BodyRateLoop;
 use crate::clock::Rate;
@@ -18,8 +16,8 @@ use crate::motor_lag::{MotorLag, MotorLagError};
 pub struct Actuation {
     pub(crate) lag: MotorLag,
     pub(crate) range: ForceRange,
-    airframe: Airframe,
-    body_rates: BodyRateLoop,
+    pub(crate) airframe: Airframe,
+    pub(crate) body_rates: BodyRateLoop,
 }
 
 impl Actuation {
@@ -77,28 +75,11 @@ impl Actuation {
         let torque = &wrench.torque_n_m;
         if (torque.x + torque.y + torque.z).abs() <= f32::MAX { Ok(wrench) } else { Err(refuse(body_rates_rad_s)) }
     }
-
-    /// Motor forces for a step's command, at measured body rates (rad/s); what is remembered of the motors moves on.
-    ///
-    /// # Errors
-    /// As [`Self::wrench`]; the memory is then as it was.
-    #[inline]
-    pub fn carry(
-        &self,
-        memory: &mut Memory,
-        step: &Step,
-        body_rates_rad_s: &Vector3<f32>,
-    ) -> Result<MotorStep, StepError> {
-        let wrench = self.body_rates.wrench(&step.command, body_rates_rad_s);
-        let Some((forces_n, limited)) = self.airframe.mix(&wrench) else { return Err(refuse(body_rates_rad_s)) };
-        memory.forces_n = self.lag.next(&memory.forces_n, &forces_n);
-        Ok(MotorStep { forces_n, limited: limited.with_command(step.limited) })
-    }
 }
 
 /// Why a command is not carried: the command itself is finite.
 #[cold]
 #[inline(never)]
-fn refuse(body_rates_rad_s: &Vector3<f32>) -> StepError {
+pub(crate) fn refuse(body_rates_rad_s: &Vector3<f32>) -> StepError {
     StateError::of_body_rates(body_rates_rad_s).map_or(StepError::Singular, StepError::State)
 }
