@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 /// What computes commands, seen from the workspace's root.
-const CONTROL_PATH: [&str; 10] = [
+const CONTROL_PATH: [&str; 11] = [
     "core/src",
     "plans",
     "gains/generated/actuator-aware.rs",
     "firmware/src/flight.rs",
     "firmware/src/flight",
     "firmware/src/laws.rs",
+    "firmware/src/laws",
     "firmware/src/playback.rs",
     "firmware/src/playback",
     "firmware/src/rates.rs",

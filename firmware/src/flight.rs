@@ -23,7 +23,7 @@ use crate::vehicle::{AIRFRAME, BODY_RATES_MAX_RAD_S, STOPPED};
 
 pub use self::motors::ToMotors;
 #[cfg(feature = "motors")]
-pub use self::motors::table;
+pub use crate::laws::table;
 pub use crate::rates::{DECIMATION, LOCK_STEP, TICK_RATE, TICK_RATE_HZ};
 
 /// Bounds of a flight unless they are set otherwise: 50 ms without a state, half a second without a frame.

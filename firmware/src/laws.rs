@@ -5,6 +5,12 @@
 //! borrow it for longer than a step: its controller is made anew for each. What is loaded stays until the power goes, or the
 //! rate of the steps changes.
 
+#[cfg(not(feature = "motors"))]
+#[path = "laws/commands_only.rs"]
+mod motors;
+#[cfg(feature = "motors")]
+mod motors;
+
 use quatrack::gains::paper;
 use quatrack::gains::table::{AcceptError, AcceptedTable};
 use quatrack::link::{GainStore, LawChoice, Table};
@@ -14,7 +20,10 @@ use quatrack::{
     Controller, Equilibrium, Handover, Limits, Measured, Memory, Output, Rate, Settings, StepError, Target,
 };
 
-use crate::flight::motors::{Actuations, BUILT_IN_TO_MOTORS, loaded, step};
+pub use self::motors::Actuations;
+#[cfg(feature = "motors")]
+pub use self::motors::table;
+use self::motors::{BUILT_IN_TO_MOTORS, loaded, step};
 use crate::rates::TICK_RATE;
 use crate::vehicle::{STEP_RATE, VEHICLE};
 

@@ -1,13 +1,9 @@
 //! A flight that ends at its commands, for an image without the feature `motors`: what the paper's laws take by themselves
 //! is weighed and counted with it.
 
-use quatrack::gains::table::{AcceptedTable, TableKind};
-use quatrack::link::{NoCommand, Table};
+use quatrack::link::NoCommand;
 use quatrack::nalgebra::Vector3;
-use quatrack::{
-    Actuation, ActuatorAware, Controller, Law, Measured, Memory, MotorForces, Output, Settings, State, StepError,
-    Target, Tick,
-};
+use quatrack::{Measured, MotorForces, Output, State, Target, Tick};
 
 use crate::craft::BodyRates;
 use crate::drivers::battery::CellVoltage;
@@ -15,52 +11,8 @@ use crate::laws::Laws;
 use crate::playback::Playback;
 use crate::vehicle::STOPPED;
 
-/// There is none.
-pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> = None;
-
-/// None.
-pub struct Actuations;
-
-#[expect(clippy::unused_self, reason = "the same to call as with motors")]
-impl Actuations {
-    pub(crate) const fn new() -> Self {
-        Self
-    }
-
-    pub(crate) fn load(&mut self, _table: &AcceptedTable<'_>) {}
-
-    #[inline(always)]
-    pub(crate) const fn of(&self, _table: Table) -> Option<&Actuation> {
-        None
-    }
-}
-
 /// Nothing.
 pub struct ToMotors;
-
-/// A step of one of the paper's laws; no other is linked.
-#[inline(always)]
-pub(crate) fn step(
-    controller: &Controller<'_>,
-    memory: &mut Memory,
-    measured: Measured<'_>,
-    target: Target<'_>,
-) -> Result<Output, StepError> {
-    // Each by itself: the compiler then knows that it is no other.
-    if let Law::Equilibrium(_) = controller.law() {
-        controller.step(memory, measured, target)
-    } else if let Law::FlatOutput(_) = controller.law() {
-        controller.step(memory, measured, target)
-    } else {
-        Err(StepError::NoActuation)
-    }
-}
-
-/// The controller of a loaded table for one of these laws.
-pub(crate) fn loaded<'t>(table: &AcceptedTable<'t>, settings: &Settings<'t>) -> Option<Controller<'t>> {
-    let (TableKind::Equilibrium | TableKind::FlatOutput) = table.kind() else { return None };
-    table.controller(settings).ok()
-}
 
 #[expect(clippy::unused_self, reason = "the same to call as with motors")]
 impl ToMotors {

@@ -1,82 +1,14 @@
 //! A flight down to its motors: body rates beside the newest state in; gated motor forces out.
 
-use quatrack::body_rate::BandwidthError;
-use quatrack::gains::table::AcceptedTable;
-use quatrack::link::{NoCommand, Table};
+use quatrack::link::NoCommand;
 use quatrack::nalgebra::Vector3;
-use quatrack::{
-    Actuation, ActuatorAware, BodyRateLoop, Controller, Measured, Memory, MotorForces, Output, Settings, State,
-    StepError, Target, Tick,
-};
+use quatrack::{Measured, MotorForces, Output, State, StepError, Target, Tick};
 
 use crate::craft::BodyRates;
 use crate::drivers::battery::CellVoltage;
 use crate::laws::Laws;
 use crate::playback::Playback;
-use crate::vehicle::{ACTUATION, AIRFRAME, STOPPED};
-
-/// The table in the image.
-pub mod table {
-    include!("../../../gains/generated/actuator-aware.rs");
-}
-
-static TO_MOTORS: Actuation = ACTUATION;
-
-/// The board's ways to its motors: its own, and that of each slot's table, which may reckon with another motor lag.
-pub struct Actuations {
-    board: Actuation,
-    of_slots: [Actuation; 2],
-    bandwidth_rad_s: [f32; 3],
-}
-
-impl Actuations {
-    /// The craft's own, with the body-rate loop that fits its motors' lag.
-    #[inline(always)]
-    pub(crate) const fn new() -> Self {
-        let bandwidth_rad_s = [0.5 / AIRFRAME.figures().motor_lag_s; 3];
-        Self { board: ACTUATION, of_slots: [ACTUATION; 2], bandwidth_rad_s }
-    }
-
-    /// Bandwidth of the body-rate loop, rad/s.
-    pub const fn bandwidth_rad_s(&self) -> [f32; 3] {
-        self.bandwidth_rad_s
-    }
-
-    /// Sets it.
-    ///
-    /// # Errors
-    /// As [`BodyRateLoop::new`]; what was set stays.
-    #[cold]
-    pub fn set_bandwidth(&mut self, bandwidth_rad_s: [f32; 3]) -> Result<(), BandwidthError> {
-        let body_rates = BodyRateLoop::new(&AIRFRAME, bandwidth_rad_s)?;
-        self.bandwidth_rad_s = bandwidth_rad_s;
-        for actuation in self.of_slots.iter_mut().chain([&mut self.board]) {
-            *actuation = actuation.with_body_rates(body_rates);
-        }
-        Ok(())
-    }
-
-    /// A table has been put to use: it is in slot 0, and what was there in slot 1.
-    pub(crate) fn load(&mut self, table: &AcceptedTable<'_>) {
-        let [in_use, _] = self.of_slots;
-        self.of_slots = [table.actuation(&self.board), in_use];
-    }
-
-    /// That of a table.
-    #[inline]
-    pub(crate) const fn of(&self, table: Table) -> Option<&Actuation> {
-        let [in_use, before] = &self.of_slots;
-        Some(match table {
-            Table::Loaded(0) => in_use,
-            Table::Loaded(_) => before,
-            _ => &self.board,
-        })
-    }
-}
-
-/// The law of motor forces in the image, for steps at [`crate::vehicle::STEP_RATE`].
-pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> =
-    Some(ActuatorAware::new(&table::ACTUATOR_AWARE, &TO_MOTORS));
+use crate::vehicle::STOPPED;
 
 /// What is known of the motors, and what comes of a step for them.
 pub struct ToMotors {
@@ -87,23 +19,6 @@ pub struct ToMotors {
     passed_n: MotorForces,
     /// The last step had body rates, or should have had: forces answer the state.
     answers_by_forces: bool,
-}
-
-/// A step of any law.
-#[inline(always)]
-pub(crate) fn step(
-    controller: &Controller<'_>,
-    memory: &mut Memory,
-    measured: Measured<'_>,
-    target: Target<'_>,
-) -> Result<Output, StepError> {
-    controller.step(memory, measured, target)
-}
-
-/// The controller of a loaded table.
-#[inline]
-pub(crate) fn loaded<'t>(table: &AcceptedTable<'t>, settings: &Settings<'t>) -> Option<Controller<'t>> {
-    table.controller(settings).ok()
 }
 
 impl ToMotors {

@@ -1,0 +1,49 @@
+//! The paper's laws alone, for an image without the feature `motors`.
+
+use quatrack::gains::table::{AcceptedTable, TableKind};
+use quatrack::link::Table;
+use quatrack::{Actuation, ActuatorAware, Controller, Law, Measured, Memory, Output, Settings, StepError, Target};
+
+/// There is none.
+pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> = None;
+
+/// None.
+pub struct Actuations;
+
+#[expect(clippy::unused_self, reason = "the same to call as with motors")]
+impl Actuations {
+    pub(crate) const fn new() -> Self {
+        Self
+    }
+
+    pub(crate) fn load(&mut self, _table: &AcceptedTable<'_>) {}
+
+    #[inline(always)]
+    pub(crate) const fn of(&self, _table: Table) -> Option<&Actuation> {
+        None
+    }
+}
+
+/// A step of one of the paper's laws; no other is linked.
+#[inline(always)]
+pub(crate) fn step(
+    controller: &Controller<'_>,
+    memory: &mut Memory,
+    measured: Measured<'_>,
+    target: Target<'_>,
+) -> Result<Output, StepError> {
+    // Each by itself: the compiler then knows that it is no other.
+    if let Law::Equilibrium(_) = controller.law() {
+        controller.step(memory, measured, target)
+    } else if let Law::FlatOutput(_) = controller.law() {
+        controller.step(memory, measured, target)
+    } else {
+        Err(StepError::NoActuation)
+    }
+}
+
+/// The controller of a loaded table for one of these laws.
+pub(crate) fn loaded<'t>(table: &AcceptedTable<'t>, settings: &Settings<'t>) -> Option<Controller<'t>> {
+    let (TableKind::Equilibrium | TableKind::FlatOutput) = table.kind() else { return None };
+    table.controller(settings).ok()
+}
