@@ -9,8 +9,8 @@ const TEXT: &str = include_str!("../../../../gains/vehicles/crazyflie-2.1.toml")
 fn the_board_flies_tables_for_the_vehicle_that_they_are_designed_for() {
     let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     // The image is built for the target alone, so its source is read.
-    let laws = include_str!("../../../../firmware/src/laws.rs");
-    let declared = laws.lines().find(|line| line.starts_with("pub const VEHICLE: Vehicle")).expect("declared");
+    let source = include_str!("../../../../firmware/src/vehicle.rs");
+    let declared = source.lines().find(|line| line.starts_with("pub const VEHICLE: Vehicle")).expect("declared");
     assert!(declared.contains(&format!("Name::literal(\"{}\")", vehicle.name())), "{declared}");
     let id = declared.split_once("id: 0x").and_then(|(_, rest)| rest.split_once(' ')).expect("an id").0;
     assert_eq!(

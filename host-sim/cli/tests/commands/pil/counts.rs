@@ -44,12 +44,13 @@ fn every_part_stays_within_its_bound_when_everything_is_turned_fed_forward_and_l
     assert!(report.reference.max <= 300, "{:?}", report.reference);
     assert!(report.reference_turning.max <= report.reference.max + 130, "{:?}", report.reference_turning);
     assert!(report.tick.max <= 800, "{:?}", report.tick);
-    assert!(report.flash_bytes <= 16 * 1024, "{} bytes", report.flash_bytes);
+    // What loads tables of every kind has come to it: 3 % of the 16,332 bytes before.
+    assert!(report.flash_bytes <= 16_820, "{} bytes", report.flash_bytes);
     assert!(report.flash_to_motors_bytes > report.flash_bytes, "{} bytes", report.flash_to_motors_bytes);
     // Down to the motors: by a table whose gain decouples, and by any. Nothing cut, and every motor in turn.
     let (decoupled, any) = (&report.law["actuator-aware"], &report.law["any actuator-aware table"]);
     assert!(decoupled.max <= 340 && decoupled.min < decoupled.max, "{decoupled:?}");
-    assert!(any.max <= 450, "{any:?}");
+    assert!(any.max <= 460, "{any:?}");
     assert!(report.motor_reference.max <= 500, "{:?}", report.motor_reference);
     // Of degree 7, with a heading in every quarter, where a piece begins.
     assert!(report.motor_reference_turning.max <= 700, "{:?}", report.motor_reference_turning);
