@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
-# Guess: send_full_state_setpoint carries body rates in degrees/s, as its documentation says, and rounds the rest to a millimetre
-# and the attitude to something that does not matter.
-# What happens: rates are multiplied by 1000 into 16 bits, so that 33 degrees/s raises struct.error: the firmware reads
-# milliradians/s, and only radians/s fit (30 meant as degrees/s is flown as 30 rad/s). Lengths are cut toward zero, not rounded: 2.01 m
-# goes out as 2.009 m, and -0.9 mm as 0. The attitude has steps of 0.16 degrees: a tilt of 0.05 degrees is sent as exactly level,
-# one of 0.1 as 0.159.
-# Why it matters: at 9.81 m/s^2 a step of 0.159 degrees is 27 mm/s^2 of feed-forward. A flatness-based setpoint at low speed
-# arrives as a staircase, whose jumps the log shows as the controller's, and a trajectory that yaws at 60 degrees/s ends the script.
+# Guess: send_full_state_setpoint carries body rates in degrees/s, as its documentation says, and rounds the rest to a
+# millimetre and the attitude to something that does not matter.
+# What happens: rates are multiplied by 1000 into 16 bits, so that 33 degrees/s raises struct.error: the firmware
+# reads milliradians/s, and only radians/s fit (30 meant as degrees/s is flown as 30 rad/s). Lengths are cut toward
+# zero, not rounded: 2.01 m goes out as 2.009 m, and -0.9 mm as 0. The attitude has steps of 0.16 degrees: a tilt of
+# 0.05 degrees is sent as exactly level, one of 0.1 as 0.159.
+# Why it matters: at 9.81 m/s^2 a step of 0.159 degrees is 27 mm/s^2 of feed-forward. A flatness-based setpoint at low
+# speed arrives as a staircase, whose jumps the log shows as the controller's, and a trajectory that yaws at 60
+# degrees/s ends the script.
 set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Guess: cflib's attitude setpoints take one sign of pitch, and 0 % of thrust stops the motors.
-# What happens: send_setpoint and send_setpoint_manual put the pitch on the air with its sign turned, send_zdistance_setpoint as it
-# was given: the same angle tilts the craft forwards by one call and backwards by another. 0 % of send_setpoint_manual is 10001 of
-# 65535, 15 % of thrust, and 100 % is 60000: no percentage turns the motors off and none gives all of it.
-# Why it matters: who tests a controller by hand with these calls reads a right answer as a wrong sign, and who lands by 0 % leaves
-# four propellers turning.
+# What happens: send_setpoint and send_setpoint_manual put the pitch on the air with its sign turned,
+# send_zdistance_setpoint as it was given: the same angle tilts the craft forwards by one call and backwards by
+# another. 0 % of send_setpoint_manual is 10001 of 65535, 15 % of thrust, and 100 % is 60000: no percentage turns the
+# motors off and none gives all of it.
+# Why it matters: who tests a controller by hand with these calls reads a right answer as a wrong sign, and who lands
+# by 0 % leaves four propellers turning.
 set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
-# Guess: a Riccati equation of a plant with a state that no input moves (a bias, a heading that nothing turns), which has no stabilising
-# solution, is refused, and if it is once it is always.
-# What happens: solve_continuous_are raises for a double integrator with such a state as it is written down. In other coordinates of the
-# same plant it returns a matrix in two of three cases: no warning, a residual of 0.6 and more, and a gain that leaves the pole at 0.
-# python-control's care with slycot refuses more of them, 25 of 40, and answers the rest.
-# Why it matters: an LQR design of a craft with an integrator too many 'works', and its closed loop drifts. Whether it is found
-# depends on round-off: test controllability, and the residual, oneself.
+# Guess: a Riccati equation of a plant with a state that no input moves (a bias, a heading that nothing turns), which
+# has no stabilising solution, is refused, and if it is once it is always.
+# What happens: solve_continuous_are raises for a double integrator with such a state as it is written down. In other
+# coordinates of the same plant it returns a matrix in two of three cases: no warning, a residual of 0.6 and more, and
+# a gain that leaves the pole at 0. python-control's care with slycot refuses more of them, 25 of 40, and answers the
+# rest.
+# Why it matters: an LQR design of a craft with an integrator too many 'works', and its closed loop drifts. Whether it
+# is found depends on round-off: test controllability, and the residual, oneself.
 set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT

@@ -77,7 +77,7 @@ impl BodyRateLoop {
     }
 
     /// Thrust and torque for a command, at measured body rates (rad/s).
-    #[inline]
+    #[inline(always)]
     pub fn wrench(&self, command: &Command, body_rates_rad_s: &Vector3<f32>) -> Wrench {
         let (rates, asked) = (body_rates_rad_s, &command.body_rates_rad_s);
         let ([kx, ky, kz], [gx, gy, gz]) = (self.gain, self.gyroscopic_kg_m2);

@@ -35,6 +35,7 @@
 //!             body_rate, mixer  command -> wrench -> motor forces
 //!               airframe      mass, inertia, levers, range and lag of the motors
 //!           reference         flat output -> state and input, checked
+//!           estimator         inertial sensors and positions -> state, covariance, innovations
 //!             flatness        the flat map and its inverse
 //!               state, rigid_state, command, gain, motor_lag, clock
 //!                 quaternion, error
@@ -61,6 +62,7 @@ pub mod control;
 #[cfg(feature = "defmt")]
 mod defmt_formats;
 pub mod error;
+pub mod estimator;
 pub mod flatness;
 pub mod gain;
 pub mod gains;

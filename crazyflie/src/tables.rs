@@ -4,7 +4,10 @@
 use quatrack::gains::table::{AcceptError, GainTable, margin_behind};
 use quatrack::gains::{ConstantGain, Decoupled, Scales, paper};
 use quatrack::law::ActuatorAwareGain;
-use quatrack::{Actuation, Controller, ErrorForm, FeedForward, Limits, Settings, StepError};
+use quatrack::{
+    Actuation, ControllerError, FeedForward, Law, Limits, Measured, Memory, Output as LawOutput, Settings, StepError,
+    Target,
+};
 
 use crate::builtin;
 use crate::craft::{Craft, RATE};
@@ -159,16 +162,32 @@ impl Table {
         Self { gain: self.gain.scaled(&scales.within(self.margin)), ..*self }
     }
 
-    /// The controller of a step, within limits.
+    /// A step of the table's controller within limits.
+    ///
+    /// # Errors
+    /// As [`quatrack::Controller::step`].
+    #[inline(always)]
+    pub fn step(
+        &self,
+        (limits, feed_forward): (Limits, FeedForward),
+        memory: &mut Memory,
+        measured: Measured<'_>,
+        target: Target<'_>,
+    ) -> Result<LawOutput, StepError> {
+        self.gain.step(RATE, &self.settings(limits, feed_forward), memory, measured, target)
+    }
+
+    /// Its law.
     ///
     /// # Errors
     /// None: a table has its actuation.
+    pub fn law(&self, feed_forward: FeedForward) -> Result<Law<'_>, ControllerError> {
+        self.gain.law(RATE, &self.settings(Limits::NONE, feed_forward))
+    }
+
     #[inline(always)]
-    pub fn controller(&self, limits: Limits, feed_forward: FeedForward) -> Result<Controller<'_>, StepError> {
-        let (error_form, player_rate) = (ErrorForm::HeadingFrame, RATE);
-        let settings = Settings { limits, actuation: Some(&self.actuation), feed_forward, error_form, player_rate };
-        let law = self.gain.law(RATE, &settings).map_err(|_| StepError::NoActuation)?;
-        Ok(Controller::new(law, limits).with_actuation(&self.actuation))
+    fn settings(&self, limits: Limits, feed_forward: FeedForward) -> Settings<'_> {
+        Settings { actuation: Some(&self.actuation), feed_forward, ..Settings::new(limits, RATE) }
     }
 
     /// The entries that make up the gain where it decouples as designs at hover do: thrust from height, roll from y,

@@ -4,13 +4,12 @@
 
 use libfuzzer_sys::fuzz_target;
 use quatrack::checksum::crc32c;
-use quatrack::gains::table::{
-    ACTUATOR_TABLE_BYTES, ActuatorTable, GainTable, MAGIC, SCHEDULE_BYTES_MAX, ScheduleRows, ScheduleTable,
-    TABLE_BYTES_MAX, TableKind,
-};
+use quatrack::gains::table::{GainTable, MAGIC, TABLE_BYTES_MAX, TableKind};
 use quatrack::nalgebra::Vector3;
-use quatrack::{ActuatorMemory, Airframe, MotorLaw, MotorReference, MotorTracker, RigidState};
-use quatrack::{Controller, ErrorForm, FeedForward, FlightLaw, Limits, Memory, Progress, Reference, State};
+use quatrack::{
+    Actuation, Airframe, FeedForward, Limits, Memory, MotorReference, Output, Progress, RigidState, Settings, State,
+    Target,
+};
 
 /// A sound frame around a payload, so that the search is not for a checksum.
 fn framed(payload: &[u8]) -> Option<Vec<u8>> {
@@ -21,54 +20,34 @@ fn framed(payload: &[u8]) -> Option<Vec<u8>> {
 }
 
 /// Any sound table holds a hover, at any time of any trajectory.
-fn hover<'a>(law: impl Into<FlightLaw<'a>>, limits: Limits, progress: Option<Progress>) {
-    let Ok(reference) = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0) else { panic!("hover is a reference") };
-    let state = State::at_rest(Vector3::new(0.0, 0.0, 1.0));
-    let step = Controller::new(law, limits).step(&mut Memory::new(), progress, &state, &reference);
-    assert!(step.is_ok_and(|step| step.command == *reference.input()), "holds a hover");
-}
-
 fn load(bytes: &[u8]) {
-    match GainTable::from_bytes(bytes) {
-        Ok(table) => {
-            assert_eq!(table.to_bytes(&mut [0; TABLE_BYTES_MAX]), Some(bytes), "one table has one encoding");
-            assert_eq!(TableKind::of(bytes), Ok(table.kind()));
-            let (vehicle, rate) = (table.head().vehicle, table.head().rate);
-            let Ok(table) = table.accept_for(&vehicle, rate) else { panic!("refused by the board that it names") };
-            hover(table.law(FeedForward::With, ErrorForm::HeadingFrame), table.limits(), None);
-        }
-        Err(_) => load_schedule(bytes),
-    }
-}
-
-fn load_schedule(bytes: &[u8]) {
-    let Ok(table) = ScheduleTable::from_bytes(bytes) else { return load_actuator(bytes) };
-    let (head, schedule) = (*table.head(), *table.schedule());
-    let gains: Vec<_> = (0..).map_while(|knot| schedule.gain(knot)).collect();
-    let (trajectory, steps_per_knot) = (schedule.trajectory(), schedule.steps_per_knot());
-    let rows = ScheduleRows { trajectory, steps_per_knot, gains: &gains };
-    let mut buffer = [0; SCHEDULE_BYTES_MAX];
-    let again = ScheduleTable::write(&mut buffer, &head, &rows);
-    assert_eq!(again.map(|table| table.bytes()), Ok(bytes), "one table has one encoding");
-    let Ok(table) = table.accept_for(&head.vehicle, head.rate) else { panic!("refused by the board that it names") };
-    for tick in [0, 1, u32::from(steps_per_knot), 1 << 20, u32::MAX] {
-        let law = table.law(head.rate, FeedForward::With);
-        hover(law, table.limits(), Some(Progress { trajectory, tick }));
-    }
-}
-
-fn load_actuator(bytes: &[u8]) {
-    let Ok(table) = ActuatorTable::from_bytes(bytes) else { return };
-    assert_eq!(table.to_bytes(&mut [0; ACTUATOR_TABLE_BYTES]), Some(bytes), "one table has one encoding");
+    let Ok(table) = GainTable::from_bytes(bytes) else { return };
+    assert_eq!(table.to_bytes(&mut [0; TABLE_BYTES_MAX]), Some(bytes), "one table has one encoding");
+    assert_eq!(TableKind::of(bytes), Ok(table.kind()));
     let (vehicle, rate) = (table.head().vehicle, table.head().rate);
-    let Ok(table) = table.accept_for(&vehicle, rate) else { panic!("refused by the board that it names") };
-    let airframe = table.airframe(&Airframe::CRAZYFLIE_2_1);
-    let tracker = MotorTracker::new(MotorLaw::ActuatorAware(table.law(&airframe)), &airframe);
+    let Ok(accepted) = table.accept_for(&vehicle, rate) else { panic!("refused by the board that it names") };
+    let Ok(board) = Actuation::new(&Airframe::CRAZYFLIE_2_1, rate) else { return };
+    let actuation = accepted.actuation(&board);
+    let settings = Settings {
+        actuation: Some(&actuation),
+        feed_forward: FeedForward::With,
+        ..Settings::new(Limits::NONE, rate)
+    };
+    let Ok(controller) = accepted.controller(&settings) else { panic!("no controller of a sound table") };
     let at = Vector3::new(0.0, 0.0, 1.0);
-    let Ok(reference) = MotorReference::hover(at, 0.0, &airframe) else { panic!("hover is a reference") };
+    let Ok(reference) = MotorReference::hover(at, 0.0, actuation.airframe()) else { panic!("hover is a reference") };
     let state = RigidState { state: State::at_rest(at), body_rates_rad_s: Vector3::zeros() };
-    let step = tracker.step(&mut ActuatorMemory::hovering(&airframe), &state, &reference);
-    assert!(step.is_ok_and(|step| step.forces_n == [airframe.hover_force_n(); 4]), "holds a hover");
+    let trajectory = table.schedule().map_or(0, |schedule| schedule.trajectory());
+    for tick in [0, 1, 1000, 1 << 20, u32::MAX] {
+        let target = Target::with_forces(&reference).at(Some(Progress { trajectory, tick }));
+        match controller.step(&mut Memory::hovering(actuation.airframe()), (&state).into(), target) {
+            Ok(Output::Command(step)) => assert_eq!(step.command, *reference.reference().input(), "holds a hover"),
+            Ok(Output::Forces(step)) => {
+                assert_eq!(step.forces_n, [actuation.airframe().hover_force_n(); 4], "holds a hover");
+            }
+            Err(error) => panic!("{error}"),
+        }
+    }
 }
 
 fuzz_target!(|bytes: &[u8]| {

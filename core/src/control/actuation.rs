@@ -70,7 +70,7 @@ impl Actuation {
     ///
     /// # Errors
     /// [`StepError`] where a body rate is not finite, or the torque is beyond f32.
-    #[inline]
+    #[inline(always)]
     pub fn wrench(&self, command: &Command, body_rates_rad_s: &Vector3<f32>) -> Result<Wrench, StepError> {
         let wrench = self.body_rates.wrench(command, body_rates_rad_s);
         // The thrust has been looked at when the command was cut.

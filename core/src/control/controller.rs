@@ -1,6 +1,8 @@
 //! One control step of any law: what is measured and what is to be followed in, an output within the limits out, or the
 //! reason for none.
 
+use nalgebra::Vector3;
+
 use super::actuation::Actuation;
 use super::input::{Measured, Target};
 use super::law::Law;
@@ -11,6 +13,8 @@ use crate::cascade::{Cascade, CascadeInput};
 use crate::command::Limits;
 use crate::error::{StateError, StepError};
 use crate::law::{ActuatorAware, AlongTrajectory, IntegralAction};
+use crate::motor_reference::MotorReference;
+use crate::state::State;
 
 /// A law, the limits that its commands keep to, and what carries them to the motors. To be called at a fixed rate.
 ///
@@ -68,16 +72,16 @@ impl<'a> Controller<'a> {
     /// the memory is as it was: the caller stops or levels, and never holds the last output.
     #[inline(always)]
     pub fn step(&self, memory: &mut Memory, measured: Measured<'_>, target: Target<'_>) -> Result<Output, StepError> {
-        // Looked at by itself, before all others: it is to cost nothing.
-        if let Law::Equilibrium(_) = &self.law {
-            return registers::equilibrium(self, measured.state, target.reference);
-        }
         match &self.law {
             Law::Equilibrium(_) => registers::equilibrium(self, measured.state, target.reference),
             Law::FlatOutput(_) => registers::flat_output(self, measured.state, target.reference),
             Law::IntegralAction(law) => integral(law, &self.limits, memory, measured, target),
             Law::AlongTrajectory(law) => along(law, &self.limits, measured, target),
-            Law::ActuatorAware(law) => actuator_aware(law, memory, measured, target),
+            Law::ActuatorAware(law) => {
+                let Some(body_rates_rad_s) = measured.body_rates_rad_s else { return Err(StepError::NoBodyRates) };
+                let Some(reference) = target.motors else { return Err(StepError::NoForces) };
+                actuator_aware(law, memory, measured.state, body_rates_rad_s, reference)
+            }
             Law::Cascade(law) => cascade(law, memory, measured, target),
         }
     }
@@ -164,17 +168,16 @@ fn along(
 fn actuator_aware(
     law: &ActuatorAware<'_>,
     memory: &mut Memory,
-    measured: Measured<'_>,
-    target: Target<'_>,
+    state: &State,
+    body_rates_rad_s: &Vector3<f32>,
+    reference: &MotorReference,
 ) -> Result<Output, StepError> {
-    let Some(body_rates_rad_s) = measured.body_rates_rad_s else { return Err(StepError::NoBodyRates) };
-    let Some(reference) = target.motors else { return Err(StepError::NoForces) };
-    if measured.state.normalized().is_some()
-        && let Some((forces_n, limited)) = law.step(memory, measured.state, body_rates_rad_s, reference)
+    if state.normalized().is_some()
+        && let Some((forces_n, limited)) = law.step(memory, state, body_rates_rad_s, reference)
     {
         return Ok(Output::Forces(MotorStep { forces_n, limited }));
     }
-    Err(refuse(measured))
+    Err(refuse(Measured::new(state).with_body_rates(body_rates_rad_s)))
 }
 
 #[inline(never)]

@@ -4,6 +4,8 @@ use crate::cascade::Cascade;
 use crate::law::{ActuatorAware, AlongTrajectory, Equilibrium, FlatOutput, IntegralAction};
 
 /// Any law.
+// With a tag of its own, where one in a gap between fields would take five instructions of every step to be read.
+#[repr(u8)]
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum Law<'a> {

@@ -1,7 +1,8 @@
 //! A gain that is the same all the time, of any law: what every product keeps, scales, shows, and flies.
 
 use crate::clock::Rate;
-use crate::control::{ControllerError, Law, Settings};
+use crate::control::{Controller, ControllerError, Law, Measured, Memory, Output, Settings, Target};
+use crate::error::StepError;
 use crate::law::{
     ActuatorAware, ActuatorAwareGain, Equilibrium, EquilibriumGain, FlatOutput, FlatOutputGain, IntegralAction,
     IntegralGain,
@@ -9,6 +10,8 @@ use crate::law::{
 use crate::mixer::Parts;
 
 /// A gain with the law that it is for.
+// With a tag of its own, as [`Law`] has one.
+#[repr(u8)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the larger one on")]
 #[non_exhaustive]
@@ -82,6 +85,40 @@ impl ConstantGain {
                 Law::ActuatorAware(ActuatorAware::new(gain, actuation.ok_or(ControllerError::NoActuation)?))
             }
         })
+    }
+
+    /// A step of its controller, for who makes it anew for each: within the limits of the settings. The law of each arm is
+    /// known to the compiler, so that it costs no more than a step of a controller that is kept.
+    ///
+    /// # Errors
+    /// As [`Controller::step`].
+    #[inline(always)]
+    pub fn step(
+        &self,
+        rate: Rate,
+        settings: &Settings<'_>,
+        memory: &mut Memory,
+        measured: Measured<'_>,
+        target: Target<'_>,
+    ) -> Result<Output, StepError> {
+        let Settings { limits, feed_forward, error_form, actuation, .. } = *settings;
+        match self {
+            Self::Equilibrium(gain) => {
+                let law = Equilibrium { gain, error_form, feed_forward };
+                Controller::new(law, limits).step(memory, measured, target)
+            }
+            Self::FlatOutput(gain) => {
+                Controller::new(FlatOutput { gain, feed_forward }, limits).step(memory, measured, target)
+            }
+            Self::Integral(gain) => {
+                let law = IntegralAction::new(gain, rate, feed_forward);
+                Controller::new(law, limits).step(memory, measured, target)
+            }
+            Self::ActuatorAware(gain) => {
+                let law = ActuatorAware::new(gain, actuation.ok_or(StepError::NoActuation)?);
+                Controller::new(law, limits).step(memory, measured, target)
+            }
+        }
     }
 
     /// Whether its law gives motor forces.

@@ -1,7 +1,7 @@
 //! One step of one table's controller: sample or reference, and state in; the output, into the outcome.
 
 use quatrack::{
-    FifthOrderSample, Handover, Heading, Measured, Memory, MotorReference, Output as LawOutput, Reference,
+    FifthOrderSample, Handover, Heading, Measured, Memory, MotorReference, Output as LawOutput, Quaternion, Reference,
     ReferenceError, RigidState, StepError, Target,
 };
 
@@ -64,7 +64,8 @@ impl LawStep<'_> {
         // What is logged is the new law's.
         let from = |memory: &mut Memory| self.output_before(before, memory);
         let output = handover.step_with(memory, Some(&table.actuation), self.measured(), to, from)?;
-        self.put(&output, outcome)
+        let target = outcome.target;
+        self.put(&output, target, outcome)
     }
 
     fn output_before(&self, table: &Table, memory: &mut Memory) -> Result<LawOutput, Unflown> {
@@ -76,15 +77,14 @@ impl LawStep<'_> {
     /// in one step is then that of one.
     #[inline(never)]
     fn output(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<LawOutput, Unflown> {
-        let controller = table.controller(self.settings.limits, self.settings.feed_forward)?;
         if table.gain.gives_forces() {
             let reference = &MotorReference::from_flat_at(self.sample, self.heading, table.actuation.airframe())?;
             outcome.target = reference.state().attitude;
-            Ok(controller.step(memory, self.measured(), Target::with_forces(reference))?)
+            Ok(self.controlled(table, memory, Target::with_forces(reference))?)
         } else {
             let reference = &Reference::from_flat_at(&self.sample.flat, self.heading)?;
             outcome.target = reference.state().attitude;
-            Ok(controller.step(memory, self.measured(), Target::new(reference))?)
+            Ok(self.controlled(table, memory, Target::new(reference))?)
         }
     }
 
@@ -94,10 +94,10 @@ impl LawStep<'_> {
         let Ok(reference) = &MotorReference::from_flat_at(self.sample, self.heading, table.actuation.airframe()) else {
             return Err(Unflown::Motion);
         };
-        let controller = table.controller(self.settings.limits, self.settings.feed_forward)?;
-        let output = controller.step(memory, self.measured(), Target::with_forces(reference))?;
-        outcome.target = reference.state().attitude;
-        self.put(&output, outcome)
+        match &self.controlled(table, memory, Target::with_forces(reference)) {
+            Ok(output) => self.put(output, reference.state().attitude, outcome),
+            Err(_) => Err(Unflown::State),
+        }
     }
 
     /// Steps a law of commands on a reference that has to be made.
@@ -115,10 +115,18 @@ impl LawStep<'_> {
         memory: &mut Memory,
         outcome: &mut Outcome,
     ) -> Result<(), Unflown> {
-        let controller = table.controller(self.settings.limits, self.settings.feed_forward)?;
-        let output = controller.step(memory, self.measured(), Target::new(reference))?;
-        outcome.target = reference.state().attitude;
-        self.put(&output, outcome)
+        // Looked at where it lies, too.
+        match &self.controlled(table, memory, Target::new(reference)) {
+            Ok(output) => self.put(output, reference.state().attitude, outcome),
+            Err(_) => Err(Unflown::State),
+        }
+    }
+
+    /// A step of a table's controller.
+    #[inline(always)]
+    fn controlled(&self, table: &Table, memory: &mut Memory, target: Target<'_>) -> Result<LawOutput, StepError> {
+        let Settings { limits, feed_forward, .. } = *self.settings;
+        table.step((limits, feed_forward), memory, self.measured(), target)
     }
 
     #[inline(always)]
@@ -128,7 +136,8 @@ impl LawStep<'_> {
 
     /// An output as the firmware takes it: a command goes through the body-rate loop to its mixer.
     #[inline(always)]
-    fn put(&self, output: &LawOutput, outcome: &mut Outcome) -> Result<(), Unflown> {
+    fn put(&self, output: &LawOutput, target: Quaternion, outcome: &mut Outcome) -> Result<(), Unflown> {
+        outcome.target = target;
         outcome.limited = output.limited();
         outcome.output = match output {
             LawOutput::Forces(step) => Output::Forces(step.forces_n),

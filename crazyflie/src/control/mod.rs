@@ -406,10 +406,10 @@ impl Controller {
                 // The firmware's mixer has carried its commands to the motors: what they have by now nobody has kept.
                 self.memory.assume_hovering(self.craft.airframe());
             }
-            let Settings { limits, feed_forward, .. } = self.settings;
-            let laws = (self.before.controller(limits, feed_forward), table.controller(limits, feed_forward));
-            if let (Ok(old), Ok(new)) = laws {
-                self.handover = Handover::begin(FADE_STEPS, old.law(), new.law(), &mut self.memory);
+            let feed_forward = self.settings.feed_forward;
+            let (old, new) = (self.before.law(feed_forward), table.law(feed_forward));
+            if let (Ok(old), Ok(new)) = (old, new) {
+                self.handover = Handover::begin(FADE_STEPS, &old, &new, &mut self.memory);
             }
             self.is_handing_over = !self.handover.is_over();
         }

@@ -2,6 +2,9 @@
 //! the Crazyflie controller as they are on board.
 //!
 //! ```text
+//! scenario             one file that every command flies: a craft, its air, a course and a law
+//!   rivals             Mellinger's and Lee's laws and the cascaded PID
+//!     control_law      the interface by which a law flies
 //! crazyflie            the Crazyflie's firmware around our controller
 //! reproduction         Table I, and past it
 //!   flight             plants under laws in f64 and under the f32 core, metrics
@@ -13,10 +16,13 @@
 //!
 //! Below it are `quatrack_plan` and `quatrack_design`; conventions are those of the latter.
 
+pub mod control_law;
 pub mod crazyflie;
 pub mod flight;
 pub mod gains;
 pub mod integrator;
 pub mod plant;
 pub mod reproduction;
+pub mod rivals;
+pub mod scenario;
 pub mod vehicles;

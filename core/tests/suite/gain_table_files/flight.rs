@@ -96,7 +96,7 @@ fn equilibrium_gains() -> impl Strategy<Value = Rows> {
         .prop_map(Rows::Equilibrium)
 }
 
-fn table_of(rows: &Rows) -> GainTable<'static> {
+fn written(rows: &Rows) -> GainTable<'static> {
     GainTable::new(head("any"), rows).unwrap()
 }
 
@@ -112,7 +112,7 @@ proptest! {
         old in equilibrium_gains(), new in equilibrium_gains(), index in 0..CASES, forward in any::<bool>()
     ) {
         let feed_forward = if forward { FeedForward::With } else { FeedForward::Without };
-        let gains = [table_of(&old), table_of(&new)];
+        let gains = [written(&old), written(&new)];
         let commands = |reference: &Reference| gains.each_ref().map(|table| {
             let controller = controller(table, feed_forward, ErrorForm::HeadingFrame);
             step(&controller, reference.state(), reference).unwrap().command

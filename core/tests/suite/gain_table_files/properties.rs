@@ -10,9 +10,9 @@ use super::fixture::{bytes_of, sealed, table, tables};
 fn holds_for_a_table(bytes: &[u8]) -> Result<bool, TestCaseError> {
     let Ok(table) = GainTable::from_bytes(bytes) else { return Ok(false) };
     prop_assert_eq!(&bytes_of(&table)[..], bytes, "one table has one encoding");
-    let is_sound = |entry: &f32| entry.is_finite() && entry.abs() <= ENTRY_MAX;
-    let entries_are_sound = table.rows().is_none_or(|rows| rows.entries().iter().all(is_sound));
-    prop_assert!(entries_are_sound);
+    let is_in_proportion = |entry: &f32| entry.is_finite() && entry.abs() <= ENTRY_MAX;
+    let sound = table.rows().is_none_or(|rows| rows.entries().iter().all(is_in_proportion));
+    prop_assert!(sound);
     let (head, certificate) = (table.head(), &table.head().certificate);
     prop_assert!(head.design_hash != Hash::NONE && certificate.hash != Hash::NONE);
     prop_assert!(certificate.all_channels.gain_factor > 1.0 && certificate.delay_max_s > 0.0);

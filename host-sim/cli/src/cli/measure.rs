@@ -13,13 +13,13 @@ use super::{Failure, output};
 ///
 /// Every state is counted as it was flown and at its worst: errors in the heading frame of a turning reference, with and
 /// without feed-forward, nothing limited and everything, either sign of the quaternion; and with a gain without a zero.
-/// Every command is compared with the host's.
+/// Every command is compared with the host's. The estimator is counted by an image of its own, prediction and update.
 ///
-/// Builds its four images inside a checkout. An instruction is not a cycle: the counts compare programs, not clocks.
+/// Builds its five images inside a checkout. An instruction is not a cycle: the counts compare programs, not clocks.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Folder with the four images (quatrack-measure, quatrack-control-path, quatrack-motor-path,
-    /// quatrack-firmware-pipes), or one of them in it, instead of building them.
+    /// Folder with the five images (quatrack-measure, quatrack-control-path, quatrack-motor-path,
+    /// quatrack-measure-estimator, quatrack-firmware-pipes), or one of them in it, instead of building them.
     #[arg(long, value_name = "FILE")]
     image: Option<PathBuf>,
     /// Write the figures as JSON.
@@ -42,10 +42,10 @@ fn counted(args: &Args) -> Result<Report, PilError> {
     let images = match &args.image {
         Some(path) => {
             let folder = if path.is_dir() { path.as_path() } else { path.parent().unwrap_or(path) };
-            let [counting, control_path, motor_path, flying] =
-                [Image::Measure, Image::ControlPath, Image::MotorPath, Image::Pipes]
+            let [counting, control_path, motor_path, estimator, flying] =
+                [Image::Measure, Image::ControlPath, Image::MotorPath, Image::MeasureEstimator, Image::Pipes]
                     .map(|image| folder.join(image.binary()));
-            Images { counting, control_path, motor_path, flying }
+            Images { counting, control_path, motor_path, estimator, flying }
         }
         None => {
             let checkout = image::checkout()?;
@@ -54,6 +54,7 @@ fn counted(args: &Args) -> Result<Report, PilError> {
                 control_path: build(Image::ControlPath)?,
                 motor_path: build(Image::MotorPath)?,
                 counting: build(Image::Measure)?,
+                estimator: build(Image::MeasureEstimator)?,
                 flying: build(Image::Pipes)?,
             }
         }

@@ -1,6 +1,7 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
 mod analyze;
+mod compare;
 mod crazyflie;
 mod export;
 mod fly;
@@ -50,6 +51,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Analyze(analyze::Args),
+    Compare(compare::Args),
     Crazyflie(crazyflie::Args),
     Export(export::Args),
     Fly(fly::Args),
@@ -71,6 +73,7 @@ pub(crate) fn main() -> ExitCode {
     };
     let outcome: Result<(), Failure> = match &arguments.command {
         Command::Analyze(args) => analyze::run(args),
+        Command::Compare(args) => compare::run(args),
         Command::Crazyflie(args) => crazyflie::run(args),
         Command::Export(args) => export::run(args),
         Command::Fly(args) => fly::run(args),

@@ -25,6 +25,8 @@ pub enum Image {
     Pipes,
     /// Counts instructions on recorded states.
     Measure,
+    /// Counts the estimator's instructions and stack.
+    MeasureEstimator,
     /// The control path alone, for its size.
     ControlPath,
     /// The same down to the motors.
@@ -38,6 +40,7 @@ impl Image {
             Self::Usart => "quatrack-firmware",
             Self::Pipes => "quatrack-firmware-pipes",
             Self::Measure => "quatrack-measure",
+            Self::MeasureEstimator => "quatrack-measure-estimator",
             Self::ControlPath => "quatrack-control-path",
             Self::MotorPath => "quatrack-motor-path",
         }
@@ -47,7 +50,7 @@ impl Image {
         match self {
             Self::Usart => &[],
             Self::Pipes => &["--features", "semihosting"],
-            Self::Measure => &["--no-default-features", "--features", "semihosting"],
+            Self::Measure | Self::MeasureEstimator => &["--no-default-features", "--features", "semihosting"],
             Self::ControlPath => &["--no-default-features"],
             Self::MotorPath => &["--no-default-features", "--features", "motors"],
         }

@@ -16,6 +16,7 @@ use serde::Serialize;
 
 use super::emulated::{self, Transport};
 use super::emulator::{Emulator, Folder};
+use super::estimator;
 use super::flights::{COURSES, HostCore, Plans, fly};
 use super::image;
 use super::interrupt::Interrupt;
@@ -31,7 +32,7 @@ use super::{PilError, bits};
 const LIMIT: Duration = Duration::from_secs(120);
 
 /// Instructions between the two loops with which the image checks its counter.
-const LOOP_INSTRUCTIONS: u32 = 2000;
+pub(super) const LOOP_INSTRUCTIONS: u32 = 2000;
 
 /// Counts over steps.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -88,6 +89,9 @@ pub struct Report {
     pub motor_reference_turning: Count,
     /// A whole tick on a trajectory that does not turn.
     pub tick: Count,
+    /// The estimator, counted by its own image.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub estimator: Option<estimator::Report>,
     /// Steps flown.
     pub steps: usize,
     /// Code and tables of the control path, without stored trajectories: all that its own image puts in flash, start-up
@@ -111,6 +115,8 @@ pub struct Images {
     pub control_path: PathBuf,
     /// The same down to the motors.
     pub motor_path: PathBuf,
+    /// Counts the estimator.
+    pub estimator: PathBuf,
     /// Flies, over pipes.
     pub flying: PathBuf,
 }
@@ -205,6 +211,7 @@ pub fn count(images: &Images, limit: Option<usize>) -> Result<Report, PilError> 
     let (words, _) = counts.as_chunks::<4>();
     let words: Vec<u32> = words.iter().copied().map(u32::from_le_bytes).collect();
     let mut report = report(&flights, &words)?;
+    report.estimator = Some(estimator::count(&images.estimator, &interrupt)?);
     let mut client = emulated::connect(&images.flying, Transport::Pipes, None, interrupt)?;
     report.stack_bytes = lock_step::fly_all(&mut client, Some(STACK_STEPS), &|| {})?.stack_bytes;
     report.flash_bytes = control_path.flash_bytes;
@@ -258,6 +265,7 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<Report, PilError> {
         motor_reference: motor_reference.count(),
         motor_reference_turning: motor_reference_turning.count(),
         tick: tick.count(),
+        estimator: None,
         steps: flights.iter().map(|flight| flight.steps.len()).sum(),
         flash_bytes: 0,
         flash_to_motors_bytes: 0,
@@ -314,8 +322,22 @@ impl fmt::Display for Report {
         row("reference to motors", &self.motor_reference)?;
         row("reference to motors, turning", &self.motor_reference_turning)?;
         row("whole tick", &self.tick)?;
+        if let Some(estimator) = &self.estimator {
+            for (name, count) in &estimator.prediction {
+                row(&format!("prediction, {name}"), count)?;
+            }
+            for (name, count) in &estimator.update {
+                row(&format!("position, {name}"), count)?;
+            }
+        }
         writeln!(f, "\ncontrol path   flash {:>6} bytes, without stored trajectories", self.flash_bytes)?;
         writeln!(f, "to the motors  flash {:>6} bytes, the actuator-aware law included", self.flash_to_motors_bytes)?;
+        if let Some(estimator::Report { prediction_stack_bytes, update_stack_bytes, .. }) = &self.estimator {
+            writeln!(
+                f,
+                "estimator      stack {prediction_stack_bytes:>6} bytes, {update_stack_bytes} bytes of an update"
+            )?;
+        }
         let Self { image_flash_bytes, ram_bytes, stack_bytes, .. } = self;
         writeln!(
             f,

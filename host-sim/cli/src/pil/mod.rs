@@ -5,6 +5,7 @@
 //!   motors         the same down to the motors, on a rigid craft
 //! measure          instructions a step, flash, RAM
 //! crazyflie        the same of the Crazyflie controller's object
+//! estimator        the same of the estimator, and its stack
 //!   worst          what makes a step cost most, on the host
 //!   flights        the paper's flights, flown by the core on the host
 //!     bits         what is compared, and its hash
@@ -20,6 +21,7 @@ pub mod client;
 pub mod crazyflie;
 pub mod emulated;
 pub mod emulator;
+pub mod estimator;
 pub mod flights;
 pub mod image;
 pub mod interrupt;

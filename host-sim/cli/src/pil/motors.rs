@@ -184,7 +184,7 @@ pub(super) fn fly_all(
 pub(super) const FLIGHTS: u32 = (COURSES.len() * MotorFlight::ALL.len()) as u32;
 
 fn prepare(client: &mut Client, course: Course, flight: MotorFlight, vehicle: &Vehicle) -> Result<(), PilError> {
-    let limits = vehicles::limits(&vehicle).map_err(|error| PilError::Answer(error.to_string()))?;
+    let limits = vehicles::limits(vehicle).map_err(|error| PilError::Answer(error.to_string()))?;
     let [thrust_min_m_s2, thrust_max_m_s2] = vehicle.thrust_limits_m_s2().map(|value| value as f32);
     let body_rates_max_rad_s = vehicle.body_rates_max_rad_s().map(|value| value as f32).into();
     let setting = LimitsSetting { thrust_min_m_s2, thrust_max_m_s2, body_rates_max_rad_s };

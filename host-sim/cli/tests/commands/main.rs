@@ -1,6 +1,7 @@
 //! The command as it is typed, and the figures that it draws.
 
 mod cli;
+mod compare;
 mod figures;
 mod figures_png;
 mod gains;

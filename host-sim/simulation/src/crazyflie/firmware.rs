@@ -92,15 +92,29 @@ pub struct Firmware {
 impl Firmware {
     /// Switches the craft on; waits until nobody else flies.
     pub fn start(vehicle: &Vehicle, tune: &Tune, sensors: Sensors) -> Self {
-        Self::recording(vehicle, tune, sensors, None)
+        Self::recording(vehicle, &platform(vehicle), tune, sensors, None).0
+    }
+
+    /// The same, told another mass than the vehicle's, kg; nothing where the controller has no table for that.
+    pub fn start_told(vehicle: &Vehicle, mass_kg: f64, tune: &Tune, sensors: Sensors) -> Option<Self> {
+        let platform = Platform { mass_kg: mass_kg as f32, ..platform(vehicle) };
+        let (firmware, has_tables) = Self::recording(vehicle, &platform, tune, sensors, None);
+        has_tables.then_some(firmware)
     }
 
     /// The same, with every call recorded.
     pub fn start_recorded(vehicle: &Vehicle, tune: &Tune, sensors: Sensors) -> Self {
-        Self::recording(vehicle, tune, sensors, Some(Recording::default()))
+        Self::recording(vehicle, &platform(vehicle), tune, sensors, Some(Recording::default())).0
     }
 
-    fn recording(vehicle: &Vehicle, tune: &Tune, sensors: Sensors, recording: Option<Recording>) -> Self {
+    /// With whether there are tables for the platform.
+    fn recording(
+        vehicle: &Vehicle,
+        platform: &Platform,
+        tune: &Tune,
+        sensors: Sensors,
+        recording: Option<Recording>,
+    ) -> (Self, bool) {
         let alone = CONTROLLER.lock().unwrap_or_else(PoisonError::into_inner);
         let motors = vehicle.motors();
         let parameters = &ffi::quatrack.parameters;
@@ -108,7 +122,7 @@ impl Firmware {
         parameters.motor_lag_s.set(tune.motor_lag_s as f32);
         parameters.position_scale.set(1.0);
         parameters.yaw_scale.set(1.0);
-        ffi::quatrackPlatform(&platform(vehicle));
+        let has_tables = ffi::quatrackPlatform(platform);
         ffi::quatrackService();
         let mut firmware = Self {
             control: abi::Control::default(),
@@ -131,7 +145,7 @@ impl Firmware {
         // Selected now: in flight, unless a setpoint says that the motors are off.
         ffi::controllerOutOfTreeInit();
         firmware.before.is_selected = true;
-        firmware
+        (firmware, has_tables)
     }
 
     /// Puts a course's motion at a time into the setpoint, as somebody would send it.

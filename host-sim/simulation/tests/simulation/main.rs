@@ -3,6 +3,7 @@
 mod actuator_aware_certificate;
 mod actuator_aware_design;
 mod actuator_aware_gains;
+mod compare;
 mod gains_along;
 mod gains_design;
 mod gains_export;

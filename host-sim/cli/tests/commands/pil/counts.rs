@@ -15,6 +15,7 @@ fn report() -> Report {
         counting: build(Image::Measure),
         control_path: build(Image::ControlPath),
         motor_path: build(Image::MotorPath),
+        estimator: build(Image::MeasureEstimator),
         flying: pipes_image(),
     };
     count(&images, Some(STEPS)).unwrap()
@@ -52,6 +53,13 @@ fn every_part_stays_within_its_bound_when_everything_is_turned_fed_forward_and_l
     assert!(report.motor_reference.max <= 500, "{:?}", report.motor_reference);
     // Of degree 7, with a heading in every quarter, where a piece begins.
     assert!(report.motor_reference_turning.max <= 700, "{:?}", report.motor_reference_turning);
+    // The estimator: 9 by 9 times 9 by 9 twice would be 1458 products, each with an addition and its loads; every bit is
+    // compared on the way.
+    let estimator = report.estimator.unwrap();
+    for (prediction, update) in estimator.prediction.values().zip(estimator.update.values()) {
+        assert!(prediction.max <= 3_500 && update.max <= 3_200, "{prediction:?}, {update:?}");
+    }
+    assert!(estimator.prediction_stack_bytes <= 1_500 && estimator.update_stack_bytes <= 1_500, "{estimator:?}");
 }
 
 #[test]

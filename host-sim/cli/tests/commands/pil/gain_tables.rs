@@ -2,8 +2,8 @@
 
 use quatrack::gains::paper;
 use quatrack::gains::table::{
-    AcceptError, Certificate, GainTable, Hash, LoadError, Margins, Name, Rows, TABLE_BYTES_MAX, TableError, TableHead,
-    Vehicle,
+    AcceptError, Certificate, GainTable, Hash, LoadError, Margins, Name, Rows, ScheduleRows, TABLE_BYTES_MAX,
+    TableError, TableHead, Vehicle,
 };
 use quatrack::link::{
     BlobError, BlobKind, FromBoard, LawChoice, LimitsSetting, Parameter, ParameterId, Refusal, Table, ToBoard,
@@ -280,12 +280,26 @@ fn bad_tables_are_refused_each_for_its_reason_and_the_flight_goes_on() {
 const LQI: &[u8] = include_bytes!("../../../../../gains/generated/lqi-e.bin");
 const ALONG: &[u8] = include_bytes!("../../../../../gains/generated/along-aggressive.bin");
 
+/// The same gains for control steps at 500 Hz: five times as many of them between two knots.
+fn along_at_500_hz() -> Vec<u8> {
+    let table = GainTable::from_bytes(ALONG).unwrap();
+    let schedule = table.schedule().unwrap();
+    let gains: Vec<_> = (0..).map_while(|knot| schedule.gain(knot)).collect();
+    let rows = ScheduleRows {
+        trajectory: schedule.trajectory(),
+        steps_per_knot: 5 * schedule.steps_per_knot(),
+        gains: &gains,
+    };
+    let head = TableHead { rate: rate(), ..*table.head() };
+    bytes(&GainTable::along(&mut [0; TABLE_BYTES_MAX], &head, &rows).unwrap())
+}
+
 #[test]
 fn tables_that_remember_or_follow_a_clock_fly_bit_for_bit() {
     if !has_emulator() {
         return;
     }
-    for blob in [LQI, ALONG] {
+    for blob in [LQI, &along_at_500_hz()] {
         let table = GainTable::from_bytes(blob).unwrap();
         let (built_in, new) = (controller(choice(Table::LqrE).built_in().unwrap()), loaded(&table));
         let trajectory = Trajectory::new(stored::pieces(Course::Aggressive)).unwrap().checksum();

@@ -33,7 +33,7 @@ fn ready() -> (Client, Controller<'static>) {
 }
 
 /// The command of a law that remembers nothing.
-fn command_of(controller: &Controller<'_>, state: &State, reference: &Reference) -> Step {
+fn expected(controller: &Controller<'_>, state: &State, reference: &Reference) -> Step {
     let output = controller.step(&mut Memory::at_rest(), state.into(), reference.into()).unwrap();
     *output.command().expect("it gives a command")
 }
@@ -89,7 +89,7 @@ fn an_uploaded_trajectory_flies_bit_for_bit() {
         let reference = player.reference(tick).unwrap();
         let state = near(&reference);
         let found = client.step(tick, &state).unwrap().result;
-        assert_eq!(found, Ok(command_of(&controller, &state, &reference)), "step {step}");
+        assert_eq!(found, Ok(expected(&controller, &state, &reference)), "step {step}");
     }
 }
 
@@ -117,13 +117,13 @@ fn a_reference_beside_each_state_flies_bit_for_bit() {
             FromBoard::Command(command) => command.result,
             other => panic!("a state is answered by {other:?}"),
         };
-        (found, command_of(&controller, &state, &reference))
+        (found, expected(&controller, &state, &reference))
     };
     // The first one is not flown: there was no reference to arm with.
     assert!(step_with(&mut client, 0).0.is_err());
     client.request(&ToBoard::Arm).unwrap();
     for step in 1..500 {
-        let (found, expected) = step_with(&mut client, step);
-        assert_eq!(found, Ok(expected), "step {step}");
+        let (found, wanted) = step_with(&mut client, step);
+        assert_eq!(found, Ok(wanted), "step {step}");
     }
 }

@@ -1,0 +1,235 @@
+//! A scenario whose every value has been looked at: a file in, craft, conditions and what a law is told out.
+
+use std::path::Path;
+
+use nalgebra::Vector3;
+use quatrack_design::vehicle::Vehicle;
+
+use super::checks::Checks;
+use super::course::{HOVER_S, RAMP_S};
+use super::error::ScenarioError;
+use super::file::{Air, ScenarioFile};
+use super::laws::ToldFigures;
+use super::sensors::SensorNoise;
+use super::whole::{CourseChoice, EIGHT_MEASURED_S, FilterFigures, HOVER_MEASURED_S, STEP_MEASURED_S, Scenario};
+use crate::plant::{self, Dryden, Environment, RigidState, Truth, Wind};
+use crate::vehicles;
+
+impl Scenario {
+    /// From a file.
+    ///
+    /// # Errors
+    /// [`ScenarioError`].
+    pub fn from_file(path: &Path) -> Result<Self, ScenarioError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::checked(&ScenarioFile::read(path)?, &path.display().to_string(), folder)
+    }
+
+    /// From what a file says; relative paths in it begin at a folder.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Value`] and [`ScenarioError::Named`] with `origin` for the file's name.
+    pub fn checked(file: &ScenarioFile, origin: &str, folder: &Path) -> Result<Self, ScenarioError> {
+        let checks = Checks { origin };
+        let vehicle = vehicle(&file.vehicle, origin, folder)?;
+        let (course, default_s) = course(file, &checks, folder)?;
+        let duration_s = match (file.duration_s, default_s) {
+            (None, default) => default,
+            (Some(value), _) => Some(checks.one("duration_s", Some(value), 0.0, [0.1, 600.0], "in s")?),
+        };
+        let errors = &file.errors;
+        let bias = |key, value, most: f64, unit| checks.each(key, value, [-most, most], unit).map(Vector3::from);
+        let scenario = Self {
+            course,
+            duration_s,
+            law: file.law.unwrap_or_default(),
+            setpoints: file.setpoints.unwrap_or_default(),
+            estimator: file.estimator.unwrap_or_default(),
+            seed: file.seed.unwrap_or(1),
+            environment: environment(file, &checks, &vehicle)?,
+            truth: truth(file, &checks, &vehicle, duration_s)?,
+            gyro_bias_rad_s: bias("errors.gyro_bias_rad_s", errors.gyro_bias_rad_s, 1.0, "in rad/s")?,
+            accelerometer_bias_m_s2: bias(
+                "errors.accelerometer_bias_m_s2",
+                errors.accelerometer_bias_m_s2,
+                5.0,
+                "in m/s^2",
+            )?,
+            told: told(file, &checks, &vehicle)?,
+            noise: noise(file, &checks)?,
+            filter: filter(file, &checks)?,
+            vehicle,
+        };
+        // The plant looks at its own figures.
+        scenario
+            .plant(&RigidState::at_rest(Vector3::zeros(), 0.0))
+            .map_err(|error| ScenarioError::Plant { origin: origin.to_owned(), error })?;
+        Ok(scenario)
+    }
+}
+
+fn vehicle(name: &str, origin: &str, folder: &Path) -> Result<Vehicle, ScenarioError> {
+    let path = Path::new(name);
+    let found = if path.extension().is_some_and(|end| end == "toml") {
+        vehicles::from_file(&folder.join(path))
+    } else {
+        vehicles::by_name(name)
+    };
+    found.map_err(|error| ScenarioError::Named { origin: origin.to_owned(), key: "vehicle", reason: error.to_string() })
+}
+
+fn course(
+    file: &ScenarioFile,
+    checks: &Checks<'_>,
+    folder: &Path,
+) -> Result<(CourseChoice, Option<f64>), ScenarioError> {
+    let name = file.course.as_deref().unwrap_or("eight");
+    let foreign = |key, value: Option<f64>, of: &str| match value {
+        Some(value) if name != of => {
+            Err(checks.refuse(key, &value, format!("left out: it belongs to course = \"{of}\"")))
+        }
+        _ => Ok(()),
+    };
+    foreign("speed_m_s", file.speed_m_s, "eight")?;
+    foreign("step_m", file.step_m, "step")?;
+    Ok(match name {
+        "eight" => {
+            let speed = checks.one("speed_m_s", file.speed_m_s, 2.1, [0.01, 10.0], "the highest speed in m/s")?;
+            (CourseChoice::Eight(speed), Some(EIGHT_MEASURED_S))
+        }
+        "hover" => (CourseChoice::Hover, Some(HOVER_MEASURED_S)),
+        "step" => {
+            let step = checks.one("step_m", file.step_m, 1.0, [-10.0, 10.0], "in m")?;
+            (CourseChoice::Step(step), Some(STEP_MEASURED_S))
+        }
+        "mild" | "aggressive" => (CourseChoice::Trajectory(name.to_owned()), None),
+        path => (CourseChoice::Trajectory(folder.join(path).display().to_string()), None),
+    })
+}
+
+/// Height at which turbulence is what it is in a scenario, m.
+const TURBULENCE_HEIGHT_M: f64 = 1.0;
+/// Of the vertical component over the horizontal ones there: MIL-F-8785C, 3.7.3.4, at its lowest height of 10 ft,
+/// `(0.177 + 0.000823 h)^0.4`.
+const VERTICAL_SHARE: f64 = 0.51;
+
+fn environment(file: &ScenarioFile, checks: &Checks<'_>, vehicle: &Vehicle) -> Result<Environment, ScenarioError> {
+    let own = match &file.air {
+        None => return Ok(Environment::VACUUM),
+        Some(Air::Own(own)) => own,
+        Some(Air::Vehicle) => {
+            let air = plant::Air::of(vehicle).ok_or_else(|| ScenarioError::Named {
+                origin: checks.origin.to_owned(),
+                key: "air",
+                reason: "\"vehicle\": the vehicle's file says nothing of its air; give [air] with figures".to_owned(),
+            })?;
+            return Ok(Environment { air, ..Environment::VACUUM });
+        }
+    };
+    let mean_m_s = Vector3::from(own.wind_m_s.unwrap_or([0.0; 3]));
+    let turbulence = own.gust_rms_m_s.filter(|rms| *rms != 0.0).map(|rms| {
+        let rms_m_s = Vector3::new(rms, rms, VERTICAL_SHARE * rms);
+        Dryden::at_low_altitude(rms_m_s, TURBULENCE_HEIGHT_M, mean_m_s.norm())
+    });
+    let air = plant::Air {
+        drag_per_s: own.drag_per_s.unwrap_or([0.0; 3]),
+        moment_n_m_per_m_s: own.moment_n_m_per_m_s.unwrap_or([0.0; 2]),
+        ..plant::Air::VACUUM
+    };
+    Ok(Environment { air, wind: Wind { mean_m_s, gust: None, turbulence }, ..Environment::VACUUM })
+}
+
+/// Bounds of a motor's lag, ms.
+const LAG_MS: [f64; 2] = [1.0, 1000.0];
+
+fn truth(
+    file: &ScenarioFile,
+    checks: &Checks<'_>,
+    vehicle: &Vehicle,
+    measured_s: Option<f64>,
+) -> Result<Truth, ScenarioError> {
+    let errors = &file.errors;
+    let own_ms = 1e3 * vehicle.motors().lag_s;
+    let (rise, fall) = match (errors.lag_ms, errors.lag_rise_ms, errors.lag_fall_ms) {
+        (lag, None, None) => (lag.unwrap_or(own_ms), lag.unwrap_or(own_ms)),
+        (None, Some(rise), Some(fall)) => (rise, fall),
+        (Some(lag), _, _) => {
+            let must = "left out beside lag_rise_ms and lag_fall_ms, or these two left out".to_owned();
+            return Err(checks.refuse("errors.lag_ms", &lag, must));
+        }
+        (None, rise, fall) => {
+            let (key, value) = if rise.is_some() { ("errors.lag_rise_ms", rise) } else { ("errors.lag_fall_ms", fall) };
+            let must = "given with lag_rise_ms and lag_fall_ms both; lag_ms is for one that is the same".to_owned();
+            return Err(checks.refuse(key, &value.unwrap_or_default(), must));
+        }
+    };
+    let split = errors.lag_rise_ms.is_some();
+    let [rise_key, fall_key] =
+        if split { ["errors.lag_rise_ms", "errors.lag_fall_ms"] } else { ["errors.lag_ms", "errors.lag_ms"] };
+    let factor = |key, value, default, bounds| checks.one(key, value, default, bounds, "true over the vehicle's");
+    let mass_factor = factor("errors.mass_factor", errors.mass_factor, 1.0, [0.5, 2.0])?;
+    let inertia_factor = factor("errors.inertia_factor", errors.inertia_factor, 1.0, [0.2, 5.0])?;
+    let thrust_factor = factor("errors.thrust_factor", errors.thrust_factor, 1.0, [0.5, 1.5])?;
+    let end = factor("errors.thrust_factor_end", errors.thrust_factor_end, thrust_factor, [0.5, 1.5])?;
+    let whole_s = HOVER_S + RAMP_S + measured_s.unwrap_or(EIGHT_MEASURED_S);
+    let bias = errors.torque_bias_n_m.unwrap_or([0.0; 2]);
+    let offset = errors.centre_of_mass_m.unwrap_or([0.0; 2]);
+    Ok(Truth {
+        mass_kg: mass_factor * vehicle.mass_kg(),
+        inertia_kg_m2: inertia_factor * vehicle.inertia_kg_m2(),
+        rise_lag_s: 1e-3 * checks.one(rise_key, Some(rise), 0.0, LAG_MS, "in ms")?,
+        fall_lag_s: 1e-3 * checks.one(fall_key, Some(fall), 0.0, LAG_MS, "in ms")?,
+        delay_s: 1e-3 * errors.delay_ms.unwrap_or(0.0),
+        thrust_factor,
+        thrust_factor_per_s: (end - thrust_factor) / whole_s,
+        torque_bias_n_m: Vector3::new(bias[0], bias[1], 0.0),
+        centre_of_mass_m: Vector3::new(offset[0], offset[1], 0.0),
+        ..Truth::as_designed(vehicle)
+    })
+}
+
+fn told(file: &ScenarioFile, checks: &Checks<'_>, vehicle: &Vehicle) -> Result<ToldFigures, ScenarioError> {
+    let (told, own_kg) = (&file.told, vehicle.mass_kg());
+    let bounds = [0.5 * own_kg, 2.0 * own_kg];
+    let mass_kg = checks.one("told.mass_kg", told.mass_kg, own_kg, bounds, "in kg, half to twice the vehicle's")?;
+    let lag_s = |ms: f64| checks.one("told.lag_ms", Some(ms), 0.0, LAG_MS, "in ms").map(|ms| 1e-3 * ms);
+    let drag = |value| checks.one("told.drag_per_s", Some(value), 0.0, [0.0, 3.0], "drag over mass in 1/s");
+    let moment = |value| checks.each("told.moment_n_m_per_m_s", Some(value), [0.0, 0.01], "in N m a m/s");
+    Ok(ToldFigures {
+        mass_kg,
+        lag_s: told.lag_ms.map(lag_s).transpose()?,
+        drag_per_s: told.drag_per_s.map(drag).transpose()?,
+        moment_n_m_per_m_s: told.moment_n_m_per_m_s.map(moment).transpose()?,
+    })
+}
+
+fn noise(file: &ScenarioFile, checks: &Checks<'_>) -> Result<SensorNoise, ScenarioError> {
+    let noise = &file.noise;
+    let deviation = |key, value, most| checks.one(key, value, 0.0, [0.0, most], "the deviation of a sample");
+    Ok(SensorNoise {
+        gyro_rad_s: deviation("noise.gyro_rad_s", noise.gyro_rad_s, 5.0)?,
+        accelerometer_m_s2: deviation("noise.accelerometer_m_s2", noise.accelerometer_m_s2, 50.0)?,
+        position_m: deviation("noise.position_m", noise.position_m, 1.0)?,
+        velocity_m_s: deviation("noise.velocity_m_s", noise.velocity_m_s, 5.0)?,
+        attitude_rad: deviation("noise.attitude_rad", noise.attitude_rad, 0.5)?,
+    })
+}
+
+fn filter(file: &ScenarioFile, checks: &Checks<'_>) -> Result<FilterFigures, ScenarioError> {
+    let filter = &file.filter;
+    let rate = |key, value: Option<f64>| {
+        let hz = checks.one(key, value, 100.0, [1.0, 1000.0], "times a second")?;
+        // The flight has 1000 steps a second; a rate must be a whole number of them.
+        if (1000.0 / hz).fract() == 0.0 {
+            Ok(hz)
+        } else {
+            Err(checks.refuse(key, &hz, "a divisor of 1000 Hz".to_owned()))
+        }
+    };
+    Ok(FilterFigures {
+        prediction_hz: rate("filter.prediction_hz", filter.prediction_hz)?,
+        position_hz: rate("filter.position_hz", filter.position_hz)?,
+        drag_per_s: checks.one("filter.drag_per_s", filter.drag_per_s, 0.0, [0.0, 3.0], "drag over mass in 1/s")?,
+        latency_s: 1e-3 * checks.one("filter.latency_ms", filter.latency_ms, 0.0, [0.0, 200.0], "in ms")?,
+    })
+}

@@ -1,0 +1,102 @@
+//! The core's controller as a law: the paper's laws behind its body-rate loop, and the actuator-aware one, at 500 Hz for any
+//! vehicle.
+
+use nalgebra::{Vector3, Vector4};
+use quatrack::airframe::AirframeFigures;
+use quatrack::law::{ActuatorAwareGain, EquilibriumGain, FlatOutputGain};
+use quatrack::{
+    Actuation, ActuatorAware, Airframe, Controller, Equilibrium, FeedForward, FlatOutput, Limits, Memory,
+    MotorReference, State,
+};
+use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
+use quatrack_design::vehicle::Vehicle;
+
+use super::laws::ToldFigures;
+use crate::control_law::{ControlLaw, Estimate, Input};
+use crate::flight::motor_laws::{FlightError, default_lag_s};
+use crate::flight::motor_loop::{self, PERIOD_S, RATE};
+use crate::vehicles;
+
+/// A law with its gain.
+pub(super) enum Gain {
+    /// Designed for the vehicle.
+    ActuatorAware(Box<ActuatorAwareGain>),
+    /// The paper's.
+    Equilibrium(&'static EquilibriumGain),
+    /// Likewise.
+    FlatOutput(&'static FlatOutputGain),
+}
+
+/// A law of the core on a vehicle's motors, fed forward.
+pub(super) struct CoreLaw {
+    gain: Gain,
+    actuation: Actuation,
+    limits: Limits,
+    memory: Memory,
+}
+
+impl CoreLaw {
+    /// One of the paper's laws; behind motors of the lag that is told, or the vehicle's.
+    pub(super) fn paper(vehicle: &Vehicle, told: &ToldFigures, gain: Gain) -> Result<Self, FlightError> {
+        Self::new(vehicle, told, told.lag_s.unwrap_or(vehicle.motors().lag_s), gain)
+    }
+
+    /// The actuator-aware law by its standard weights, as the Crazyflie flies it: designed for the lag that is told, or for
+    /// that of the default table behind motors of the longest published lag.
+    pub(super) fn actuator_aware(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, FlightError> {
+        let [_, longest_s] = vehicle.motors().published_lag_s;
+        let lag_s = told.lag_s.unwrap_or(longest_s);
+        let design_lag_s = told.lag_s.unwrap_or_else(|| default_lag_s(vehicle));
+        let design = actuator_aware(vehicle, design_lag_s, &ActuatorAwareWeights::STANDARD, PERIOD_S)?;
+        let rows = std::array::from_fn(|i| std::array::from_fn(|j| design.gain[(i, j)] as f32));
+        Self::new(vehicle, told, lag_s, Gain::ActuatorAware(Box::new(ActuatorAwareGain::new(rows)?)))
+    }
+
+    fn new(vehicle: &Vehicle, told: &ToldFigures, lag_s: f64, gain: Gain) -> Result<Self, FlightError> {
+        let figures = *motor_loop::airframe(vehicle, lag_s)?.figures();
+        let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?.commanded_at(RATE);
+        Ok(Self {
+            gain,
+            actuation: Actuation::new(&airframe, RATE)?,
+            limits: vehicles::limits(vehicle)?,
+            memory: Memory::hovering(&airframe),
+        })
+    }
+}
+
+impl ControlLaw for CoreLaw {
+    fn rate_hz(&self) -> u32 {
+        RATE.hz()
+    }
+
+    fn step(&mut self, input: &Input) -> Result<Vector4<f64>, String> {
+        let feed_forward = FeedForward::With;
+        let controller = match &self.gain {
+            Gain::ActuatorAware(gain) => Controller::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE),
+            Gain::Equilibrium(gain) => {
+                Controller::new(Equilibrium { feed_forward, ..Equilibrium::new(gain) }, self.limits)
+            }
+            Gain::FlatOutput(gain) => Controller::new(FlatOutput { gain, feed_forward }, self.limits),
+        };
+        let point = motor_loop::sample(&input.setpoint.carried_to(input.time_s));
+        let reference = MotorReference::from_flat(&point, self.actuation.airframe()).map_err(|e| e.to_string())?;
+        let state = state(&input.estimate);
+        let step = controller
+            .with_actuation(&self.actuation)
+            .step_to_motors(&mut self.memory, (&state).into(), (&reference).into())
+            .map_err(|error| error.to_string())?;
+        Ok(Vector4::from(step.forces_n.map(f64::from)))
+    }
+}
+
+fn state(estimate: &Estimate) -> quatrack::RigidState {
+    let f32s = |v: &Vector3<f64>| v.map(|value| value as f32);
+    let q = estimate.attitude.quaternion();
+    let [w, x, y, z] = [q.w, q.i, q.j, q.k].map(|value| value as f32);
+    let state = State {
+        position_m: f32s(&estimate.position_m),
+        attitude: quatrack::Quaternion::new(w, x, y, z),
+        velocity_m_s: f32s(&estimate.velocity_m_s),
+    };
+    quatrack::RigidState { state, body_rates_rad_s: f32s(&estimate.body_rates_rad_s) }
+}

@@ -1,0 +1,81 @@
+//! Why there is no scenario, in one line that names file, key, value, range and remedy.
+
+use std::path::PathBuf;
+
+use quatrack::ReferenceError;
+use quatrack::airframe::AirframeError;
+use quatrack::estimator::EstimatorError;
+
+use crate::plant::PlantError;
+
+/// Why there is no scenario.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ScenarioError {
+    /// The file cannot be read.
+    #[error("{}: cannot be read ({reason})", path.display())]
+    Unreadable {
+        /// Which file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
+    #[error("{origin}, line {line}, `{text}`: {reason}")]
+    Syntax {
+        /// Whose it is.
+        origin: String,
+        /// Where, from 1.
+        line: usize,
+        /// What is written there.
+        text: String,
+        /// What the parser says, in one line.
+        reason: String,
+    },
+    /// A value without sense.
+    #[error("{origin}: {key} = {value}: must be {must}")]
+    Value {
+        /// Whose it is.
+        origin: String,
+        /// The key with its table.
+        key: &'static str,
+        /// The value as read.
+        value: String,
+        /// What it must be.
+        must: String,
+    },
+    /// A vehicle or a trajectory that cannot be had.
+    #[error("{origin}: {key}: {reason}")]
+    Named {
+        /// Whose it is.
+        origin: String,
+        /// The key.
+        key: &'static str,
+        /// Why not, with the remedy.
+        reason: String,
+    },
+    /// A figure of the plant that is out of range.
+    #[error("{origin}: {error}")]
+    Plant {
+        /// Whose it is.
+        origin: String,
+        /// Which, and the remedy.
+        error: PlantError,
+    },
+}
+
+/// Why a flight does not start.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StartError {
+    /// The craft's figures.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+    /// The core takes no such vehicle.
+    #[error("the core refuses the vehicle: {0}")]
+    Airframe(#[from] AirframeError),
+    /// The filter's figures or start.
+    #[error("the filter does not start: {0}")]
+    Filter(#[from] EstimatorError),
+    /// The start asks for what no thrust does.
+    #[error("the course cannot be flown from its start: {0}")]
+    Start(#[from] ReferenceError),
+}

@@ -1,0 +1,224 @@
+//! A scenario as it is written in TOML: every key, before its value is looked at.
+//!
+//! ```toml
+//! vehicle = "crazyflie-2.1-brushless"            # or the path of a vehicle file, ending in .toml
+//! course = "eight"                               # eight, hover, step, mild, aggressive, or a trajectory's path
+//! speed_m_s = 2.1                                # highest on an eight
+//! [air]                                          # absent: vacuum; air = "vehicle" takes the vehicle's own
+//! drag_per_s = [0.447, 0.435, 0.45]
+//! ```
+
+use std::fmt;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde::de::{Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
+
+use super::error::ScenarioError;
+use super::flight::Setpoints;
+use super::laws::Law;
+
+/// The whole file. A key that is absent has its default.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScenarioFile {
+    /// Name or path of the true craft's vehicle.
+    pub vehicle: String,
+    /// eight, hover, step, mild, aggressive, or a path.
+    pub course: Option<String>,
+    /// Highest speed on an eight, m/s.
+    pub speed_m_s: Option<f64>,
+    /// Length of a step, m.
+    pub step_m: Option<f64>,
+    /// How long is measured, s.
+    pub duration_s: Option<f64>,
+    /// Whose law.
+    pub law: Option<Law>,
+    /// 100hz or exact.
+    pub setpoints: Option<Setpoints>,
+    /// exact or kalman.
+    pub estimator: Option<Estimator>,
+    /// Where noise and gusts begin.
+    pub seed: Option<u64>,
+    /// The air; vacuum where absent.
+    pub air: Option<Air>,
+    /// What the true craft differs in from its vehicle.
+    #[serde(default)]
+    pub errors: Errors,
+    /// What the law is told otherwise than its vehicle says.
+    #[serde(default)]
+    pub told: Told,
+    /// Noise of sensors and, where the estimator is exact, of its estimate.
+    #[serde(default)]
+    pub noise: Noise,
+    /// The estimator's, where it is a filter.
+    #[serde(default)]
+    pub filter: Filter,
+}
+
+/// Where a law's estimate comes from.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum Estimator {
+    /// The truth with noise.
+    #[default]
+    Exact,
+    /// The error-state Kalman filter on noisy sensors.
+    Kalman,
+}
+
+/// `air = "vehicle"`, or a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Air {
+    /// What the vehicle's file says of its air.
+    Vehicle,
+    /// Figures of one's own.
+    Own(OwnAir),
+}
+
+/// Figures of the air.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct OwnAir {
+    /// Linear drag over mass along body x, y, z, 1/s.
+    pub drag_per_s: Option<[f64; 3]>,
+    /// Airflow moment `c_x, c_y`: `tau_x = c_x v_y`, `tau_y = -c_y v_x`, N m a m/s.
+    pub moment_n_m_per_m_s: Option<[f64; 2]>,
+    /// Steady wind, world frame, m/s.
+    pub wind_m_s: Option<[f64; 3]>,
+    /// Root mean square of a gust's horizontal component, m/s.
+    pub gust_rms_m_s: Option<f64>,
+}
+
+/// What the true craft differs in from its vehicle.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Errors {
+    /// True mass over the vehicle's.
+    pub mass_factor: Option<f64>,
+    /// True inertia over the vehicle's.
+    pub inertia_factor: Option<f64>,
+    /// True lag of the motors, ms.
+    pub lag_ms: Option<f64>,
+    /// While thrust grows, ms.
+    pub lag_rise_ms: Option<f64>,
+    /// While it falls, ms.
+    pub lag_fall_ms: Option<f64>,
+    /// How late commands act, ms.
+    pub delay_ms: Option<f64>,
+    /// Thrust that comes of a command over what should.
+    pub thrust_factor: Option<f64>,
+    /// The same at the end of the flight.
+    pub thrust_factor_end: Option<f64>,
+    /// A torque that is always there, about body x and y, N m.
+    pub torque_bias_n_m: Option<[f64; 2]>,
+    /// Where the centre of mass is, body x and y, m.
+    pub centre_of_mass_m: Option<[f64; 2]>,
+    /// Gyroscope, rad/s.
+    pub gyro_bias_rad_s: Option<[f64; 3]>,
+    /// Accelerometer, m/s^2.
+    pub accelerometer_bias_m_s2: Option<[f64; 3]>,
+}
+
+/// What the law is told; the vehicle's own where absent.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Told {
+    /// Mass, kg.
+    pub mass_kg: Option<f64>,
+    /// Lag of the motors, ms.
+    pub lag_ms: Option<f64>,
+    /// Linear drag over mass, 1/s.
+    pub drag_per_s: Option<f64>,
+    /// Airflow moment, N m a m/s.
+    pub moment_n_m_per_m_s: Option<[f64; 2]>,
+}
+
+/// Standard deviations of a sample.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Noise {
+    /// Gyroscope, rad/s.
+    pub gyro_rad_s: Option<f64>,
+    /// Accelerometer, m/s^2.
+    pub accelerometer_m_s2: Option<f64>,
+    /// Position, m.
+    pub position_m: Option<f64>,
+    /// Velocity, m/s.
+    pub velocity_m_s: Option<f64>,
+    /// Attitude, rad.
+    pub attitude_rad: Option<f64>,
+}
+
+/// Of `estimator = "kalman"`.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Filter {
+    /// Predictions a second.
+    pub prediction_hz: Option<f64>,
+    /// Positions a second.
+    pub position_hz: Option<f64>,
+    /// Linear drag over mass that it reckons with, 1/s.
+    pub drag_per_s: Option<f64>,
+    /// Age of a position as it comes in, ms.
+    pub latency_ms: Option<f64>,
+}
+
+impl<'de> Deserialize<'de> for Air {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> Visitor<'de> for Either {
+            type Value = Air;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"vehicle\" or a table")
+            }
+
+            fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Air, E> {
+                let other = || E::invalid_value(serde::de::Unexpected::Str(text), &self);
+                (text == "vehicle").then_some(Air::Vehicle).ok_or_else(other)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Air, A::Error> {
+                OwnAir::deserialize(MapAccessDeserializer::new(map)).map(Air::Own)
+            }
+        }
+        deserializer.deserialize_any(Either)
+    }
+}
+
+impl ScenarioFile {
+    /// Nothing but a vehicle: an eight at 2.1 m/s in vacuum.
+    pub fn of_vehicle(vehicle: &str) -> Self {
+        Self { vehicle: vehicle.to_owned(), ..Self::default() }
+    }
+
+    /// From the text of a file.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Syntax`].
+    pub fn parse(text: &str, origin: &str) -> Result<Self, ScenarioError> {
+        toml::from_str(text).map_err(|error| {
+            let start = error.span().map_or(0, |span| span.start).min(text.len());
+            let line = 1 + text.as_bytes()[..start].iter().filter(|byte| **byte == b'\n').count();
+            let words: Vec<&str> = error.message().split_whitespace().collect();
+            let written = text.lines().nth(line - 1).unwrap_or("").trim();
+            ScenarioError::Syntax {
+                origin: origin.to_owned(),
+                line,
+                text: written.split(" #").next().unwrap_or("").trim().to_owned(),
+                reason: words.join(" "),
+            }
+        })
+    }
+
+    /// From a file.
+    ///
+    /// # Errors
+    /// As [`Self::parse`], and [`ScenarioError::Unreadable`].
+    pub fn read(path: &Path) -> Result<Self, ScenarioError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| ScenarioError::Unreadable { path: path.to_owned(), reason: error.to_string() })?;
+        Self::parse(&text, &path.display().to_string())
+    }
+}

@@ -1,0 +1,159 @@
+//! The laws of a scenario by name: ours, the paper's and the rivals.
+
+use std::str::FromStr;
+
+use quatrack::gains::paper as gains;
+use quatrack_design::vehicle::Vehicle;
+use serde::{Deserialize, Serialize};
+
+use super::core_law::{CoreLaw, Gain};
+use super::object_law::ObjectLaw;
+use crate::control_law::ControlLaw;
+use crate::flight::motor_laws::FlightError;
+use crate::rivals::{Actuation, CascadedPid, CascadedPidConfig, Lee, LeeConfig, Mellinger, MellingerConfig};
+
+/// A law.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Law {
+    /// The Crazyflie controller's default table.
+    #[default]
+    Quatrack,
+    /// The actuator-aware law without a word of the air.
+    ActuatorAware,
+    /// The paper's, each behind the body-rate loop of the core.
+    LqrE,
+    /// Likewise.
+    LyapE,
+    /// Likewise.
+    LqrF,
+    /// Likewise.
+    LyapF,
+    /// Mellinger and Kumar 2011.
+    Mellinger,
+    /// Lee, Leok and McClamroch 2010.
+    Lee,
+    /// The cascaded PID.
+    Pid,
+}
+
+/// What a law is told of the craft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToldFigures {
+    /// Mass, kg.
+    pub mass_kg: f64,
+    /// Lag of the motors, s, where it is said.
+    pub lag_s: Option<f64>,
+    /// Linear drag over mass, 1/s, where it is said.
+    pub drag_per_s: Option<f64>,
+    /// Airflow moment, N m a m/s, where it is said.
+    pub moment_n_m_per_m_s: Option<[f64; 2]>,
+}
+
+/// Why a law does not fly a vehicle.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LawError {
+    /// Not one of the names.
+    #[error("{name}: no such law; there are {known}")]
+    Unknown {
+        /// As it was asked for.
+        name: String,
+        /// All there are.
+        known: String,
+    },
+    /// The Crazyflie controller has no table for it.
+    #[error(
+        "{law}: the Crazyflie controller has no table for {vehicle} told {mass_kg} kg; tell a mass within 10 % of a built-in \
+         vehicle's"
+    )]
+    NoTable {
+        /// Which law.
+        law: &'static str,
+        /// Whose name.
+        vehicle: String,
+        /// The mass that it was told, kg.
+        mass_kg: f64,
+    },
+    /// The core flies no such vehicle.
+    #[error("{law} on {vehicle}: {error}")]
+    Core {
+        /// Which law.
+        law: &'static str,
+        /// Whose name.
+        vehicle: String,
+        /// Why not.
+        error: FlightError,
+    },
+}
+
+impl Law {
+    /// All of them: ours, the rivals, and what came before.
+    pub const ALL: [Self; 9] = [
+        Self::Quatrack,
+        Self::Mellinger,
+        Self::Lee,
+        Self::Pid,
+        Self::ActuatorAware,
+        Self::LqrE,
+        Self::LyapE,
+        Self::LqrF,
+        Self::LyapF,
+    ];
+
+    /// As in files, on the command line and in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quatrack => "quatrack",
+            Self::ActuatorAware => "actuator-aware",
+            Self::LqrE => "lqr-e",
+            Self::LyapE => "lyap-e",
+            Self::LqrF => "lqr-f",
+            Self::LyapF => "lyap-f",
+            Self::Mellinger => "mellinger",
+            Self::Lee => "lee",
+            Self::Pid => "pid",
+        }
+    }
+
+    /// At the start of a flight of a vehicle of which it is told something.
+    ///
+    /// # Errors
+    /// [`LawError::NoTable`].
+    pub fn start(self, vehicle: &Vehicle, told: &ToldFigures) -> Result<Box<dyn ControlLaw>, LawError> {
+        let actuation = Actuation::of(vehicle);
+        let table = |number| -> Result<Box<dyn ControlLaw>, LawError> {
+            ObjectLaw::start(vehicle, told, number).map(|law| Box::new(law) as Box<dyn ControlLaw>).ok_or_else(|| {
+                LawError::NoTable { law: self.name(), vehicle: vehicle.name().to_owned(), mass_kg: told.mass_kg }
+            })
+        };
+        let core = |law: Result<CoreLaw, FlightError>| -> Result<Box<dyn ControlLaw>, LawError> {
+            law.map(|law| Box::new(law) as Box<dyn ControlLaw>).map_err(|error| LawError::Core {
+                law: self.name(),
+                vehicle: vehicle.name().to_owned(),
+                error,
+            })
+        };
+        let paper = |gain: Gain| core(CoreLaw::paper(vehicle, told, gain));
+        Ok(match self {
+            Self::Quatrack => table(0)?,
+            Self::ActuatorAware => core(CoreLaw::actuator_aware(vehicle, told))?,
+            Self::LyapE => paper(Gain::Equilibrium(&gains::LYAP_E))?,
+            Self::LqrE => paper(Gain::Equilibrium(&gains::LQR_E))?,
+            Self::LyapF => paper(Gain::FlatOutput(&gains::LYAP_F))?,
+            Self::LqrF => paper(Gain::FlatOutput(&gains::LQR_F))?,
+            Self::Mellinger => Box::new(Mellinger::new(MellingerConfig::firmware(told.mass_kg, &actuation), actuation)),
+            Self::Lee => Box::new(Lee::new(LeeConfig::firmware(told.mass_kg), actuation)),
+            Self::Pid => Box::new(CascadedPid::new(CascadedPidConfig::firmware(vehicle, told.mass_kg), actuation)),
+        })
+    }
+}
+
+impl FromStr for Law {
+    type Err = LawError;
+
+    fn from_str(text: &str) -> Result<Self, LawError> {
+        let known = || Self::ALL.map(Self::name).join(", ");
+        let found = Self::ALL.into_iter().find(|law| law.name() == text);
+        found.ok_or_else(|| LawError::Unknown { name: text.to_owned(), known: known() })
+    }
+}

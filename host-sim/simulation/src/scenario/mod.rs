@@ -1,0 +1,34 @@
+//! A scenario: a craft, its air, what is wrong with what is known of it, a course and a law, in one file that every command
+//! flies.
+//!
+//! ```text
+//! compare            laws beside each other
+//!   checked, checks  a file -> a scenario whose every value has been looked at, or one line that says why not
+//!     whole          the scenario; its flights
+//!       flight       a plant, sensors and a law at 1 kHz
+//!         filtered   the estimate of a Kalman filter
+//!           sensors  noise and biases
+//!         course     hover, ramp, and what is measured
+//!       laws         laws by name
+//!         object_law the Crazyflie controller as a law
+//!         core_law   the core's controller as a law
+//!   file             the keys in TOML
+//! ```
+
+mod checked;
+mod checks;
+pub mod compare;
+mod core_law;
+pub mod course;
+mod error;
+pub mod file;
+pub mod filtered;
+pub mod flight;
+mod laws;
+mod object_law;
+pub mod sensors;
+mod whole;
+
+pub use error::{ScenarioError, StartError};
+pub use laws::{Law, LawError, ToldFigures};
+pub use whole::{CourseChoice, FilterFigures, Scenario};

@@ -1,0 +1,70 @@
+//! What is between a craft and a law: white noise and biases, the same for the same seed.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::flight::truth;
+use crate::control_law::Estimate;
+use crate::plant::{RigidState, Source, Stream};
+
+/// Standard deviations of each component at every step of the flight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SensorNoise {
+    /// Gyroscope, rad/s.
+    pub gyro_rad_s: f64,
+    /// Accelerometer, m/s^2.
+    pub accelerometer_m_s2: f64,
+    /// Position, m.
+    pub position_m: f64,
+    /// Velocity, m/s.
+    pub velocity_m_s: f64,
+    /// Attitude, rad.
+    pub attitude_rad: f64,
+}
+
+/// Noise, biases and where the noise is.
+#[derive(Clone, Debug)]
+pub struct Sensors {
+    noise: SensorNoise,
+    gyro_bias_rad_s: Vector3<f64>,
+    accelerometer_bias_m_s2: Vector3<f64>,
+    /// Gyroscope, accelerometer, position, velocity, attitude: what one of them draws leaves the others as they are.
+    streams: [Stream; 5],
+}
+
+impl Sensors {
+    /// With a seed.
+    pub fn new(
+        noise: SensorNoise,
+        gyro_bias_rad_s: Vector3<f64>,
+        accelerometer_bias_m_s2: Vector3<f64>,
+        seed: u64,
+    ) -> Self {
+        let sources = [Source::Gyroscope, Source::Accelerometer, Source::Position, Source::Velocity, Source::Attitude];
+        let streams = sources.map(|source| Stream::new(seed, source));
+        Self { noise, gyro_bias_rad_s, accelerometer_bias_m_s2, streams }
+    }
+
+    /// Exact ones.
+    pub fn exact() -> Self {
+        Self::new(SensorNoise::default(), Vector3::zeros(), Vector3::zeros(), 0)
+    }
+
+    /// What is measured and estimated of a state.
+    pub(super) fn estimate(&mut self, state: &RigidState, specific_force_m_s2: &Vector3<f64>) -> Estimate {
+        let (truth, noise) = (truth(state, specific_force_m_s2), self.noise);
+        let [gyro, accelerometer, position, velocity, attitude] = &mut self.streams;
+        Estimate {
+            position_m: truth.position_m + white(position, noise.position_m),
+            velocity_m_s: truth.velocity_m_s + white(velocity, noise.velocity_m_s),
+            attitude: truth.attitude * UnitQuaternion::from_scaled_axis(white(attitude, noise.attitude_rad)),
+            body_rates_rad_s: truth.body_rates_rad_s + self.gyro_bias_rad_s + white(gyro, noise.gyro_rad_s),
+            specific_force_m_s2: truth.specific_force_m_s2
+                + self.accelerometer_bias_m_s2
+                + white(accelerometer, noise.accelerometer_m_s2),
+        }
+    }
+}
+
+fn white(stream: &mut Stream, deviation: f64) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| deviation * stream.normal())
+}

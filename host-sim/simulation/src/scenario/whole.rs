@@ -1,0 +1,181 @@
+//! A scenario whose every value has been looked at: craft, conditions and what a law is told, in SI.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+use quatrack_design::model::GRAVITY_M_S2;
+use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+
+use super::course::Flown;
+use super::error::StartError;
+use super::file::Estimator as EstimateFrom;
+use super::filtered::{Estimation, Filtered};
+use super::flight::{Bench, Setpoints};
+use super::laws::{Law, ToldFigures};
+use super::sensors::{SensorNoise, Sensors};
+use crate::control_law::ControlLaw;
+use crate::flight::motor_loop;
+use crate::flight::rigid_loop::RigidFlight;
+use crate::plant::{self, Environment, Plant, PlantError, RigidState, Truth};
+
+/// How long is measured by default, s.
+pub(super) const EIGHT_MEASURED_S: f64 = 12.0;
+pub(super) const HOVER_MEASURED_S: f64 = 10.0;
+pub(super) const STEP_MEASURED_S: f64 = 5.0;
+
+/// What is flown.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CourseChoice {
+    /// An eight with its highest speed, m/s.
+    Eight(f64),
+    /// A hover.
+    Hover,
+    /// A step with its length, m.
+    Step(f64),
+    /// One of the paper's trajectories or a file, as it was named.
+    Trajectory(String),
+}
+
+/// A Kalman filter's figures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FilterFigures {
+    /// Predictions a second.
+    pub prediction_hz: f64,
+    /// Positions a second.
+    pub position_hz: f64,
+    /// Drag over mass that it reckons with, 1/s.
+    pub drag_per_s: f64,
+    /// Age of a position as it comes in, s.
+    pub latency_s: f64,
+}
+
+/// A scenario that can be flown.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// The vehicle that the craft and what the law is told differ from.
+    pub vehicle: Vehicle,
+    /// What is flown.
+    pub course: CourseChoice,
+    /// How long is measured, s; a trajectory's own length where absent.
+    pub duration_s: Option<f64>,
+    /// Whose law.
+    pub law: Law,
+    /// How a law is told of the course.
+    pub setpoints: Setpoints,
+    /// Where its estimate comes from.
+    pub estimator: EstimateFrom,
+    /// Where noise and gusts begin.
+    pub seed: u64,
+    /// What the craft is surrounded by.
+    pub environment: Environment,
+    /// What the true craft is.
+    pub truth: Truth,
+    /// Of the gyroscope, rad/s.
+    pub gyro_bias_rad_s: Vector3<f64>,
+    /// Of the accelerometer, m/s^2.
+    pub accelerometer_bias_m_s2: Vector3<f64>,
+    /// What the law is told.
+    pub told: ToldFigures,
+    /// Standard deviations of a sample.
+    pub noise: SensorNoise,
+    /// Of the filter.
+    pub filter: FilterFigures,
+}
+
+impl Scenario {
+    /// The true craft at a state, with the wind that blows in this scenario.
+    pub(super) fn plant(&self, start: &RigidState) -> Result<Plant, PlantError> {
+        Plant::new(&self.vehicle, &self.environment, &self.truth, start, self.seed)
+    }
+
+    /// Flies a law along what [`Self::flown`] gives. The same scenario and law give the same flight to the bit.
+    ///
+    /// # Errors
+    /// [`StartError`] where the course cannot be flown from its start, or figures that were changed since have no sense.
+    pub fn fly(&self, law: &mut dyn ControlLaw, flown: &Flown) -> Result<RigidFlight, StartError> {
+        let point = flown.course.at(0.0);
+        let moves = point.position[1..].iter().any(|derivative| derivative.norm() > 0.0) || point.heading != [0.0; 4];
+        let start = if moves {
+            let airframe = motor_loop::airframe(&self.vehicle, self.vehicle.motors().lag_s)?;
+            motor_loop::state_on(&point, &airframe)?
+        } else {
+            RigidState::at_rest(point.position[0], 0.25 * self.truth.mass_kg * GRAVITY_M_S2)
+        };
+        let sensors = Sensors::new(self.noise, self.gyro_bias_rad_s, self.accelerometer_bias_m_s2, self.seed);
+        let estimation = match self.estimator {
+            EstimateFrom::Exact => Estimation::Exact(sensors.into()),
+            EstimateFrom::Kalman => {
+                Estimation::Filtered(Filtered::start(&self.filter, sensors, self.noise.position_m, &start)?.into())
+            }
+        };
+        let bench = Bench { flown, setpoints: self.setpoints, estimation };
+        Ok(bench.fly(&mut self.plant(&start)?, law))
+    }
+
+    /// What is flown, with the part that is measured. A trajectory is not planned here; see [`CourseChoice::Trajectory`].
+    pub fn flown(&self, trajectory: Option<PiecewisePolynomial>) -> Flown {
+        match (&self.course, trajectory) {
+            (CourseChoice::Eight(speed_m_s), _) => {
+                Flown::eight(*speed_m_s, self.duration_s.unwrap_or(EIGHT_MEASURED_S))
+            }
+            (CourseChoice::Step(step_m), _) => Flown::step(*step_m, self.duration_s.unwrap_or(STEP_MEASURED_S)),
+            (CourseChoice::Trajectory(_), Some(trajectory)) => Flown::trajectory(trajectory, self.duration_s),
+            (CourseChoice::Hover | CourseChoice::Trajectory(_), _) => {
+                Flown::hover(self.duration_s.unwrap_or(HOVER_MEASURED_S))
+            }
+        }
+    }
+}
+
+impl CourseChoice {
+    /// The name or path of a trajectory that has to be had before it can be flown.
+    pub fn trajectory(&self) -> Option<&str> {
+        match self {
+            Self::Trajectory(name) => Some(name),
+            _ => None,
+        }
+    }
+}
+
+impl fmt::Display for CourseChoice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Eight(speed_m_s) => write!(f, "eight at {speed_m_s} m/s"),
+            Self::Hover => f.write_str("hover"),
+            Self::Step(step_m) => write!(f, "step of {step_m} m"),
+            Self::Trajectory(name) => f.write_str(name),
+        }
+    }
+}
+
+/// One line that says the conditions.
+impl fmt::Display for Scenario {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.vehicle.name(), self.course)?;
+        if let Some(duration_s) = self.duration_s {
+            write!(f, ", {duration_s} s")?;
+        }
+        let Environment { air, wind, .. } = &self.environment;
+        if *air == plant::Air::VACUUM {
+            f.write_str(", in vacuum")?;
+        } else {
+            let ([x, y, z], [c_x, c_y]) = (air.drag_per_s, air.moment_n_m_per_m_s);
+            write!(f, ", drag {x}, {y}, {z} 1/s, moment {:.2}, {:.2} mN m a m/s", 1e3 * c_x, 1e3 * c_y)?;
+        }
+        if wind.mean_m_s != Vector3::zeros() {
+            write!(f, ", wind {} m/s", wind.mean_m_s.norm())?;
+        }
+        if let Some(turbulence) = &wind.turbulence {
+            write!(f, ", gusts {} m/s", turbulence.rms_m_s.x)?;
+        }
+        let setpoints = if self.setpoints == Setpoints::Exact { "exact setpoints" } else { "setpoints at 100 Hz" };
+        let noise = if self.noise == SensorNoise::default() { "without noise" } else { "with noise" };
+        write!(f, ", {setpoints}, {noise}")?;
+        if self.estimator == EstimateFrom::Kalman {
+            let FilterFigures { prediction_hz, drag_per_s, .. } = self.filter;
+            write!(f, ", Kalman filter at {prediction_hz} Hz with drag {drag_per_s} 1/s")?;
+        }
+        Ok(())
+    }
+}

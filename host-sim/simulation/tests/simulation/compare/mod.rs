@@ -1,0 +1,5 @@
+//! Rivals beside other tools' figures, scenarios, and the table in which laws are compared.
+
+mod drone_controllers;
+mod plants;
+mod scenario;
