@@ -48,7 +48,8 @@ pub(super) struct Seen {
     pub(super) mean_forces: Parts,
     /// What of them answers the air: roll and pitch, N.
     pub(super) answer: [f32; 2],
-    /// The reference's velocity in its own body frame, x and y, m/s.
+    /// The reference's velocity in the world frame, and x and y of it in its own body frame, m/s.
+    pub(super) wanted: Vector3<f32>,
     pub(super) body_velocity: [f32; 2],
     /// Whether the craft was where it was sent, with motors within their range.
     pub(super) undisturbed: bool,
@@ -80,6 +81,7 @@ impl CascadeMemory {
                 axis: up,
                 mean_forces: none,
                 answer: [0.0; 2],
+                wanted: zero,
                 body_velocity: [0.0; 2],
                 undisturbed: false,
             },

@@ -228,6 +228,7 @@ impl Cascade {
             axis,
             mean_forces: memory.coming,
             answer: reference.answer,
+            wanted: flat.velocity_m_s,
             body_velocity: reference.body_velocity,
             undisturbed: !(far || limited.any()),
         };
@@ -247,14 +248,16 @@ impl Cascade {
             return memory.rest();
         }
         let thrust = seen.mean_forces.thrust / self.airframe().mixing.quarter_mass_kg;
-        let drag = smaller(self.air_learner.now(&memory.air).drag, BELIEVED_DRAG_MAX_PER_S);
-        let pushed = Pushed {
-            velocity: seen.now.velocity,
-            mean_velocity: mean(&before.velocity, &seen.now.velocity),
-            axis: mean(&before.axis, &seen.axis),
-            thrust,
-            drag,
-        };
+        let (known, mut mean_velocity) =
+            (self.air_learner.now(&memory.air).drag, mean(&before.velocity, &seen.now.velocity));
+        let drag = smaller(known, BELIEVED_DRAG_MAX_PER_S);
+        if known > drag {
+            // What is known beyond is taken of the reference's velocity, as the reference has it: it is no part of the loop.
+            let (rest, v) = ((known - drag) / drag, &seen.wanted);
+            mean_velocity += Vector3::new(rest * v.x, rest * v.y, rest * v.z);
+        }
+        let pushed =
+            Pushed { velocity: seen.now.velocity, mean_velocity, axis: mean(&before.axis, &seen.axis), thrust, drag };
         self.force_observer.step(&mut memory.disturbance, &pushed);
         if seen.undisturbed {
             memory.motors.step(thrust, memory.disturbance.along, period_s);
@@ -273,7 +276,7 @@ impl Cascade {
     }
 }
 
-/// Most of the drag that the force observer believes, 1/s: the rest is a disturbance to it. Certificates go as far.
+/// Most of the drag that the force observer takes of the measured velocity, 1/s. Certificates go as far.
 const BELIEVED_DRAG_MAX_PER_S: f32 = 0.6;
 
 /// Distance from the reference beyond which nothing is learned, m.

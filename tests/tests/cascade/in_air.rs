@@ -125,3 +125,11 @@ fn without_noise_and_delay_the_reference_is_flown_exactly() {
         assert!(iae < bound, "{course:?}: {iae:.5} m s");
     }
 }
+
+#[test]
+fn air_beyond_the_certified_is_flown_in() {
+    // The drag of RotorPy's Brushless, without a moment; half of it is told.
+    let thick = Craft { drag: [0.75; 3], moment: [0.0; 2], ..BRUSHLESS };
+    let found = flown(thick, brushless(&Air::BRUSHLESS), EIGHT, NOISE);
+    assert!(found.iae < 0.06 && (found.drag / 0.75 - 1.0).abs() < 0.05, "{found:?}");
+}
