@@ -1,5 +1,6 @@
 //! What the tests that cross crates share; they live in `tests/`.
 
+pub mod cases;
 pub mod core_step;
 pub mod design_problem;
 
@@ -21,7 +22,8 @@ pub struct OwnGainsPage;
 /// Point `index` of the Halton sequence in `N` dimensions, each coordinate in (0, 1): random enough to cover a box
 /// evenly, and the same on every machine.
 pub fn halton<const N: usize>(index: u32) -> [f64; N] {
-    const PRIMES: [u32; 20] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71];
+    const PRIMES: [u32; 24] =
+        [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53, 59, 61, 67, 71, 73, 79, 83, 89];
     std::array::from_fn(|dimension| {
         let base = PRIMES[dimension];
         let (mut remaining, mut weight, mut value) = (index + 1, 1.0, 0.0);

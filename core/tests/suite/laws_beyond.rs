@@ -1,5 +1,7 @@
 //! The core's laws past the paper's: integral action and gains along a trajectory, against f64, by hand, in a wind.
 
+use std::sync::LazyLock;
+
 use nalgebra::{SMatrix, SVector};
 use quatrack::gains::paper;
 use quatrack::gains::table::{
@@ -8,16 +10,18 @@ use quatrack::gains::table::{
 use quatrack::law::{EquilibriumGain, IntegralGain};
 use quatrack::nalgebra::Vector3;
 use quatrack::{
-    AlongTrajectory, Command, Controller, Equilibrium, FeedForward, FlatSample, Handover, IntegralAction, Law, Limits,
-    Memory, Progress, Quaternion, Rate, Reference, State, StepError, Target,
+    AlongTrajectory, Command, Controller, Equilibrium, FeedForward, Handover, IntegralAction, Law, Limits, Memory,
+    Progress, Quaternion, Rate, Reference, State, StepError, Target,
 };
 use quatrack_design::design::integral::{IntegralWeights, sampled_lqi};
 use quatrack_design::design::sampled::{Sampling, shaped};
 use quatrack_design::design::synthesis::EquilibriumWeights;
-use quatrack_design::model::{InputVector, StateVector, VELOCITY, dynamics, normalised};
-use quatrack_simulation::flight::core_loop;
+use quatrack_design::model::{InputVector, StateVector, VELOCITY, dynamics, normalised, position, velocity};
+use quatrack_tests::cases::{self, spread};
 use quatrack_tests::core_step::{command, step, step_on};
 use quatrack_tests::halton;
+
+use crate::twin;
 
 fn rate(hz: u32) -> Rate {
     Rate::from_hz(hz).unwrap()
@@ -34,10 +38,6 @@ fn lqi(hz: u32) -> IntegralGain {
     IntegralGain::new(lqi_rows(hz)).unwrap()
 }
 
-fn spread(unit: f64, size: f64) -> f32 {
-    ((2.0 * unit - 1.0) * size) as f32
-}
-
 fn turned(psi_rad: f32, v: Vector3<f32>) -> Vector3<f32> {
     let (s, c) = psi_rad.sin_cos();
     Vector3::new(c * v.x - s * v.y, s * v.x + c * v.y, v.z)
@@ -45,25 +45,8 @@ fn turned(psi_rad: f32, v: Vector3<f32>) -> Vector3<f32> {
 
 /// A reference in motion and a state off it.
 fn case(index: u32) -> (Reference, State) {
-    let u = halton::<20>(index);
-    let vector = |at: usize, size| Vector3::new(spread(u[at], size), spread(u[at + 1], size), spread(u[at + 2], size));
-    let reference = Reference::from_flat(&FlatSample {
-        position_m: vector(0, 2.0),
-        velocity_m_s: vector(3, 2.0),
-        acceleration_m_s2: vector(6, 4.0),
-        jerk_m_s3: vector(9, 10.0),
-        heading_rad: spread(u[12], 3.0),
-        heading_rate_rad_s: spread(u[13], 2.0),
-    })
-    .unwrap();
-    let (target, turn) = (reference.state(), vector(14, 0.2));
-    let q = target.attitude * Quaternion::new((1.0 - turn.norm_squared()).sqrt(), turn.x, turn.y, turn.z);
-    let state = State {
-        position_m: target.position_m + vector(15, 0.5),
-        attitude: q,
-        velocity_m_s: target.velocity_m_s + vector(17, 1.0),
-    };
-    (reference, state)
+    let case = cases::case(index, 3.0);
+    (case.reference, case.state)
 }
 
 fn array(command: &Command) -> [f32; 4] {
@@ -77,8 +60,8 @@ fn bits(command: &Command) -> [u32; 4] {
 
 /// What is left of half a second at a displacement: a controller of 1 Hz whose law is flown one step.
 fn memory_of(sum: Vector3<f32>) -> Memory {
-    let gain = lqi(1);
-    let controller = Controller::new(IntegralAction::new(&gain, rate(1), FeedForward::Without), Limits::NONE);
+    static GAIN: LazyLock<IntegralGain> = LazyLock::new(|| lqi(1));
+    let controller = Controller::new(IntegralAction::new(&GAIN, rate(1), FeedForward::Without), Limits::NONE);
     let mut memory = Memory::at_rest();
     step_on(&controller, &mut memory, &State::at_rest(sum), Target::new(&hover(0.0))).unwrap();
     assert_eq!(memory.integral_m_s(), sum);
@@ -203,9 +186,14 @@ fn position_in_a_wind(law: Law<'_>, wind_m_s2: Vector3<f64>, heading_rad: f32, d
         .copy_from(&nalgebra::Vector4::new(attitude.w, attitude.x, attitude.y, attitude.z).map(f64::from));
     let mut memory = Memory::at_rest();
     for _ in 0..duration_s * 100 {
-        let state = core_loop::state(&normalised(&x));
+        let q = quatrack_design::model::attitude(&x).normalize().map(|q| q as f32);
+        let state = State {
+            position_m: position(&x).map(|r| r as f32),
+            attitude: Quaternion::new(q[0], q[1], q[2], q[3]),
+            velocity_m_s: velocity(&x).map(|v| v as f32),
+        };
         let step = step_on(&controller, &mut memory, &state, Target::new(&reference)).unwrap();
-        let input: InputVector = core_loop::input(&step.command);
+        let input: InputVector = twin::input(&step.command);
         for _ in 0..10 {
             let mut rate_of_change = dynamics(&x, &input);
             let mut blown = rate_of_change.fixed_rows_mut::<3>(VELOCITY);
