@@ -3,6 +3,7 @@
 
 use nalgebra::{DMatrix, SMatrix, Vector4};
 use quatrack::airframe::AirframeError;
+use quatrack::cascade::{AirError, CascadeGainError};
 use quatrack::gain::GainError;
 use quatrack::gains::table::AcceptedTable;
 use quatrack::law::ActuatorAwareGain;
@@ -51,6 +52,12 @@ pub enum FlightError {
     /// The core takes no such gain.
     #[error("the core refuses the gain: {0}")]
     Gain(#[from] GainError),
+    /// The cascade takes no such gain.
+    #[error("the core refuses the gain: {0}")]
+    CascadeGain(#[from] CascadeGainError),
+    /// The cascade takes no such air.
+    #[error("the core refuses the air: {0}")]
+    Air(#[from] AirError),
     /// The course cannot be flown at its start.
     #[error("the course cannot be flown from its start: {0}")]
     Start(#[from] ReferenceError),

@@ -110,7 +110,7 @@ impl ControlLaw for CoreLaw {
         };
         let reference = MotorReference::from_flat(&motor_loop::sample(&point), self.actuation.airframe())
             .map_err(|e| e.to_string())?;
-        let state = state(&input.estimate);
+        let state = rigid_state(&input.estimate);
         let step = controller
             .with_actuation(&self.actuation)
             .step_to_motors(&mut self.memory, (&state).into(), (&reference).into())
@@ -119,7 +119,8 @@ impl ControlLaw for CoreLaw {
     }
 }
 
-fn state(estimate: &Estimate) -> quatrack::RigidState {
+/// An estimate as the core takes it.
+pub(super) fn rigid_state(estimate: &Estimate) -> quatrack::RigidState {
     let f32s = |v: &Vector3<f64>| v.map(|value| value as f32);
     let q = estimate.attitude.quaternion();
     let [w, x, y, z] = [q.w, q.i, q.j, q.k].map(|value| value as f32);

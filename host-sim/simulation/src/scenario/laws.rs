@@ -6,6 +6,7 @@ use quatrack::gains::paper as gains;
 use quatrack_design::vehicle::Vehicle;
 use serde::{Deserialize, Serialize};
 
+use super::cascade_law::CascadeLaw;
 use super::core_law::{CoreLaw, Gain};
 use super::object_law::ObjectLaw;
 use crate::control_law::ControlLaw;
@@ -16,9 +17,11 @@ use crate::rivals::{Actuation, CascadedPid, CascadedPidConfig, Lee, LeeConfig, M
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Law {
-    /// The Crazyflie controller's default table.
+    /// The cascade of the core.
     #[default]
     Quatrack,
+    /// The Crazyflie controller with its default table, through its C interface.
+    Crazyflie,
     /// The actuator-aware law without a word of the air.
     ActuatorAware,
     /// The paper's, each behind the body-rate loop of the core.
@@ -88,11 +91,12 @@ pub enum LawError {
 
 impl Law {
     /// All of them: ours, the rivals, and what came before.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Quatrack,
         Self::Mellinger,
         Self::Lee,
         Self::Pid,
+        Self::Crazyflie,
         Self::ActuatorAware,
         Self::LqrE,
         Self::LyapE,
@@ -104,6 +108,7 @@ impl Law {
     pub fn name(self) -> &'static str {
         match self {
             Self::Quatrack => "quatrack",
+            Self::Crazyflie => "crazyflie",
             Self::ActuatorAware => "actuator-aware",
             Self::LqrE => "lqr-e",
             Self::LyapE => "lyap-e",
@@ -126,16 +131,14 @@ impl Law {
                 LawError::NoTable { law: self.name(), vehicle: vehicle.name().to_owned(), mass_kg: told.mass_kg }
             })
         };
+        let refused = |error| LawError::Core { law: self.name(), vehicle: vehicle.name().to_owned(), error };
         let core = |law: Result<CoreLaw, FlightError>| -> Result<Box<dyn ControlLaw>, LawError> {
-            law.map(|law| Box::new(law) as Box<dyn ControlLaw>).map_err(|error| LawError::Core {
-                law: self.name(),
-                vehicle: vehicle.name().to_owned(),
-                error,
-            })
+            law.map(|law| Box::new(law) as Box<dyn ControlLaw>).map_err(refused)
         };
         let paper = |gain: Gain| core(CoreLaw::paper(vehicle, told, gain));
         Ok(match self {
-            Self::Quatrack => table(0)?,
+            Self::Quatrack => Box::new(CascadeLaw::new(vehicle, told).map_err(refused)?),
+            Self::Crazyflie => table(0)?,
             Self::ActuatorAware => core(CoreLaw::actuator_aware(vehicle, told))?,
             Self::LyapE => paper(Gain::Equilibrium(&gains::LYAP_E))?,
             Self::LqrE => paper(Gain::Equilibrium(&gains::LQR_E))?,

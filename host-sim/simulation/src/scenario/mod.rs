@@ -15,6 +15,7 @@
 //!   file             the keys in TOML
 //! ```
 
+mod cascade_law;
 mod checked;
 mod checks;
 pub mod compare;

@@ -1,0 +1,104 @@
+//! The cascade of the core as a law, at 500 Hz for any vehicle: setpoints to the jerk, estimate and accelerometer in, forces
+//! out.
+
+use nalgebra::{Vector3, Vector4};
+use quatrack::airframe::AirframeFigures;
+use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeLimits, JerkFit};
+use quatrack::{Airframe, Controller, Heading, Limits, Measured, Memory, Target};
+use quatrack_design::design::cascade::{CascadeWeights, cascade};
+use quatrack_design::vehicle::Vehicle;
+
+use super::core_law::rigid_state;
+use super::laws::ToldFigures;
+use crate::control_law::{ControlLaw, Input, Setpoint};
+use crate::flight::motor_laws::FlightError;
+use crate::flight::motor_loop::{self, PERIOD_S, RATE};
+
+/// Farthest that two setpoints of one motion are apart, m: 10 ms at 5 m/s.
+const JUMP_M: f64 = 0.05;
+
+/// The cascade on a vehicle's motors.
+pub(super) struct CascadeLaw {
+    cascade: Cascade,
+    memory: Memory,
+    fit: JerkFit,
+    newest: Option<Setpoint>,
+}
+
+impl CascadeLaw {
+    /// Designed with the standard weights for the lag that is told, or for the one that the vehicle is flown with where none is.
+    pub(super) fn new(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, FlightError> {
+        let lag_s = told.lag_s.unwrap_or_else(|| untold_lag_s(vehicle));
+        let design = cascade(vehicle, lag_s, &CascadeWeights::STANDARD, PERIOD_S)?;
+        let gains = CascadeGains::from_numbers(design.numbers().map(|gain| gain as f32))?;
+        let figures = *motor_loop::airframe(vehicle, lag_s)?.figures();
+        let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?;
+        let cascade = Cascade::new(&gains, &airframe, RATE, &CascadeLimits::STANDARD, &air(vehicle, told)?)?;
+        Ok(Self { cascade, memory: Memory::hovering(&airframe), fit: JerkFit::NONE, newest: None })
+    }
+
+    /// The setpoint with snap and crackle of the fit through its jerks; as it is where it has them.
+    fn filled(&mut self, setpoint: &Setpoint) -> Setpoint {
+        if setpoint.snap_m_s4 != Vector3::zeros() || setpoint.crackle_m_s5 != Vector3::zeros() {
+            return *setpoint;
+        }
+        if self.newest.is_none_or(|before| before.sent_s < setpoint.sent_s) {
+            let after_s = self.newest.map_or(0.0, |before| setpoint.sent_s - before.sent_s);
+            if self.newest.is_none_or(|before| (setpoint.position_m - before.position_m).norm() > JUMP_M) {
+                self.fit.forget();
+            }
+            self.fit.accept(&setpoint.jerk_m_s3.cast(), after_s as f32);
+            self.newest = Some(*setpoint);
+        }
+        let [snap_m_s4, crackle_m_s5] = self.fit.snap_and_crackle().map(|derivative| derivative.cast());
+        Setpoint { snap_m_s4, crackle_m_s5, ..*setpoint }
+    }
+}
+
+impl ControlLaw for CascadeLaw {
+    fn rate_hz(&self) -> u32 {
+        RATE.hz()
+    }
+
+    fn step(&mut self, input: &Input) -> Result<Vector4<f64>, String> {
+        let point = self.filled(&input.setpoint).carried_to(input.time_s);
+        let sample = motor_loop::sample(&point);
+        let state = rigid_state(&input.estimate);
+        let felt_m_s2 = input.estimate.specific_force_m_s2.cast();
+        let measured = Measured::from(&state).with_specific_force(&felt_m_s2);
+        let target = Target::with_sample(&sample, Heading::from_angle(sample.flat.heading_rad));
+        let step = Controller::new(&self.cascade, Limits::NONE)
+            .step_to_motors(&mut self.memory, measured, target)
+            .map_err(|error| error.to_string())?;
+        Ok(Vector4::from(step.forces_n.map(f64::from)))
+    }
+}
+
+/// The Brushless is flown with a table for 50 ms, the brushed Crazyflies with one for 100 ms, where their owners state no lag.
+fn untold_lag_s(vehicle: &Vehicle) -> f64 {
+    if is_brushless(vehicle) {
+        0.05
+    } else if vehicle.name().starts_with("crazyflie-") {
+        0.1
+    } else {
+        vehicle.motors().lag_s
+    }
+}
+
+fn is_brushless(vehicle: &Vehicle) -> bool {
+    vehicle.name().starts_with("crazyflie-2.1-brushl")
+}
+
+/// What is told of the air, and for the rest what is known of Crazyflies; of another vehicle nothing but what it learns.
+fn air(vehicle: &Vehicle, told: &ToldFigures) -> Result<Air, FlightError> {
+    let known = if is_brushless(vehicle) {
+        Air::BRUSHLESS
+    } else if vehicle.name().starts_with("crazyflie-") {
+        Air::BRUSHED
+    } else {
+        Air { learn: true, ..Air::NONE }
+    };
+    let drag_per_s = told.drag_per_s.map_or(known.drag_per_s, |drag| drag as f32);
+    let moment_n_s = told.moment_n_m_per_m_s.map_or(known.moment_n_s, |moment| moment.map(|share| share as f32));
+    Ok(Air { drag_per_s, moment_n_s, ..known }.checked()?)
+}
