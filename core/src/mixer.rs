@@ -320,4 +320,28 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn what_just_fits_is_not_told_as_cut() {
+        // Sixteenths: no sum is rounded. Roll and pitch swing by half of the range and leave the middle to the thrust.
+        let (min, max) = (0.0, 1.0);
+        let at_the_ends = Parts { thrust: 0.5, roll: 0.25, pitch: -0.25, yaw: 0.0 };
+        assert_eq!(by_priority(at_the_ends, min, max), Some(([0.5, 0.0, 0.5, 1.0], MotorLimited::NOTHING)));
+        // Yaw moves two motors up and two down, to where the first of them is at an end.
+        for yaw in [0.25, -0.25] {
+            let parts = Parts { thrust: 0.5, roll: 0.25, pitch: 0.0, yaw };
+            let forces = [0.25 - yaw, 0.25 + yaw, 0.75 - yaw, 0.75 + yaw];
+            assert_eq!(by_priority(parts, min, max), Some((forces, MotorLimited::NOTHING)));
+            let more = Parts { yaw: 1.5 * yaw, ..parts };
+            assert_eq!(by_priority(more, min, max), Some((forces, MotorLimited::from_bits(4))));
+        }
+    }
+
+    #[test]
+    fn large_forces_are_cut_like_any_others() {
+        // Each product of two of them is beyond f32, no sum is.
+        let range = ForceRange::of(&Airframe::CRAZYFLIE_2_1);
+        let cut = Some(([range.max_n; 4], MotorLimited::from_bits(8)));
+        assert_eq!(range.saturate(&[1e30; 4]), cut);
+    }
 }

@@ -168,3 +168,21 @@ fn the_singularities_are_refused_by_name() {
         assert!(Reference::from_flat(&at(bad)).is_err());
     }
 }
+
+#[test]
+fn a_large_jerk_is_mapped_as_long_as_its_rates_are_numbers() {
+    // Rates of 1e24 rad/s: their product is beyond f32, they are not.
+    let jerk = Vector3::new(1e25, 1e25, 0.0);
+    assert!(phi_at_heading(Vector3::zeros(), jerk, Heading::ZERO, 0.0).is_ok());
+    for axis in 0..2 {
+        let mut jerk = Vector3::zeros();
+        jerk[axis] = f32::INFINITY;
+        let refused = phi_at_heading(Vector3::zeros(), jerk, Heading::ZERO, 0.0);
+        assert!(matches!(refused, Err(ReferenceError::NonFinite { .. })), "{refused:?}");
+    }
+    // The chart refuses what the heading does, and by the same name.
+    let falling = Vector3::new(0.0, 0.0, -9.81);
+    assert!(matches!(phi(falling, Vector3::zeros(), 0.0, 0.0), Err(ReferenceError::NoThrust { .. })));
+    let inverted = phi_at_heading(Vector3::new(0.0, 0.0, -20.0), Vector3::zeros(), Heading::ZERO, 0.0);
+    assert!(matches!(inverted, Err(ReferenceError::Inverted { .. })));
+}

@@ -1,5 +1,6 @@
 //! What the core promises by itself: laws, link, gain tables, mixer, supervisor.
 
+mod control;
 mod flatness;
 mod gain_table_files;
 mod laws;

@@ -110,3 +110,19 @@ fn the_rate_loop_asks_for_its_bandwidth_and_cancels_the_gyroscopic_torque() {
     assert_eq!(asked.thrust_n, 0.029 * 9.81);
     assert_eq!(BodyRateLoop::new(&CRAFT, [20.0, -1.0, 5.0]), Err(BandwidthError { bandwidth_rad_s: -1.0 }));
 }
+
+#[test]
+fn large_numbers_are_mixed_as_long_as_they_add_up_to_a_number() {
+    let figures = CRAFT.figures();
+    let (a, c) = (4.0 * figures.lever_arm_m, 4.0 * figures.torque_per_thrust_m);
+    // Four times the thrust's part is a number, too.
+    let largest = [0.2 * f32::MAX, 0.9 * f32::MAX, 0.9 * f32::MAX, 0.9 * f32::MAX];
+    for (i, j) in [(0, 1), (1, 2), (2, 3), (0, 3)] {
+        // The product of two of 1e30 is beyond f32, their sum is not.
+        for (parts, mixed) in [([1e30; 4], true), (largest, false)] {
+            let [t, r, p, y] = std::array::from_fn(|k| if k == i || k == j { parts[k] } else { 0.0 });
+            let asked = wrench(4.0 * t, a * r, a * p, c * y);
+            assert_eq!(CRAFT.mix(&asked).is_some(), mixed, "parts {i} and {j} of {parts:?}");
+        }
+    }
+}
