@@ -2,6 +2,7 @@
 //! the Crazyflie controller as they are on board.
 //!
 //! ```text
+//! generated            every generated file of a checkout against what belongs in it
 //! crazyflie            the Crazyflie's firmware around our controller
 //! reproduction         Table I, and past it
 //!   flight             plants under laws in f64 and under the f32 core, metrics
@@ -16,6 +17,7 @@
 pub mod crazyflie;
 pub mod flight;
 pub mod gains;
+pub mod generated;
 pub mod integrator;
 pub mod plant;
 pub mod reproduction;

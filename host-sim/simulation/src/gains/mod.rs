@@ -1,7 +1,7 @@
 //! Gain tables that somebody may fly: design files in; gains, certificates and tables out, or the figure that fails.
 //!
 //! ```text
-//! check          what is committed against what its designs give today
+//! check          committed files against what their designs give today
 //!   artifacts    NAME.json, NAME.rs, NAME.bin
 //!     certified  gains, certificate, the table; the design's own minimum
 //!       statement  what the table promises on board, the same on every processor
@@ -31,6 +31,7 @@ mod table;
 
 pub use artifacts::{Artifact, artifacts, default_folder, json_document, rust_source};
 pub use certified::Certified;
+pub(crate) use check::Comparison;
 pub use check::{Checked, Failed, check_design, check_folder, designs};
 pub use course::Course;
 pub use design::{Design, Method, Problem};
