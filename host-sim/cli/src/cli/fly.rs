@@ -115,7 +115,7 @@ impl fmt::Display for Controller {
 
 /// The flight as it is written to a file: figures, and when and why it was lost.
 #[derive(Serialize)]
-struct Report {
+struct FlightReport {
     #[serde(flatten)]
     metrics: Metrics,
     lost: Option<String>,
@@ -352,7 +352,7 @@ fn report(args: &Args, flown: &Flown) -> Result<(), Failure> {
     }
     if let Some(path) = &args.json {
         let lost = flight.lost.as_ref().map(|lost| format!("{:.2} s: {}", lost.time_s, lost.reason));
-        output::write_json(path, &Report { metrics, lost })?;
+        output::write_json(path, &FlightReport { metrics, lost })?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

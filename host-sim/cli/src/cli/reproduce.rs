@@ -9,7 +9,7 @@ use quatrack_plan::plan::paper::Course;
 use quatrack_plan::plan::{self, Plan, PlanError};
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::closed_loop::Flight;
-use quatrack_simulation::reproduction::beyond::Beyond;
+use quatrack_simulation::reproduction::extensions::Extensions;
 use quatrack_simulation::reproduction::report::Reproduction;
 use quatrack_simulation::reproduction::table::Controller;
 
@@ -55,7 +55,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (mild, aggressive) = (planned(plan::paper::mild())?, planned(plan::paper::aggressive())?);
     let reproduction = Reproduction::fly(&mild, &aggressive).map_err(Failure::verdict)?;
     output::print(&format!("{reproduction}\n"))?;
-    let beyond = args.beyond.then(|| Beyond::fly(&mild, &aggressive)).transpose().map_err(Failure::verdict)?;
+    let beyond = args.beyond.then(|| Extensions::fly(&mild, &aggressive)).transpose().map_err(Failure::verdict)?;
     if let Some(beyond) = &beyond {
         output::print(&format!("{beyond}\n"))?;
     }

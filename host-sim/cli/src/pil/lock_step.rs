@@ -20,7 +20,7 @@ use super::motors::{self, MotorReport};
 
 /// What came of all flights.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct LockStepReport {
     /// IAE of the flights that the target commanded, m s; nothing for a flight that was cut short.
     pub iae: BTreeMap<Course, BTreeMap<Controller, Option<f64>>>,
     /// Whether every command and every motor force had the host's bits.
@@ -60,7 +60,7 @@ pub struct Difference {
 ///
 /// # Errors
 /// [`PilError`].
-pub fn fly_all(client: &mut Client, limit: Option<u32>, advance: &dyn Fn()) -> Result<Report, PilError> {
+pub fn fly_all(client: &mut Client, limit: Option<u32>, advance: &dyn Fn()) -> Result<LockStepReport, PilError> {
     let plans = Plans::solve()?;
     prepare(client)?;
     let of_commands = limit.map(|limit| limit - of_motors(limit));
@@ -74,7 +74,7 @@ pub fn fly_all(client: &mut Client, limit: Option<u32>, advance: &dyn Fn()) -> R
     }
     let motors = motors::fly_all(client, &plans, limit.map(of_motors), advance)?;
     let telemetry = client.telemetry()?;
-    Ok(Report {
+    Ok(LockStepReport {
         iae,
         bit_exact: comparison.difference.is_none() && motors.bit_exact,
         steps: comparison.steps,
@@ -203,7 +203,7 @@ impl fmt::Display for Difference {
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for LockStepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "IAE (23) of the position, m s, commanded by the target at {RATE_HZ} Hz")?;
         for (course, row) in &self.iae {

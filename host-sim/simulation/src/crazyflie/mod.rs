@@ -22,4 +22,4 @@ pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune, platform};
 pub use flight::{Case, Flown, Recorded, fly, fly_recorded};
 pub use paper_limits::paper_limits;
 pub use recording::{CONTROL_BYTES, Recording};
-pub use report::{Report, Row};
+pub use report::{CrazyflieReport, Row};

@@ -46,7 +46,7 @@ pub struct Row {
 
 /// All flights of a vehicle.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct CrazyflieReport {
     /// How far the paper's trajectories are from the pieces that are flown, m: mild, aggressive.
     pub fit_error_m: [f64; 2],
     /// The flights.
@@ -102,7 +102,7 @@ fn courses() -> Result<[Named; 8], CourseError> {
     ])
 }
 
-impl Report {
+impl CrazyflieReport {
     /// Flies everything.
     ///
     /// # Errors
@@ -170,7 +170,7 @@ impl Flights<'_> {
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for CrazyflieReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(first) = self.rows.first() else { return Ok(()) };
         writeln!(

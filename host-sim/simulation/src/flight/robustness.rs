@@ -112,7 +112,7 @@ pub struct Grounded {
 
 /// All flights.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+pub struct RobustnessReport {
     /// Name of the vehicle.
     pub vehicle: String,
     /// Lag that the default table is designed for, ms.
@@ -127,11 +127,11 @@ pub struct Report {
 ///
 /// # Errors
 /// [`FlightError`] where a design has no solution or the core refuses the vehicle.
-pub fn report(vehicle: &Vehicle) -> Result<Report, FlightError> {
+pub fn report(vehicle: &Vehicle) -> Result<RobustnessReport, FlightError> {
     let weights = &ActuatorAwareWeights::STANDARD;
     let default_lag_s = default_lag_s(vehicle);
     let default = AwareTable::new(vehicle, default_lag_s, weights, &Region::of_any_crazyflie())?;
-    let mut report = Report {
+    let mut report = RobustnessReport {
         vehicle: vehicle.name().to_owned(),
         default_lag_ms: 1e3 * default_lag_s,
         rows: Vec::new(),

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::certified::Certified;
 use super::designed::Gains;
-use super::significant::{rounded, without_dust};
+use super::rounding::{rounded, without_dust};
 
 /// A file to be written or compared.
 #[derive(Debug, Clone, PartialEq)]

@@ -12,7 +12,7 @@ use super::GainsError;
 use super::artifacts::{FIGURES, artifacts, default_folder, document};
 use super::certified::Certified;
 use super::design::Design;
-use super::significant::{SAME_GAIN, is_same_figure};
+use super::rounding::{SAME_GAIN, is_same_figure};
 
 /// A decimal of an f64 is read to one rounding.
 const READ: f64 = 1e-15;

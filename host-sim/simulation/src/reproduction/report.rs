@@ -12,7 +12,7 @@ use quatrack_plan::trajectory::Trajectory;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use serde::Serialize;
 
-use super::beyond::Beyond;
+use super::extensions::Extensions;
 use super::table::{CORE_RATES_HZ, CRASH_MU, Controller, Gains, Outcome, fly_cell, fly_crash};
 use crate::flight::metrics::Metrics;
 
@@ -25,16 +25,16 @@ pub struct Reproduction {
 
 /// The table as it is written to a file.
 #[derive(Serialize)]
-pub struct Report<'a> {
+pub struct ReproductionReport<'a> {
     iae: BTreeMap<Course, BTreeMap<Controller, &'a super::table::Cell>>,
     min_z: BTreeMap<Controller, f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    beyond: Option<&'a Beyond>,
+    beyond: Option<&'a Extensions>,
 }
 
-impl<'a> Report<'a> {
+impl<'a> ReproductionReport<'a> {
     /// The same with what lies past the paper.
-    pub fn with(self, beyond: Option<&'a Beyond>) -> Self {
+    pub fn with(self, beyond: Option<&'a Extensions>) -> Self {
         Self { beyond, ..self }
     }
 }
@@ -83,8 +83,8 @@ impl Reproduction {
     }
 
     /// The table as it is written to a file.
-    pub fn report(&self) -> Report<'_> {
-        Report {
+    pub fn report(&self) -> ReproductionReport<'_> {
+        ReproductionReport {
             iae: self
                 .outcomes
                 .iter()

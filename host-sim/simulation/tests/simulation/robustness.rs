@@ -5,14 +5,14 @@ use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
 use quatrack_design::vehicle::Vehicle;
 use quatrack_simulation::flight::manoeuvres::{Manoeuvre, Outcome};
 use quatrack_simulation::flight::motor_laws::{AwareTable, default_lag_s};
-use quatrack_simulation::flight::robustness::{CASES, Report, report};
+use quatrack_simulation::flight::robustness::{CASES, RobustnessReport, report};
 use quatrack_simulation::vehicles;
 
 fn vehicle(name: &str) -> Vehicle {
     vehicles::by_name(name).expect("built in")
 }
 
-fn iae(report: &Report, law: &str, lag_ms: f64, case: &str) -> Option<f64> {
+fn iae(report: &RobustnessReport, law: &str, lag_ms: f64, case: &str) -> Option<f64> {
     let found = report.rows.iter().find(|row| (row.law, row.lag_ms, row.case) == (law, lag_ms, case));
     found.unwrap_or_else(|| panic!("no row of {law}, {lag_ms} ms, {case}")).iae
 }

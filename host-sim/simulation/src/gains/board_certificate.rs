@@ -20,7 +20,7 @@ const DISTANCE_UNIT: f64 = 1e-10;
 
 /// The document of which a table carries the hash.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Statement {
+pub struct BoardCertificate {
     format: &'static str,
     design_sha256: String,
     control_rate_hz: u32,
@@ -42,7 +42,7 @@ struct MarginsStated {
     phase_rad: f64,
 }
 
-impl Statement {
+impl BoardCertificate {
     pub(super) fn new(design: &Design, design_sha256: &Hash, designed: &Designed, certificate: &Certificate) -> Self {
         let each = certificate.sampled.margins.each.iter().map(|channel| channel.balanced);
         let largest = table::Certificate::GAIN_FACTOR_MAX;

@@ -113,11 +113,11 @@ pub type ByMethod = BTreeMap<Method, BTreeMap<u32, Figures>>;
 /// All of them by course.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
-pub struct Beyond {
+pub struct Extensions {
     figures: BTreeMap<Course, ByMethod>,
 }
 
-impl Beyond {
+impl Extensions {
     /// Designs and flies everything, the two courses side by side.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use quatrack_plan::plan;
 use quatrack_plan::plan::paper::Course;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
-use quatrack_simulation::reproduction::beyond::{Beyond, Figures, Method, RATES_HZ};
+use quatrack_simulation::reproduction::extensions::{Extensions, Figures, Method, RATES_HZ};
 use quatrack_simulation::reproduction::report::Reproduction;
 
 const COURSES: [Course; 2] = [Course::Mild, Course::Aggressive];
@@ -15,9 +15,9 @@ fn paper_trajectories() -> [PiecewisePolynomial; 2] {
         .map(|plan| PiecewisePolynomial::from_bspline(&plan.unwrap().solve().unwrap()).unwrap())
 }
 
-static BEYOND: LazyLock<Beyond> = LazyLock::new(|| {
+static BEYOND: LazyLock<Extensions> = LazyLock::new(|| {
     let [mild, aggressive] = paper_trajectories();
-    Beyond::fly(&mild, &aggressive).unwrap()
+    Extensions::fly(&mild, &aggressive).unwrap()
 });
 
 fn figures(course: Course, method: Method, rate_hz: u32) -> &'static Figures {
