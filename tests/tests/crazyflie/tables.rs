@@ -11,7 +11,7 @@ use quatrack::gains::table::{
     Certificate, GainTable, Hash, Margins, Name, Rows, TABLE_BYTES_MAX, TableHead, Vehicle as TableVehicle,
 };
 use quatrack_crazyflie::abi::{Attitude, Mode, Modes, Setpoint};
-use quatrack_crazyflie::craft::{Craft as Flown, KNOWN, RATE};
+use quatrack_crazyflie::craft::{Craft as FirmwareCraft, KNOWN, RATE};
 use quatrack_crazyflie::ffi;
 use quatrack_crazyflie::tables::{Refusal, Table, TableId};
 use quatrack_crazyflie::upload::{PACKET_BYTES, Packet, Status};
@@ -38,7 +38,8 @@ fn gain_of<'t>(table: &'t GainTable<'_>) -> &'t quatrack::law::ActuatorAwareGain
 #[test]
 fn a_stated_lag_is_flown_with_the_committed_design_that_is_certified_for_it() {
     for (index, (known, designs)) in KNOWN.iter().zip(Design::of_crafts().unwrap()).enumerate() {
-        let (name, craft) = (known.vehicle.name.as_str(), Flown::with(known.airframe, known.vehicle, index).unwrap());
+        let (name, craft) =
+            (known.vehicle.name.as_str(), FirmwareCraft::with(known.airframe, known.vehicle, index).unwrap());
         let tables = designs.map(|design| {
             let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../gains/generated/{}.bin", design.name));
             GainTable::from_bytes(&std::fs::read(path).unwrap()).unwrap().owned().unwrap()
@@ -104,7 +105,7 @@ fn lateral_radius([kx, kq, kv]: [f64; 3], lag_s: f64) -> f64 {
 
 #[test]
 fn the_longest_lags_of_the_papers_tables_are_where_hover_becomes_unstable() {
-    let craft = Flown::with(KNOWN[0].airframe, KNOWN[0].vehicle, 0).unwrap();
+    let craft = FirmwareCraft::with(KNOWN[0].airframe, KNOWN[0].vehicle, 0).unwrap();
     for (number, gain) in [(TableId::LqrE, &paper::LQR_E), (TableId::LyapE, &paper::LYAP_E)] {
         let is_flown = |lag_s: f32| Table::choose(number as u8, &craft.with_motor_lag(lag_s), None).is_ok();
         let longest_s =

@@ -5,7 +5,7 @@ use std::fmt;
 
 use quatrack::link::{LawChoice, LimitsSetting, Parameter, ToBoard, TrajectoryCommand};
 use quatrack::{Command, ErrorForm, State, Step};
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 use quatrack_simulation::flight::metrics::Metrics;
 use quatrack_simulation::reproduction::report::digits;
@@ -22,7 +22,7 @@ use super::motors::{self, MotorReport};
 #[derive(Clone, Debug, Serialize)]
 pub struct LockStepReport {
     /// IAE of the flights that the target commanded, m s; nothing for a flight that was cut short.
-    pub iae: BTreeMap<Course, BTreeMap<Controller, Option<f64>>>,
+    pub iae: BTreeMap<PaperTrajectory, BTreeMap<Controller, Option<f64>>>,
     /// Whether every command and every motor force had the host's bits.
     pub bit_exact: bool,
     /// Commands compared.
@@ -48,7 +48,7 @@ pub struct LockStepReport {
 /// Two commands for one state that are not the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    course: Course,
+    course: PaperTrajectory,
     controller: Controller,
     step: u32,
     state: State,
@@ -66,7 +66,7 @@ pub fn fly_all(client: &mut Client, limit: Option<u32>, advance: &dyn Fn()) -> R
     let of_commands = limit.map(|limit| limit - of_motors(limit));
     let flights = COURSES.iter().flat_map(|course| Controller::ALL.map(|controller| (*course, controller)));
     let mut comparison = Comparison { hash: Fnv1a::new(), steps: 0, difference: None };
-    let mut iae: BTreeMap<Course, BTreeMap<Controller, Option<f64>>> = BTreeMap::new();
+    let mut iae: BTreeMap<PaperTrajectory, BTreeMap<Controller, Option<f64>>> = BTreeMap::new();
     for (index, (course, controller)) in flights.enumerate() {
         let share = of_commands.map(|limit| share(limit, index as u32, FLIGHTS));
         let flown = fly_one(client, &plans, (course, controller), share, &mut comparison, advance)?;
@@ -124,7 +124,7 @@ fn prepare(client: &mut Client) -> Result<(), PilError> {
 fn fly_one(
     client: &mut Client,
     plans: &Plans,
-    (course, controller): (Course, Controller),
+    (course, controller): (PaperTrajectory, Controller),
     limit: Option<u32>,
     comparison: &mut Comparison,
     advance: &dyn Fn(),
@@ -177,7 +177,7 @@ struct Comparison {
 }
 
 impl Comparison {
-    fn compare(&mut self, at: (Course, Controller, u32), state: &State, host: &Command, target: &Command) {
+    fn compare(&mut self, at: (PaperTrajectory, Controller, u32), state: &State, host: &Command, target: &Command) {
         self.steps += 1;
         for word in words(target) {
             self.hash.add(word);

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use quatrack::{Command, State};
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_simulation::reproduction::table::Controller;
 use serde::Serialize;
 
@@ -123,7 +123,7 @@ pub struct Images {
 
 /// One flight as recorded on the host.
 struct Recorded {
-    course: Course,
+    course: PaperTrajectory,
     controller: Controller,
     steps: Vec<(State, Command)>,
 }

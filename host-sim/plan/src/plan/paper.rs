@@ -7,7 +7,7 @@ use super::{Plan, PlanError};
 /// The paper's trajectories.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Course {
+pub enum PaperTrajectory {
     /// 30 s through eight waypoints.
     Mild,
     /// The letter W in 12 s.

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quatrack_plan::plan::{self, Plan, PlanError};
 use quatrack_plan::trajectory::bspline::BSpline;
-use quatrack_plan::trajectory::fifth_order::{Course as _, Eight, FifthOrder};
+use quatrack_plan::trajectory::fifth_order::{Eight, FifthOrder, FlatTrajectory as _};
 use thiserror::Error;
 
 /// Position and its derivatives up to the jerk at one time, SI, world frame.

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::course::{Course, CourseError};
 use super::firmware::{Sensors, Setpoints, Tune};
-use super::flight::{Case, Flown, fly};
+use super::flight::{Case, FlightErrors, fly};
 use crate::flight::robustness;
 
 /// Standard deviation of a gyroscope reading, rad/s: 1 degree a second and a bit.
@@ -41,7 +41,7 @@ pub struct Row {
     pub lag_ms: f64,
     /// How it went.
     #[serde(flatten)]
-    pub flown: Flown,
+    pub flown: FlightErrors,
 }
 
 /// All flights of a vehicle.

@@ -17,7 +17,7 @@ use quatrack_design::certify::{
 use quatrack_design::design::DesignError;
 use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use quatrack_design::vehicle::{Vehicle, VehicleError};
-use quatrack_plan::trajectory::fifth_order::Course;
+use quatrack_plan::trajectory::fifth_order::FlatTrajectory;
 
 use super::motor_loop::{self, MotorLoop, PERIOD_S};
 use super::rigid_loop::{Conditions, RigidFlight, fly_rigid};
@@ -113,20 +113,20 @@ impl AwareTable {
     /// [`FlightError::Lag`] for a lag below two control periods.
     pub fn craft_law(&self) -> Result<CraftLaw<'_>, FlightError> {
         let actuation = Actuation::new(&self.airframe, motor_loop::RATE)?;
-        Ok(CraftLaw { flown: Flown::Gain(&self.gain), actuation })
+        Ok(CraftLaw { flown: ControllerSource::Gain(&self.gain), actuation })
     }
 }
 
 /// A law on a craft as the core takes it.
 #[derive(Clone, Copy, Debug)]
 pub struct CraftLaw<'a> {
-    flown: Flown<'a>,
+    flown: ControllerSource<'a>,
     actuation: Actuation,
 }
 
 /// What a controller is made of, on the craft.
 #[derive(Clone, Copy, Debug)]
-enum Flown<'a> {
+enum ControllerSource<'a> {
     Gain(&'a ActuatorAwareGain),
     Table(AcceptedTable<'a>),
     ByBodyRates(Equilibrium<'a>, Limits),
@@ -140,7 +140,7 @@ impl<'a> CraftLaw<'a> {
     pub fn of_table(vehicle: &Vehicle, table: AcceptedTable<'a>) -> Result<Self, FlightError> {
         let lag_s = table.lag().map_or_else(|| vehicle.motors().lag_s, |lag| f64::from(lag.lag_s()));
         let board = Actuation::new(&motor_loop::airframe(vehicle, lag_s)?, motor_loop::RATE)?;
-        Ok(Self { flown: Flown::Table(table), actuation: table.actuation(&board) })
+        Ok(Self { flown: ControllerSource::Table(table), actuation: table.actuation(&board) })
     }
 
     /// A law of the paper on a vehicle's motors, through the core's body-rate loop and mixer.
@@ -149,7 +149,7 @@ impl<'a> CraftLaw<'a> {
     /// [`FlightError`] where the core refuses vehicle or lag.
     pub fn by_body_rates(vehicle: &Vehicle, law: Equilibrium<'a>, lag_s: f64) -> Result<Self, FlightError> {
         let actuation = Actuation::new(&motor_loop::airframe(vehicle, lag_s)?, motor_loop::RATE)?;
-        Ok(Self { flown: Flown::ByBodyRates(law, vehicles::limits(vehicle)?), actuation })
+        Ok(Self { flown: ControllerSource::ByBodyRates(law, vehicles::limits(vehicle)?), actuation })
     }
 
     /// The craft as the core takes it.
@@ -164,9 +164,13 @@ impl<'a> CraftLaw<'a> {
 
     fn controller(&self) -> Result<CoreController<'_>, ControllerError> {
         match &self.flown {
-            Flown::Gain(gain) => Ok(CoreController::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE)),
-            Flown::ByBodyRates(law, limits) => Ok(CoreController::new(*law, *limits).with_actuation(&self.actuation)),
-            Flown::Table(table) => table.controller(&Settings {
+            ControllerSource::Gain(gain) => {
+                Ok(CoreController::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE))
+            }
+            ControllerSource::ByBodyRates(law, limits) => {
+                Ok(CoreController::new(*law, *limits).with_actuation(&self.actuation))
+            }
+            ControllerSource::Table(table) => table.controller(&Settings {
                 limits: Limits::NONE,
                 actuation: Some(&self.actuation),
                 feed_forward: FeedForward::Without,
@@ -195,7 +199,7 @@ pub fn fly(
     law: &CraftLaw<'_>,
     craft: &Craft,
     start: &RigidState,
-    course: &dyn Course,
+    course: &dyn FlatTrajectory,
     conditions: &Conditions,
 ) -> RigidFlight {
     let mut control = law.started(&start.thrusts_n);

@@ -15,7 +15,7 @@ use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
 use quatrack_design::design::codegen::rounded;
 use quatrack_design::design::synthesis::{EquilibriumWeights, PAPER_MU, lqr_equilibrium, lyapunov_equilibrium};
 use quatrack_design::vehicle::Vehicle;
-use quatrack_plan::trajectory::fifth_order::{Course as _, Eight};
+use quatrack_plan::trajectory::fifth_order::{Eight, FlatTrajectory as _};
 use serde::Serialize;
 
 use super::motor_laws::{

@@ -34,7 +34,7 @@ pub use board_certificate::BoardCertificate;
 pub use certified::Certified;
 pub(crate) use check::Comparison;
 pub use check::{Checked, Failed, check_design, check_folder, designs};
-pub use course::Course;
+pub use course::OnBoardTrajectory;
 pub use design::{Design, Method, Problem};
 pub use designed::{Designed, Gains, LinearModel, Poles, SampledProblem, TableRows, Weights};
 pub use error::GainsError;
