@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use super::{Failure, output};
 
-/// Where designs stand unless told otherwise.
+/// The folder of designs unless another is named.
 const FOLDER: &str = "gains";
 
 /// Designs gain tables, certifies them, and checks those that are committed.
@@ -239,7 +239,7 @@ fn require_folder(folder: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::input(format!(
-        "{}: no such folder here; run this where one stands, as in a checkout, or name a folder of designs",
+        "{}: no such folder here; run this beside one, as in a checkout, or name a folder of designs",
         folder.display()
     )))
 }

@@ -155,7 +155,7 @@ fn state_words(state: &State) -> [f32; 10] {
     [r.x, r.y, r.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z]
 }
 
-/// What stands for the way to the motors in the place of a controller.
+/// The number of the way to the motors, in the place of a controller's.
 const TO_MOTORS: usize = Controller::ALL.len() + 1;
 
 /// The flights of which the states are counted on the way to the motors.

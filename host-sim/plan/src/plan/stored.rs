@@ -1,4 +1,4 @@
-//! What the board stores: a planned trajectory in; Rust source for the image out, and the stored pieces themselves.
+//! Trajectories in the board's flash: planned pieces in; Rust source for the image out, and the stored pieces themselves.
 
 use std::fmt::Write as _;
 
@@ -15,7 +15,7 @@ mod image {
     include!("../../../../plans/aggressive.rs");
 }
 
-/// The pieces of a course as they stand in the board's flash.
+/// The pieces of a trajectory of the paper as they are stored in the board's flash.
 pub fn pieces(course: PaperTrajectory) -> &'static [Piece] {
     match course {
         PaperTrajectory::Mild => &image::MILD,

@@ -138,7 +138,7 @@ impl Stated {
 pub struct Design {
     /// Name of its design.
     pub name: &'static str,
-    /// Whom it is for.
+    /// The vehicle that it is for.
     pub vehicle: Vehicle,
     /// The lag that it is designed for, s.
     pub lag_s: f64,

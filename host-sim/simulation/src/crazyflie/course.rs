@@ -89,7 +89,7 @@ impl Course {
         self.at(t_s).map(|[position_m, ..]| position_m)
     }
 
-    /// Farthest that pieces are from the curve that they stand for, m; 0 for what is flown as it is.
+    /// Farthest that pieces are from the curve that they are fitted to, m; 0 for what is flown as it is.
     pub fn fit_error_m(&self) -> f64 {
         if let Self::Septics(septics) = self { septics.fit_error_m() } else { 0.0 }
     }

@@ -2,7 +2,7 @@
 //!
 //! The actuator-aware table flies with nothing stated where it is certified so, and with the motors' lag stated: every course
 //! with a noisy gyroscope, and a figure eight with exact measurements with one thing wrong at a time. The paper's tables fly at
-//! the lags that they stand, the two that hold no position over the ground on what is smooth alone.
+//! the lags that they tolerate, the two that hold no position over the ground on what is smooth alone.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! Laws carried to the motors of a vehicle: a vehicle, a lag and weights in; tables with their certificates, and what a
-//! law of the paper stands behind a rate loop, out; and one flight with any of them.
+//! Laws carried to the motors of a vehicle: a vehicle, a lag and weights in; tables with their certificates, and the
+//! lag that a law of the paper tolerates behind a rate loop, out; and one flight with any of them.
 
 use nalgebra::{DMatrix, SMatrix, Vector4};
 use quatrack::airframe::AirframeError;
@@ -181,7 +181,7 @@ impl<'a> CraftLaw<'a> {
     }
 }
 
-/// The motor lag that a gain of the paper stands at hover, s, behind the rate loop that the core would run for motors of
+/// The motor lag that a gain of the paper tolerates at hover, s, behind the rate loop that the core would run for motors of
 /// `lag_s`.
 ///
 /// # Errors
@@ -190,7 +190,7 @@ pub fn paper_law_limit_s(gain: &SMatrix<f64, 4, 9>, lag_s: f64) -> Result<f64, C
     let controller = Controller::memoryless(DMatrix::from_column_slice(4, 9, gain.as_slice()));
     let timing = Timing::at_rate(motor_loop::RATE.hz());
     let found = certify(&Plant::equilibrium(), &controller, &timing, Some(body_rate_bandwidth_rad_s(lag_s)))?;
-    // All channels at once stand last.
+    // All channels at once are the last.
     Ok(found.motors_in_rate_loop.iter().flatten().last().map_or(0.0, |limit| limit.stable_to_s))
 }
 

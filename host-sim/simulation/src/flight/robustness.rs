@@ -3,7 +3,7 @@
 //!
 //! A law flies only where its certificate holds: an actuator-aware table for a known lag from half to one and a half of
 //! that lag, the default table over all of [`Region::of_any_crazyflie`], one of the paper's, fed forward, behind the core's
-//! body-rate loop only if it stands that lag. What does not fly is listed with the figure that keeps it on the ground.
+//! body-rate loop only if it tolerates that lag. What does not fly is listed with the figure that keeps it on the ground.
 //!
 //! The flight is `x = sin(w t)`, `y = 1/2 sin(2 w t)` at 1 m with `w = 1.485 rad/s` (2.1 m/s), 12 s, from a start on the
 //! reference; the fast one has `w = 2.19 rad/s` (3.1 m/s). The f32 core runs at 500 Hz on the rigid plant.

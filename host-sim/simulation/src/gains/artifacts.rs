@@ -17,7 +17,7 @@ use super::rounding::{rounded, without_dust};
 pub struct Artifact {
     /// Where it belongs.
     pub path: PathBuf,
-    /// What stands in it.
+    /// Its bytes.
     pub contents: Vec<u8>,
 }
 

@@ -58,7 +58,7 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Descri
     })
 }
 
-/// The paper's trajectories as they stand on board: gains over time belong to their bits, and those of one that is planned
+/// The paper's trajectories as they are stored on board: gains over time belong to their bits, and those of one that is planned
 /// anew depend on the processor.
 fn stored(name: &str) -> Option<PiecewisePolynomial> {
     matches!(name, "mild" | "aggressive")
