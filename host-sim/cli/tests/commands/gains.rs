@@ -107,7 +107,7 @@ fn what_is_missing_or_off_by_a_percent_is_named_and_written_again() {
         "margin: 1.7675",
         "paper_limits.rs: line ",
         "0.069387",
-        "mild.rs: line 3 is",
+        "mild.rs: line 4 is",
         "aggressive.rs: cannot be read",
     ];
     assert_refused(&quatrack(&["gains", "check", there]), 1, &named);

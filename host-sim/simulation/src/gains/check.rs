@@ -43,7 +43,7 @@ impl Checked {
         let difference = match std::fs::read(&path) {
             Err(error) => Some(format!("cannot be read ({error}); make it with `cargo gains generate`")),
             Ok(committed) if is_near(&committed, &contents, comparison) => None,
-            Ok(committed) => byte_difference(&committed, &contents),
+            Ok(committed) => byte_difference(&committed, &with_near_lines_of(&committed, &contents, comparison)),
         };
         Self { path, difference, contents: Some(contents) }
     }
@@ -127,6 +127,14 @@ fn with_extension(folder: &Path, extensions: &[&str]) -> std::io::Result<Vec<Pat
     }
     paths.sort();
     Ok(paths)
+}
+
+/// The computed text with each line that is near the committed one as committed: the first difference is a real one.
+fn with_near_lines_of(committed: &[u8], computed: &[u8], comparison: Comparison) -> Vec<u8> {
+    let lines = |text| <[u8]>::split_inclusive(text, |byte| *byte == b'\n');
+    let nothing: &[u8] = &[];
+    let pairs = lines(computed).zip(lines(committed).chain(std::iter::repeat(nothing)));
+    pairs.flat_map(|(there, here)| if is_near(here, there, comparison) { here } else { there }).copied().collect()
 }
 
 fn is_near(committed: &[u8], computed: &[u8], comparison: Comparison) -> bool {
