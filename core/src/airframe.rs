@@ -1,4 +1,4 @@
-//! The craft as the motors see it: mass, inertia, lever arms and what a motor can do in; factors of the mixing out.
+//! The mass, inertia and motors of a craft in; how four motor forces mix to thrust and torque, and back, out.
 //!
 //! Four motors in an X, seen from above with the nose (body x) up and body y to the left:
 //!

@@ -72,7 +72,7 @@ impl core::error::Error for LimitsError {}
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "u8", into = "u8"))]
 pub struct Limited {
-    /// Twice [`Self::bits`], and one: never zero, so that a `Result` needs no discriminant of its own to be written.
+    /// `2 * bits + 1`. It is never zero, so that a `Result` of it stores its discriminant in the zero.
     marked: NonZeroU8,
 }
 

@@ -50,7 +50,7 @@ impl fmt::Display for Field {
 
 /// The first number that is not finite and where it stands, from groups of three numbers in the order of `fields`.
 ///
-/// On slices and out of line: it is small, and nobody who calls it is in a hurry.
+/// On slices and out of line: it is small, and no caller needs it to be fast.
 #[cold]
 #[inline(never)]
 pub(crate) fn first_non_finite(fields: &[Field], values: &[f32]) -> Option<(Field, f32)> {

@@ -1,7 +1,7 @@
 //! Unit quaternions, the project's one attitude convention: scalar first, Hamilton product, body to world.
 //!
 //! `q v q*` turns a vector given in the body frame into the world frame, and `dq/dt = 1/2 q (0, omega)` with the body
-//! rates `omega`. `q` and `-q` are the same attitude; who compares two of them moves the measured one to the
+//! rates `omega`. `q` and `-q` are the same attitude; a comparison of two moves the measured one to the
 //! reference's hemisphere first.
 
 use core::ops::{Mul, Neg};
@@ -116,7 +116,7 @@ impl Heading {
         Self::from_angle_inlined(psi_rad)
     }
 
-    /// The same, for who is in a hurry.
+    /// The same, inlined for the control step.
     #[inline(always)]
     pub(crate) fn from_angle_inlined(psi_rad: f32) -> Self {
         let (s, c) = sin_cos(0.5 * psi_rad);

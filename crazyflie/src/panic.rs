@@ -1,4 +1,4 @@
-//! Panics in, a symbol that nobody has out: the object is whole only if nothing in it can panic.
+//! Panics in, an undefined symbol out: the object is whole only if nothing in it can panic.
 
 use core::panic::PanicInfo;
 

@@ -1,4 +1,4 @@
-//! A value that several tasks use, one at a time: who comes second goes away empty-handed instead of waiting.
+//! A value that several tasks use, one at a time: the second gets nothing instead of waiting.
 
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -27,7 +27,7 @@ impl<T> TryCell<T> {
         if self.taken.swap(true, Ordering::Acquire) {
             return None;
         }
-        // SAFETY: whoever else comes before `taken` is cleared has turned back above.
+        // SAFETY: any other task that comes before `taken` is cleared has returned above.
         let result = act(unsafe { &mut *self.value.get() });
         self.taken.store(false, Ordering::Release);
         Some(result)

@@ -1,7 +1,7 @@
 //! TIM5 as a free-running counter: the timer in, counts out.
 //!
 //! On the board it counts the timer's clock. Under QEMU with `-icount shift=0` an instruction takes a nanosecond and the
-//! emulated timer runs at 1 GHz, so that it counts instructions; who relies on that measures it first.
+//! emulated timer runs at 1 GHz, so that it counts instructions; code that relies on that measures it first.
 
 use stm32f4::stm32f405::{RCC, TIM5};
 

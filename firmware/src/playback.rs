@@ -170,7 +170,7 @@ impl Playback {
     }
 }
 
-/// Stands for a reference where there is none; it is refused, and nobody asks for it.
+/// The reference where there is none: it is refused, and no caller asks for it.
 const NOWHERE: FlatSample = FlatSample::at_rest(Vector3::new(f32::NAN, f32::NAN, f32::NAN), 0.0);
 
 #[cfg(test)]

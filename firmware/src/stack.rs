@@ -53,7 +53,7 @@ pub fn high_water_bytes() -> u32 {
 /// How far below a caller's stack [`paint_below`] paints, bytes.
 const BELOW_BYTES: usize = 4 * 1024;
 
-/// Left out right below the caller: the frame of whoever paints and looks, bytes.
+/// Left out right below the caller: the frame of the function that paints and looks, bytes.
 const OWN_BYTES: usize = 64;
 
 /// Paints the stack that a function will use which is called next.

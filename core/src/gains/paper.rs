@@ -1,4 +1,4 @@
-//! The paper's four gain tables, Table I: made by `cargo run --example paper_gains` and not edited by hand.
+//! The paper's four gain tables, Table I: made by `cargo gains generate` and not edited by hand.
 
 use crate::law::{EquilibriumGain, FlatOutputGain};
 

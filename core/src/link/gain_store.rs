@@ -122,7 +122,7 @@ impl<const KNOTS: usize> GainStore<KNOTS> {
         }
     }
 
-    /// The board, for a table; who is assigned to nobody flies nobody's.
+    /// The vehicle and the rate that this board is assigned to. A board that is assigned to none refuses every table.
     fn board_for(&self, table: &TableHead) -> Result<&(Vehicle, Rate), AcceptError> {
         self.board.as_ref().ok_or(AcceptError::Vehicle { table: table.vehicle })
     }

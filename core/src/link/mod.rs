@@ -19,7 +19,7 @@
 //! duplicates, late and replayed frames are rejected; gaps are counted as lost. The board opens a session on
 //! [`ToBoard::Hello`] with a session number ahead of the current one (in serial-number arithmetic), the host on its own
 //! choice: a restarted host takes a later number, the seconds since 1970 say, and is not locked out. A session ends with
-//! its last sequence number, after 49 days at 1 kHz. None of this authenticates: who can write to the line can fly.
+//! its last sequence number, after 49 days at 1 kHz. None of this authenticates: anybody with access to the line can fly.
 //!
 //! On the target, [`BlobReceiver`] and [`TrajectoryStore`] are best statics of their own: they start as zeros and take
 //! no flash.

@@ -163,7 +163,7 @@ impl<const P: usize> TrajectoryStore<P> {
         if self.second_in_use { second } else { first }
     }
 
-    /// The slot in use and the spare one, for who plays one while loading the other.
+    /// The slot in use and the spare one: one is played while the other is loaded.
     pub fn split(&mut self) -> (&TrajectorySlot<P>, &mut TrajectorySlot<P>) {
         let [first, second] = &mut self.slots;
         if self.second_in_use { (second, first) } else { (first, second) }

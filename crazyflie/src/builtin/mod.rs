@@ -2,21 +2,15 @@
 
 #[rustfmt::skip]
 mod motor_gains;
+mod paper_limits;
 
 use quatrack::law::ActuatorAwareGain;
 
-/// Of a table of the paper: the factor by which all channels of the command may be off at once, from its certificate, and
-/// the longest lag of the motors, s, that the body-rate loop of this crate still makes up for at hover.
-pub(crate) type Certified = (f32, f32);
+pub(crate) use paper_limits::{LQR_E, LQR_F, LYAP_E, LYAP_F};
 
-/// (LYAP-E).
-pub(crate) const LYAP_E: Certified = (2.4, 0.0687);
-/// (LQR-E).
-pub(crate) const LQR_E: Certified = (3.506, 0.0218);
-/// (LYAP-F). Its position over the ground answers to no attitude: no lag is certified, this is as far as it has flown.
-pub(crate) const LYAP_F: Certified = (3.714, 0.02);
-/// (LQR-F), likewise.
-pub(crate) const LQR_F: Certified = (14.71, 0.02);
+/// Of a table of the paper: the factor by which all channels of the command may be off at once, from its certificate, and
+/// the longest lag of the motors, s, with which it is flown.
+pub(crate) type Certified = (f32, f32);
 
 /// A gain for motor forces with what it is certified for.
 #[derive(Clone, Copy, Debug)]

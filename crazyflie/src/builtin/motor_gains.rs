@@ -1,4 +1,4 @@
-//! Gains for motor forces of each craft: made by `cargo run --example crazyflie_tables` and not edited by hand.
+//! Gains for motor forces of each craft: made by `cargo gains generate` and not edited by hand.
 //!
 //! With the lag that is stated each is certified for a true one off by a quarter, the mass off by 20 %, the inertia by
 //! 30 % and 10 ms of delay, all at once, and with the feedback off by its factor; the last of each craft with none stated

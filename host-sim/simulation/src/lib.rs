@@ -2,6 +2,7 @@
 //! the Crazyflie controller as they are on board.
 //!
 //! ```text
+//! generated            every generated file of a checkout against what belongs in it
 //! scenario             one file that every command flies: a craft, its air, a course and a law
 //!   rivals             Mellinger's and Lee's laws and the cascaded PID
 //!     control_law      the interface by which a law flies
@@ -20,6 +21,7 @@ pub mod control_law;
 pub mod crazyflie;
 pub mod flight;
 pub mod gains;
+pub mod generated;
 pub mod integrator;
 pub mod plant;
 pub mod reproduction;

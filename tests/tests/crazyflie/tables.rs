@@ -6,28 +6,23 @@ use std::sync::atomic::Ordering::Relaxed;
 use nalgebra::{DMatrix, Vector3};
 use quatrack::Limits;
 use quatrack::gains::ConstantGain;
+use quatrack::gains::paper;
 use quatrack::gains::table::{
     Certificate, GainTable, Hash, Margins, Name, Rows, TABLE_BYTES_MAX, TableHead, Vehicle as TableVehicle,
 };
 use quatrack_crazyflie::abi::{Attitude, Mode, Modes, Setpoint};
-use quatrack_crazyflie::craft::{Craft as Flown, KNOWN, RATE};
+use quatrack_crazyflie::craft::{Craft as FirmwareCraft, KNOWN, RATE};
 use quatrack_crazyflie::ffi;
-use quatrack_crazyflie::tables::{Refusal, Table};
+use quatrack_crazyflie::tables::{Refusal, Table, TableId};
 use quatrack_crazyflie::upload::{PACKET_BYTES, Packet, Status};
 use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use quatrack_design::design::discretise::zero_order_hold;
-use quatrack_simulation::crazyflie::{Course, Design, Firmware, Sensors, Setpoints, Stated, Tune, motor_gains};
+use quatrack_simulation::crazyflie::{Course, Design, Firmware, Sensors, Setpoints, Stated, Tune};
 use quatrack_simulation::plant::{Craft, RigidState};
 use quatrack_simulation::vehicles;
 
 const QUIET: Sensors = Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 };
 const LAG_S: f32 = 0.0635;
-
-#[test]
-fn the_source_of_the_gains_is_what_the_designs_give() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crazyflie/src/builtin/motor_gains.rs");
-    assert_eq!(std::fs::read_to_string(path).unwrap(), motor_gains().unwrap());
-}
 
 /// The lag that a table for motor forces reckons with, s, and its gain.
 fn flown(table: &Table) -> (f32, &quatrack::law::ActuatorAwareGain) {
@@ -43,7 +38,8 @@ fn gain_of<'t>(table: &'t GainTable<'_>) -> &'t quatrack::law::ActuatorAwareGain
 #[test]
 fn a_stated_lag_is_flown_with_the_committed_design_that_is_certified_for_it() {
     for (index, (known, designs)) in KNOWN.iter().zip(Design::of_crafts().unwrap()).enumerate() {
-        let (name, craft) = (known.vehicle.name.as_str(), Flown::with(known.airframe, known.vehicle, index).unwrap());
+        let (name, craft) =
+            (known.vehicle.name.as_str(), FirmwareCraft::with(known.airframe, known.vehicle, index).unwrap());
         let tables = designs.map(|design| {
             let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../gains/generated/{}.bin", design.name));
             GainTable::from_bytes(&std::fs::read(path).unwrap()).unwrap().owned().unwrap()
@@ -109,8 +105,15 @@ fn lateral_radius([kx, kq, kv]: [f64; 3], lag_s: f64) -> f64 {
 
 #[test]
 fn the_longest_lags_of_the_papers_tables_are_where_hover_becomes_unstable() {
-    for (gains, lag_s) in [([31.6228, 45.7951, 25.4484], 0.0218), ([3.2619777, 12.0, 2.4464831], 0.0687)] {
-        assert!(lateral_radius(gains, lag_s) < 1.0 && lateral_radius(gains, 1.01 * lag_s) > 1.0, "{lag_s} s");
+    let craft = FirmwareCraft::with(KNOWN[0].airframe, KNOWN[0].vehicle, 0).unwrap();
+    for (number, gain) in [(TableId::LqrE, &paper::LQR_E), (TableId::LyapE, &paper::LYAP_E)] {
+        let is_flown = |lag_s: f32| Table::choose(number as u8, &craft.with_motor_lag(lag_s), None).is_ok();
+        let longest_s =
+            (40_u16..1000).map(|steps| f32::from(steps) / 1e4).take_while(|lag_s| is_flown(*lag_s)).last().unwrap();
+        let pitch = gain.gain().rows()[2].map(f64::from);
+        let radius = |lag_s: f64| lateral_radius([pitch[0], pitch[4], pitch[6]], lag_s);
+        let longest_s = f64::from(longest_s);
+        assert!(radius(longest_s) < 1.0 && radius(1.01 * longest_s) > 1.0, "{number:?}: {longest_s} s");
     }
 }
 

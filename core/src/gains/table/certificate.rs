@@ -112,7 +112,8 @@ impl Certificate {
         ]
     }
 
-    /// The first figure that says nothing, with its value: a margin that allows for no error, no number at all.
+    /// The first figure that certifies nothing, with its value: a gain factor of 1 or less, a phase or time of 0 or less, a
+    /// figure above its maximum, NaN.
     pub(super) fn says_nothing(&self) -> Option<(Figure, f32)> {
         let says_something = |(figure, value, max): &(Figure, f32, f32)| {
             let certifies = match figure {

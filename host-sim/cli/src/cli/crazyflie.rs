@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use quatrack_cli::pil::crazyflie::count;
 use quatrack_cli::pil::image;
-use quatrack_simulation::crazyflie::Report;
+use quatrack_simulation::crazyflie::CrazyflieReport;
 use quatrack_simulation::vehicles;
 
 use super::{Failure, output};
@@ -33,7 +33,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         return report(args, &counts);
     }
     let vehicle = vehicles::by_name(&args.vehicle).map_err(Failure::input)?;
-    report(args, &Report::of(&vehicle).map_err(Failure::input)?)
+    report(args, &CrazyflieReport::of(&vehicle).map_err(Failure::input)?)
 }
 
 fn report(args: &Args, figures: &(impl std::fmt::Display + serde::Serialize)) -> Result<(), Failure> {

@@ -115,7 +115,7 @@ impl fmt::Display for Controller {
 
 /// The flight as it is written to a file: figures, and when and why it was lost.
 #[derive(Serialize)]
-struct Report {
+struct FlightReport {
     #[serde(flatten)]
     metrics: Metrics,
     lost: Option<String>,
@@ -128,7 +128,7 @@ enum Gain {
 }
 
 /// A flight, with what is told of how it was flown.
-struct Flown {
+struct DescribedFlight {
     /// The law and its gains.
     law: String,
     /// The arithmetic and the rate.
@@ -149,7 +149,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     report(args, &flown)
 }
 
-fn fly_paper(args: &Args, controller: Controller, rate: Option<Rate>) -> Result<Flown, Failure> {
+fn fly_paper(args: &Args, controller: Controller, rate: Option<Rate>) -> Result<DescribedFlight, Failure> {
     let gain = design(args, controller)?;
     let trajectory = load(args)?;
     let limits = args.limits.clone().unwrap_or_else(LimitsChoice::none);
@@ -165,7 +165,13 @@ fn fly_paper(args: &Args, controller: Controller, rate: Option<Rate>) -> Result<
             (fly_f64_continuous(args, &gain, &trajectory, &limits)?, "f64, continuous".to_owned())
         }
     };
-    Ok(Flown { law: controller.to_string(), clock, limits: limits.name, duration_s: trajectory.duration_s(), flight })
+    Ok(DescribedFlight {
+        law: controller.to_string(),
+        clock,
+        limits: limits.name,
+        duration_s: trajectory.duration_s(),
+        flight,
+    })
 }
 
 fn checked_rate(hz: f64) -> Result<Rate, Failure> {
@@ -314,8 +320,8 @@ fn fly_f64_continuous(
     Ok(fly_continuous(&Exact(trajectory), |x, target| feedback.input(x, target), solver))
 }
 
-fn report(args: &Args, flown: &Flown) -> Result<(), Failure> {
-    let Flown { law, clock, limits, duration_s, flight } = flown;
+fn report(args: &Args, flown: &DescribedFlight) -> Result<(), Failure> {
+    let DescribedFlight { law, clock, limits, duration_s, flight } = flown;
     let metrics = Metrics::of(flight);
     let feed = if args.feed_forward { ", feed-forward" } else { "" };
     let trajectory = &args.trajectory;
@@ -352,7 +358,7 @@ fn report(args: &Args, flown: &Flown) -> Result<(), Failure> {
     }
     if let Some(path) = &args.json {
         let lost = flight.lost.as_ref().map(|lost| format!("{:.2} s: {}", lost.time_s, lost.reason));
-        output::write_json(path, &Report { metrics, lost })?;
+        output::write_json(path, &FlightReport { metrics, lost })?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

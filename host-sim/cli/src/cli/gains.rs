@@ -8,12 +8,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use quatrack_simulation::gains::{self, Certified, Checked, Design, Failed, GainsError};
+use quatrack_simulation::generated::{self, GenerateError};
 use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Failure, output};
 
-/// Where designs stand unless told otherwise.
+/// The folder of designs unless another is named.
 const FOLDER: &str = "gains";
 
 /// Designs gain tables, certifies them, and checks those that are committed.
@@ -42,7 +43,17 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
-    /// Computes everything again and compares it with the files that are there: tables byte for byte, figures to 1e-6.
+    /// Writes every generated file that is not what its design gives: the tables of a folder and, in a checkout, the
+    /// sources made of them: core/src/gains/paper.rs, crazyflie/src/builtin/motor_gains.rs and paper_limits.rs, plans/*.rs.
+    ///
+    /// A file that `check` passes stays as it is. Exit code 1 for a file that no design gives.
+    Generate {
+        /// Folders of designs [default: gains]
+        #[arg(value_name = "DIR")]
+        folders: Vec<PathBuf>,
+    },
+    /// Computes everything again and compares it with the files that are there: tables and sources byte for byte, figures
+    /// and coefficients of plans to 1e-6. In a checkout these are all the files that `generate` writes.
     ///
     /// Exit code 1 with the first difference of each file.
     Check {
@@ -76,6 +87,7 @@ enum Command {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match &args.command {
         Command::Design { designs, out, json } => design(designs, out.as_deref(), json.as_deref()),
+        Command::Generate { folders } => generate(folders),
         Command::Check { paths, json } => check(paths, json.as_deref()),
         Command::Show { file, json } => show::show(file, json.as_deref()),
         Command::List { folder, json } => list(folder.as_deref(), json.as_deref()),
@@ -136,13 +148,17 @@ fn figures(document: &Value) -> String {
     text
 }
 
-fn check(paths: &[PathBuf], json: Option<&Path>) -> Result<(), Failure> {
+/// What was found of folders of designs, or of designs; of [`FOLDER`] where none is named.
+fn compared(paths: &[PathBuf]) -> Result<Vec<Checked>, Failure> {
     let default = [PathBuf::from(FOLDER)];
     let paths = if paths.is_empty() { require_folder(Path::new(FOLDER)).map(|()| &default[..])? } else { paths };
     let mut checked: Vec<Checked> = Vec::new();
     for path in paths {
-        let found = if path.is_dir() { gains::check_folder(path) } else { check_file(path) };
-        checked.extend(found.map_err(|Failed { path, error }| failed(&path, &error))?);
+        let found = if path.is_dir() { generated::check(path) } else { check_file(path).map_err(GenerateError::Table) };
+        checked.extend(found.map_err(|error| match error {
+            GenerateError::Table(Failed { path, error }) => failed(&path, &error),
+            other => Failure::verdict(other),
+        })?);
     }
     if checked.is_empty() {
         return Err(Failure::input(format!(
@@ -150,6 +166,35 @@ fn check(paths: &[PathBuf], json: Option<&Path>) -> Result<(), Failure> {
             paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
         )));
     }
+    Ok(checked)
+}
+
+fn generate(folders: &[PathBuf]) -> Result<(), Failure> {
+    let mut text = String::new();
+    let (mut same, mut left) = (0, String::new());
+    for file in compared(folders)? {
+        match (&file.difference, &file.contents) {
+            (None, _) => same += 1,
+            (Some(_), Some(contents)) => {
+                if let Some(folder) = file.path.parent() {
+                    output::create_dir(folder)?;
+                }
+                output::write(&file.path, contents)?;
+                wrote(&mut text, &file.path);
+                if file.path.parent().is_some_and(|folder| folder.ends_with("plans")) {
+                    text += "  run this once more: gains along a trajectory are made for the plans built into this program\n";
+                }
+            }
+            (Some(_), None) => left = format!("{left}{}\n", told(&file)),
+        }
+    }
+    let _ = writeln!(text, "{same} files were what their designs give");
+    output::print(&text)?;
+    if left.is_empty() { Ok(()) } else { Err(Failure::verdict(left.trim_end().replace('\n', "\nquatrack: "))) }
+}
+
+fn check(paths: &[PathBuf], json: Option<&Path>) -> Result<(), Failure> {
+    let checked = compared(paths)?;
     if let Some(path) = json {
         let files: Vec<Value> =
             checked.iter().map(|file| json!({ "file": file.path, "difference": file.difference })).collect();
@@ -194,7 +239,7 @@ fn require_folder(folder: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::input(format!(
-        "{}: no such folder here; run this where one stands, as in a checkout, or name a folder of designs",
+        "{}: no such folder here; run this beside one, as in a checkout, or name a folder of designs",
         folder.display()
     )))
 }

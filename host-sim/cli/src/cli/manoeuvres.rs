@@ -38,7 +38,7 @@ pub(crate) struct Args {
 }
 
 #[derive(Serialize)]
-struct Report {
+struct ManoeuvresReport {
     vehicle: String,
     lag_ms: f64,
     rows: Vec<Row>,
@@ -66,7 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let table =
         AwareTable::new(vehicle, default_lag_s(vehicle), &ActuatorAwareWeights::STANDARD, &Region::of_any_crazyflie())
             .map_err(fail)?;
-    let mut report = Report { vehicle: vehicle.name().to_owned(), lag_ms, rows: Vec::new() };
+    let mut report = ManoeuvresReport { vehicle: vehicle.name().to_owned(), lag_ms, rows: Vec::new() };
     let mut figures = Vec::new();
     for manoeuvre in Manoeuvre::ALL {
         let flight = manoeuvre.fly(vehicle, lag_s, &table).map_err(fail)?;
@@ -105,7 +105,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn table_text(report: &Report) -> String {
+fn table_text(report: &ManoeuvresReport) -> String {
     let mut text = format!(
         "{}, motor lag {} ms\n{:<12} {:<22} {:>9} {:>9} {:>10} {:>8} {:>9} {:>10}\n",
         report.vehicle,

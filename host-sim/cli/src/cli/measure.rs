@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use quatrack_cli::pil::PilError;
 use quatrack_cli::pil::image::{self, Image};
-use quatrack_cli::pil::measure::{self, Images, Report};
+use quatrack_cli::pil::measure::{self, Images, InstructionReport};
 
 use super::{Failure, output};
 
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn counted(args: &Args) -> Result<Report, PilError> {
+fn counted(args: &Args) -> Result<InstructionReport, PilError> {
     let images = match &args.image {
         Some(path) => {
             let folder = if path.is_dir() { path.as_path() } else { path.parent().unwrap_or(path) };

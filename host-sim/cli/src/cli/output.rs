@@ -40,7 +40,7 @@ pub(crate) fn create_dir(dir: &Path) -> Result<(), Failure> {
     })
 }
 
-/// Writes a file under a temporary name beside it and renames it, so that what stands under `path` is always whole.
+/// Writes a file under a temporary name beside it and renames it, so that the file at `path` is always whole.
 pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
     let mut partial = path.as_os_str().to_owned();
     partial.push(".partial");

@@ -68,7 +68,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-fn flown(args: &Args) -> Result<lock_step::Report, PilError> {
+fn flown(args: &Args) -> Result<lock_step::LockStepReport, PilError> {
     let interrupt = Interrupt::listen()?;
     let mut client = match &args.port {
         Some(port) => Client::connect(Line::open_port(port)?, None, interrupt)?,

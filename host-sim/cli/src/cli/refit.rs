@@ -56,7 +56,7 @@ pub(crate) struct Args {
 
 /// What is printed, and written as JSON.
 #[derive(Serialize)]
-struct Report {
+struct RefitReport {
     original_pieces: usize,
     pieces: usize,
     memory_bytes: usize,
@@ -96,7 +96,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let gain = EquilibriumGain::new(rounded(&gain)).map_err(Failure::input)?;
     let compare =
         |feed_forward| compare(&original, stored.polynomials(), &gain, feed_forward).map_err(|error| failed(&error));
-    let report = Report {
+    let report = RefitReport {
         original_pieces: original.pieces().len(),
         pieces: stored.pieces().len(),
         memory_bytes: stored.bytes(),
@@ -147,8 +147,8 @@ fn compare(
     })
 }
 
-fn text(name: &str, report: &Report) -> String {
-    let Report { original_pieces, pieces, memory_bytes, duration_s, .. } = report;
+fn text(name: &str, report: &RefitReport) -> String {
+    let RefitReport { original_pieces, pieces, memory_bytes, duration_s, .. } = report;
     let how = if original_pieces == pieces { "kept" } else { "of degree 7, meeting up to jerk" };
     let off = &report.largest_difference;
     let mut text = format!(

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 use quatrack_cli::figures::{Curve, TrackingFigure};
 use quatrack_design::model::position;
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::{self, Plan, PlanError};
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::closed_loop::Flight;
-use quatrack_simulation::reproduction::beyond::Beyond;
+use quatrack_simulation::reproduction::extensions::Extensions;
 use quatrack_simulation::reproduction::report::Reproduction;
 use quatrack_simulation::reproduction::table::Controller;
 
@@ -39,11 +39,16 @@ pub(crate) struct Args {
 }
 
 /// Number of the figure, its title, the course and the controllers that it shows.
-const FIGURES: [(u32, &str, Course, [Controller; 2]); 4] = [
-    (2, "Lyapunov design, mu = 2, mild trajectory", Course::Mild, [Controller::LyapF, Controller::LyapE]),
-    (3, "Lyapunov design, mu = 2, aggressive trajectory", Course::Aggressive, [Controller::LyapF, Controller::LyapE]),
-    (4, "LQR design, mild trajectory", Course::Mild, [Controller::LqrF, Controller::LqrE]),
-    (5, "LQR design, aggressive trajectory", Course::Aggressive, [Controller::LqrF, Controller::LqrE]),
+const FIGURES: [(u32, &str, PaperTrajectory, [Controller; 2]); 4] = [
+    (2, "Lyapunov design, mu = 2, mild trajectory", PaperTrajectory::Mild, [Controller::LyapF, Controller::LyapE]),
+    (
+        3,
+        "Lyapunov design, mu = 2, aggressive trajectory",
+        PaperTrajectory::Aggressive,
+        [Controller::LyapF, Controller::LyapE],
+    ),
+    (4, "LQR design, mild trajectory", PaperTrajectory::Mild, [Controller::LqrF, Controller::LqrE]),
+    (5, "LQR design, aggressive trajectory", PaperTrajectory::Aggressive, [Controller::LqrF, Controller::LqrE]),
 ];
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -55,7 +60,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (mild, aggressive) = (planned(plan::paper::mild())?, planned(plan::paper::aggressive())?);
     let reproduction = Reproduction::fly(&mild, &aggressive).map_err(Failure::verdict)?;
     output::print(&format!("{reproduction}\n"))?;
-    let beyond = args.beyond.then(|| Beyond::fly(&mild, &aggressive)).transpose().map_err(Failure::verdict)?;
+    let beyond = args.beyond.then(|| Extensions::fly(&mild, &aggressive)).transpose().map_err(Failure::verdict)?;
     if let Some(beyond) = &beyond {
         output::print(&format!("{beyond}\n"))?;
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use quatrack_simulation::flight::robustness::{self, CASES, Report, Row};
+use quatrack_simulation::flight::robustness::{self, CASES, RobustnessReport, Row};
 
 use super::vehicle::VehicleChoice;
 use super::{Failure, output};
@@ -31,7 +31,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn table(report: &Report) -> String {
+fn table(report: &RobustnessReport) -> String {
     let mut columns: Vec<(&str, f64)> = report.rows.iter().map(|row| (row.law, row.lag_ms)).collect();
     columns.dedup();
     let mut text = format!(

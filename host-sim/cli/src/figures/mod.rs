@@ -31,7 +31,7 @@ pub struct Curve<'a> {
 /// What to show.
 #[derive(Clone, Debug)]
 pub struct TrackingFigure<'a> {
-    /// Stands above the figure.
+    /// Printed above the figure.
     pub title: &'a str,
     /// Drawn dashed; the axes are fitted to it, and to flights as far as they stay near it.
     pub reference: Curve<'a>,

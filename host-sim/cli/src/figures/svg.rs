@@ -1,7 +1,7 @@
 //! Lines, curves, areas and texts in, the first one lowest; an SVG document out.
 //!
 //! Coordinates are user units, x to the right, y down. Curves are polylines, dashes are dashes and texts are texts, for
-//! whoever edits the figure.
+//! an editor of the figure.
 
 use super::style::{Colour, FONT_FAMILY, Stroke};
 

@@ -56,7 +56,7 @@ impl Client {
             identity: NOBODY,
             fault: None,
         };
-        // Ends whatever noise stands before it.
+        // Ends any noise before it.
         client.line.send(&[quatrack::link::DELIMITER])?;
         client.identity =
             client.exchange(&ToBoard::Hello, "the board does not say hello", |answer, _| match answer {
@@ -75,7 +75,7 @@ impl Client {
         Self::open(session, self.line, self.emulator, self.interrupt)
     }
 
-    /// Who answered.
+    /// The identity of the board that answered.
     pub fn identity(&self) -> &Identity {
         &self.identity
     }
@@ -227,7 +227,7 @@ impl Client {
     }
 }
 
-/// Stands for a board that has not answered yet.
+/// The identity of a board that has not answered yet.
 const NOBODY: Identity = Identity {
     firmware: quatrack::link::Version { major: 0, minor: 0, patch: 0 },
     control_image: 0,

@@ -125,7 +125,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // A folder that cannot be removed is left to whoever empties the temporary ones.
+        // A folder that cannot be removed is left to the system, which empties the temporary ones.
         let _ = fs::remove_dir_all(&self.path);
     }
 }

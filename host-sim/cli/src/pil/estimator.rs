@@ -40,7 +40,7 @@ const FILTERS: [(&str, EstimatorConfig); 3] = [
 
 /// What the estimator costs.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct EstimatorReport {
     /// A prediction, by the filter: with drag along two axes, by all axes of the accelerometer, as the Crazyflie's.
     pub prediction: BTreeMap<&'static str, Count>,
     /// An update with a position.
@@ -87,7 +87,7 @@ fn hashes(config: EstimatorConfig) -> Result<Vec<u32>, EstimatorError> {
 ///
 /// # Errors
 /// [`PilError`].
-pub fn count(image: &Path, interrupt: &Interrupt) -> Result<Report, PilError> {
+pub fn count(image: &Path, interrupt: &Interrupt) -> Result<EstimatorReport, PilError> {
     let folder = Folder::create()?;
     let samples = (0..STEPS).flat_map(|step| {
         let (imu, position) = sample(step);
@@ -104,7 +104,7 @@ pub fn count(image: &Path, interrupt: &Interrupt) -> Result<Report, PilError> {
 }
 
 /// Nothing where words are missing.
-fn report(words: &[u32]) -> Option<Result<Report, PilError>> {
+fn report(words: &[u32]) -> Option<Result<EstimatorReport, PilError>> {
     let ([_, short, long], words) = words.split_first_chunk::<3>()?;
     let counted = long.wrapping_sub(*short);
     if counted != super::measure::LOOP_INSTRUCTIONS {
@@ -126,7 +126,7 @@ fn report(words: &[u32]) -> Option<Result<Report, PilError>> {
         prediction.insert(name, of(steps.iter().map(|[count, ..]| *count))?);
         update.insert(name, of(steps.iter().map(|[_, count, _]| *count))?);
     }
-    (update.len() == FILTERS.len()).then_some(Ok(Report {
+    (update.len() == FILTERS.len()).then_some(Ok(EstimatorReport {
         prediction,
         update,
         prediction_stack_bytes,

@@ -4,7 +4,7 @@ use quatrack::link::{Table, TrajectoryId};
 use quatrack::{Command, Controller as CoreController, Limits, Measured, Memory, Player, Rate, State, Target};
 use quatrack_design::model::StateVector;
 use quatrack_plan::plan;
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::closed_loop::{Flight, HeldCommand, fly_sampled};
@@ -18,16 +18,16 @@ use super::PilError;
 pub const RATE_HZ: u32 = 500;
 
 /// Both courses.
-pub const COURSES: [Course; 2] = [Course::Mild, Course::Aggressive];
+pub const COURSES: [PaperTrajectory; 2] = [PaperTrajectory::Mild, PaperTrajectory::Aggressive];
 
 /// Ages beyond which the board ends a flight, ticks. A host that is held up for seconds is no danger here.
 pub(super) const PATIENCE_TICKS: u32 = 10_000;
 
 /// The board's name for a course.
-pub(super) fn trajectory_id(course: Course) -> TrajectoryId {
+pub(super) fn trajectory_id(course: PaperTrajectory) -> TrajectoryId {
     match course {
-        Course::Mild => TrajectoryId::Mild,
-        Course::Aggressive => TrajectoryId::Aggressive,
+        PaperTrajectory::Mild => TrajectoryId::Mild,
+        PaperTrajectory::Aggressive => TrajectoryId::Aggressive,
     }
 }
 
@@ -66,10 +66,10 @@ impl Plans {
     }
 
     /// One of them.
-    pub fn of(&self, course: Course) -> &PiecewisePolynomial {
+    pub fn of(&self, course: PaperTrajectory) -> &PiecewisePolynomial {
         match course {
-            Course::Mild => &self.mild,
-            Course::Aggressive => &self.aggressive,
+            PaperTrajectory::Mild => &self.mild,
+            PaperTrajectory::Aggressive => &self.aggressive,
         }
     }
 }
@@ -85,7 +85,7 @@ impl HostCore {
     ///
     /// # Errors
     /// [`PilError::Answer`] where the core refuses what is stored.
-    pub fn new(course: Course, controller: Controller) -> Result<Self, PilError> {
+    pub fn new(course: PaperTrajectory, controller: Controller) -> Result<Self, PilError> {
         let trajectory = quatrack::Trajectory::new(stored::pieces(course))
             .map_err(|error| PilError::Answer(format!("the stored {course:?} trajectory: {error}")))?;
         let rate = Rate::from_hz(RATE_HZ).ok_or_else(|| PilError::Answer(format!("no rate of {RATE_HZ} Hz")))?;

@@ -1,4 +1,4 @@
-//! Signals in, a flag out: who is asked to stop still removes what it made.
+//! Signals in, a flag out: a command that is asked to stop still removes its temporary files.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};

@@ -5,7 +5,7 @@ use std::fmt;
 
 use quatrack::link::{LawChoice, LimitsSetting, Parameter, ToBoard, TrajectoryCommand};
 use quatrack::{Command, ErrorForm, State, Step};
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 use quatrack_simulation::flight::metrics::Metrics;
 use quatrack_simulation::reproduction::report::digits;
@@ -20,9 +20,9 @@ use super::motors::{self, MotorReport};
 
 /// What came of all flights.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct LockStepReport {
     /// IAE of the flights that the target commanded, m s; nothing for a flight that was cut short.
-    pub iae: BTreeMap<Course, BTreeMap<Controller, Option<f64>>>,
+    pub iae: BTreeMap<PaperTrajectory, BTreeMap<Controller, Option<f64>>>,
     /// Whether every command and every motor force had the host's bits.
     pub bit_exact: bool,
     /// Commands compared.
@@ -48,7 +48,7 @@ pub struct Report {
 /// Two commands for one state that are not the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
-    course: Course,
+    course: PaperTrajectory,
     controller: Controller,
     step: u32,
     state: State,
@@ -60,13 +60,13 @@ pub struct Difference {
 ///
 /// # Errors
 /// [`PilError`].
-pub fn fly_all(client: &mut Client, limit: Option<u32>, advance: &dyn Fn()) -> Result<Report, PilError> {
+pub fn fly_all(client: &mut Client, limit: Option<u32>, advance: &dyn Fn()) -> Result<LockStepReport, PilError> {
     let plans = Plans::solve()?;
     prepare(client)?;
     let of_commands = limit.map(|limit| limit - of_motors(limit));
     let flights = COURSES.iter().flat_map(|course| Controller::ALL.map(|controller| (*course, controller)));
     let mut comparison = Comparison { hash: Fnv1a::new(), steps: 0, difference: None };
-    let mut iae: BTreeMap<Course, BTreeMap<Controller, Option<f64>>> = BTreeMap::new();
+    let mut iae: BTreeMap<PaperTrajectory, BTreeMap<Controller, Option<f64>>> = BTreeMap::new();
     for (index, (course, controller)) in flights.enumerate() {
         let share = of_commands.map(|limit| share(limit, index as u32, FLIGHTS));
         let flown = fly_one(client, &plans, (course, controller), share, &mut comparison, advance)?;
@@ -74,7 +74,7 @@ pub fn fly_all(client: &mut Client, limit: Option<u32>, advance: &dyn Fn()) -> R
     }
     let motors = motors::fly_all(client, &plans, limit.map(of_motors), advance)?;
     let telemetry = client.telemetry()?;
-    Ok(Report {
+    Ok(LockStepReport {
         iae,
         bit_exact: comparison.difference.is_none() && motors.bit_exact,
         steps: comparison.steps,
@@ -124,7 +124,7 @@ fn prepare(client: &mut Client) -> Result<(), PilError> {
 fn fly_one(
     client: &mut Client,
     plans: &Plans,
-    (course, controller): (Course, Controller),
+    (course, controller): (PaperTrajectory, Controller),
     limit: Option<u32>,
     comparison: &mut Comparison,
     advance: &dyn Fn(),
@@ -177,7 +177,7 @@ struct Comparison {
 }
 
 impl Comparison {
-    fn compare(&mut self, at: (Course, Controller, u32), state: &State, host: &Command, target: &Command) {
+    fn compare(&mut self, at: (PaperTrajectory, Controller, u32), state: &State, host: &Command, target: &Command) {
         self.steps += 1;
         for word in words(target) {
             self.hash.add(word);
@@ -203,7 +203,7 @@ impl fmt::Display for Difference {
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for LockStepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "IAE (23) of the position, m s, commanded by the target at {RATE_HZ} Hz")?;
         for (course, row) in &self.iae {

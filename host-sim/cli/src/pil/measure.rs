@@ -1,6 +1,6 @@
 //! Instructions a step on the target: the paper's flights in; least, mean and most of each part out.
 //!
-//! Every state is counted as it was flown and at its worst (see `worst`), and every command that the target computes on the
+//! Every state is counted as it was flown and at its worst (see `worst_case`), and every command that the target computes on the
 //! way is compared with the host's.
 
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use quatrack::{Command, State};
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_simulation::reproduction::table::Controller;
 use serde::Serialize;
 
@@ -22,7 +22,7 @@ use super::image;
 use super::interrupt::Interrupt;
 use super::lock_step;
 use super::motors::MotorFlight;
-use super::worst::{
+use super::worst_case::{
     self,
     motors::{self, Motors},
 };
@@ -70,7 +70,7 @@ impl Tally {
 
 /// What the control path costs.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct InstructionReport {
     /// A step of each law, with validation, sign handling and saturation: each controller's, `any E table` for a gain
     /// without a zero, `actuator-aware` down to the motors, and `any actuator-aware table` for a gain that does not
     /// decouple.
@@ -91,7 +91,7 @@ pub struct Report {
     pub tick: Count,
     /// The estimator, counted by its own image.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub estimator: Option<estimator::Report>,
+    pub estimator: Option<estimator::EstimatorReport>,
     /// Steps flown.
     pub steps: usize,
     /// Code and tables of the control path, without stored trajectories: all that its own image puts in flash, start-up
@@ -123,7 +123,7 @@ pub struct Images {
 
 /// One flight as recorded on the host.
 struct Recorded {
-    course: Course,
+    course: PaperTrajectory,
     controller: Controller,
     steps: Vec<(State, Command)>,
 }
@@ -155,7 +155,7 @@ fn state_words(state: &State) -> [f32; 10] {
     [r.x, r.y, r.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z]
 }
 
-/// What stands for the way to the motors in the place of a controller.
+/// The number of the way to the motors, in the place of a controller's.
 const TO_MOTORS: usize = Controller::ALL.len() + 1;
 
 /// The flights of which the states are counted on the way to the motors.
@@ -164,7 +164,7 @@ fn to_motors(flights: &[Recorded]) -> impl Iterator<Item = &Recorded> {
 }
 
 fn states_file(flights: &[Recorded]) -> Vec<u8> {
-    let mut bytes = worst::head();
+    let mut bytes = worst_case::head();
     let of_paper = runs(flights).map(|(flight, controller, is_worst)| {
         let controller = Controller::ALL.iter().position(|c| Some(*c) == controller).unwrap_or(Controller::ALL.len());
         (flight, controller, is_worst)
@@ -198,7 +198,7 @@ const STACK_STEPS: u32 = 500;
 ///
 /// # Errors
 /// [`PilError`].
-pub fn count(images: &Images, limit: Option<usize>) -> Result<Report, PilError> {
+pub fn count(images: &Images, limit: Option<usize>) -> Result<InstructionReport, PilError> {
     let (control_path, flying) = (image::size(&images.control_path)?, image::size(&images.flying)?);
     image::size(&images.counting)?;
     let interrupt = Interrupt::listen()?;
@@ -220,7 +220,7 @@ pub fn count(images: &Images, limit: Option<usize>) -> Result<Report, PilError> 
     Ok(report)
 }
 
-fn report(flights: &[Recorded], words: &[u32]) -> Result<Report, PilError> {
+fn report(flights: &[Recorded], words: &[u32]) -> Result<InstructionReport, PilError> {
     let too_short = || PilError::Answer("it counted fewer steps than were flown".to_owned());
     let ([_, short, long], words) = words.split_first_chunk::<3>().ok_or_else(too_short)?;
     if long.wrapping_sub(*short) != LOOP_INSTRUCTIONS {
@@ -233,15 +233,15 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<Report, PilError> {
     let mut law = BTreeMap::<String, Tally>::new();
     let [mut reference, mut turning, mut tick] = [Tally::NONE; 3];
     for (flight, controller, is_worst) in runs(flights) {
-        let name = controller.map_or_else(|| worst::ANY_TABLE.to_owned(), |controller| controller.to_string());
+        let name = controller.map_or_else(|| worst_case::ANY_TABLE.to_owned(), |controller| controller.to_string());
         let law = law.entry(name.clone()).or_insert(Tally::NONE);
-        let mut host = worst::Host::new(flight.course, controller)?;
+        let mut host = worst_case::Host::new(flight.course, controller)?;
         for (step, (state, recorded)) in flight.steps.iter().enumerate() {
             let [of_reference, least, sum, most, of_tick, t, p, q, r, hash] = *rows.next().ok_or_else(too_short)?;
             let found = [t, p, q, r];
             let is_same = if is_worst {
                 turning.add([of_reference; 3], 1);
-                law.add([least, sum, most], worst::CALLS);
+                law.add([least, sum, most], worst_case::CALLS);
                 let expected = host.step(step as u32, state)?;
                 hash == expected.hash && expected.command.is_none_or(|command| found == bits::words(&command))
             } else {
@@ -258,7 +258,7 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<Report, PilError> {
         }
     }
     let [motor_reference, motor_reference_turning] = report_to_motors(flights, words_to_motors, &mut law)?;
-    Ok(Report {
+    Ok(InstructionReport {
         law: law.into_iter().map(|(name, tally)| (name, tally.count())).collect(),
         reference: reference.count(),
         reference_turning: turning.count(),
@@ -304,7 +304,7 @@ fn report_to_motors(
     Ok([stored, turning])
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for InstructionReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
@@ -332,7 +332,7 @@ impl fmt::Display for Report {
         }
         writeln!(f, "\ncontrol path   flash {:>6} bytes, without stored trajectories", self.flash_bytes)?;
         writeln!(f, "to the motors  flash {:>6} bytes, the actuator-aware law included", self.flash_to_motors_bytes)?;
-        if let Some(estimator::Report { prediction_stack_bytes, update_stack_bytes, .. }) = &self.estimator {
+        if let Some(estimator::EstimatorReport { prediction_stack_bytes, update_stack_bytes, .. }) = &self.estimator {
             writeln!(
                 f,
                 "estimator      stack {prediction_stack_bytes:>6} bytes, {update_stack_bytes} bytes of an update"

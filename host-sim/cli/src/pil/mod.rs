@@ -6,7 +6,7 @@
 //! measure          instructions a step, flash, RAM
 //! crazyflie        the same of the Crazyflie controller's object
 //! estimator        the same of the estimator, and its stack
-//!   worst          what makes a step cost most, on the host
+//!   worst_case     inputs with which a step costs most, on the host
 //!   flights        the paper's flights, flown by the core on the host
 //!     bits         what is compared, and its hash
 //!     emulated     a board in an emulator
@@ -29,7 +29,7 @@ pub mod line;
 pub mod lock_step;
 pub mod measure;
 pub mod motors;
-mod worst;
+mod worst_case;
 
 use std::io;
 use std::path::PathBuf;

@@ -16,7 +16,7 @@ use quatrack::{
 };
 use quatrack_design::model::position;
 use quatrack_design::vehicle::Vehicle;
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 use quatrack_simulation::flight::closed_loop::SAMPLE_PERIOD_S;
 use quatrack_simulation::flight::motor_laws::body_rate_bandwidth_rad_s;
@@ -89,7 +89,7 @@ impl fmt::Display for MotorFlight {
 #[derive(Clone, Debug, Serialize)]
 pub struct MotorReport {
     /// IAE of the flights that the target drove, m s; nothing for a flight that was cut short.
-    pub iae: BTreeMap<Course, BTreeMap<MotorFlight, Option<f64>>>,
+    pub iae: BTreeMap<PaperTrajectory, BTreeMap<MotorFlight, Option<f64>>>,
     /// Whether every force had the host's bits.
     pub bit_exact: bool,
     /// Steps compared.
@@ -104,7 +104,7 @@ pub struct MotorReport {
 /// Two sets of forces for one state that are not the same.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotorDifference {
-    course: Course,
+    course: PaperTrajectory,
     flight: MotorFlight,
     step: u32,
     state: RigidState,
@@ -122,7 +122,7 @@ struct HostCore {
 }
 
 impl HostCore {
-    fn new(course: Course, flight: MotorFlight, vehicle: &Vehicle) -> Result<Self, PilError> {
+    fn new(course: PaperTrajectory, flight: MotorFlight, vehicle: &Vehicle) -> Result<Self, PilError> {
         let refused = |error: &dyn fmt::Display| PilError::Answer(format!("{course:?}, {flight}: {error}"));
         let airframe = Airframe::CRAZYFLIE_2_1;
         let rate = Rate::from_hz(RATE_HZ).ok_or_else(|| refused(&"no such rate"))?;
@@ -183,7 +183,12 @@ pub(super) fn fly_all(
 /// Flights of both courses.
 pub(super) const FLIGHTS: u32 = (COURSES.len() * MotorFlight::ALL.len()) as u32;
 
-fn prepare(client: &mut Client, course: Course, flight: MotorFlight, vehicle: &Vehicle) -> Result<(), PilError> {
+fn prepare(
+    client: &mut Client,
+    course: PaperTrajectory,
+    flight: MotorFlight,
+    vehicle: &Vehicle,
+) -> Result<(), PilError> {
     let limits = vehicles::limits(vehicle).map_err(|error| PilError::Answer(error.to_string()))?;
     let [thrust_min_m_s2, thrust_max_m_s2] = vehicle.thrust_limits_m_s2().map(|value| value as f32);
     let body_rates_max_rad_s = vehicle.body_rates_max_rad_s().map(|value| value as f32).into();
@@ -202,7 +207,7 @@ fn prepare(client: &mut Client, course: Course, flight: MotorFlight, vehicle: &V
 fn fly_one(
     client: &mut Client,
     plans: &Plans,
-    (course, flight): (Course, MotorFlight),
+    (course, flight): (PaperTrajectory, MotorFlight),
     (vehicle, limit): (&Vehicle, Option<u32>),
     (report, hash): (&mut MotorReport, &mut Fnv1a),
     advance: &dyn Fn(),

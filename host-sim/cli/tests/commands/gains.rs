@@ -62,7 +62,67 @@ fn what_is_committed_is_what_the_designs_give() {
             assert!(files.iter().any(|checked| checked.ends_with(&file)), "{file} is not among {files:?}");
         }
     }
-    assert!(files.iter().any(|file| file.ends_with("core/src/gains/paper.rs")), "{files:?}");
+    for source in SOURCES {
+        assert!(files.iter().any(|checked| checked.ends_with(source)), "{source} is not among {files:?}");
+    }
+}
+
+/// The generated sources of a checkout.
+const SOURCES: [&str; 5] = [
+    "core/src/gains/paper.rs",
+    "crazyflie/src/builtin/motor_gains.rs",
+    "crazyflie/src/builtin/paper_limits.rs",
+    "plans/mild.rs",
+    "plans/aggressive.rs",
+];
+
+#[test]
+fn what_is_missing_or_off_by_a_percent_is_named_and_written_again() {
+    let root = folder("checkout");
+    let gains = root.join("gains");
+    fs::create_dir_all(&gains).unwrap();
+    design(&gains, "lyap-f.toml", "lyap-f.toml", "2.0", "2.0");
+    let committed = |source: &str| fs::read_to_string(Path::new(GAINS).join("..").join(source)).unwrap();
+    let write = |source: &str, text: &str| {
+        let path = root.join(source);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    };
+    // A figure of each by 1 % of itself, a duration by 1 ns; one source and the tables are not there.
+    for (source, from, to) in [
+        (SOURCES[0], "45.7951", "45.3372"),
+        (SOURCES[1], "margin: 1.75", "margin: 1.7675"),
+        (SOURCES[2], "(2.4, 0.0687)", "(2.4, 0.069387)"),
+        (SOURCES[3], "duration_ns: 833333333", "duration_ns: 833333334"),
+    ] {
+        let text = committed(source);
+        assert!(text.contains(from), "{source} has no {from}");
+        write(source, &text.replacen(from, to, 1));
+    }
+    let there = gains.to_str().unwrap();
+    let named = [
+        "lyap-f.json: cannot be read",
+        "paper.rs: line ",
+        "motor_gains.rs: line ",
+        "margin: 1.7675",
+        "paper_limits.rs: line ",
+        "0.069387",
+        "mild.rs: line 4 is",
+        "aggressive.rs: cannot be read",
+    ];
+    assert_refused(&quatrack(&["gains", "check", there]), 1, &named);
+    let output = quatrack(&["gains", "generate", there]);
+    assert_done(&output);
+    for source in SOURCES {
+        assert!(stdout(&output).contains(&format!("{source}\n")), "{source}: {}", stdout(&output));
+    }
+    for source in &SOURCES[..3] {
+        assert_eq!(fs::read_to_string(root.join(source)).unwrap(), committed(source), "{source}");
+    }
+    assert_eq!(
+        fs::read(gains.join("generated/lyap-f.bin")).unwrap(),
+        fs::read(format!("{GAINS}/generated/lyap-f.bin")).unwrap()
+    );
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! In flow independent loops in continuous time or at their rate; out flow margins of each channel and of all at once.
 //! With S the sensitivity at the plant's input, a channel tolerates every factor `f = (1 + d/2) / (1 - d/2)`, |d| < alpha,
 //! with `alpha = 1 / max |S - 1/2|` (the balanced disk, of equal gain up and down), and every `f = 1 / (1 - d)`,
-//! |d| < `1 / max |S|` (the sensitivity disk, which knows that a linear quadratic loop stands any gain upwards). All
+//! |d| < `1 / max |S|` (the sensitivity disk, which knows that a linear quadratic loop tolerates any gain upwards). All
 //! channels at once tolerate a factor each, all different, up to `1 / max mu(S - I/2)`.
 
 use nalgebra::DMatrix;

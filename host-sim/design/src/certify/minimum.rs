@@ -148,7 +148,7 @@ fn lyapunov_holds(figures: &super::ContinuousLoop) -> bool {
     figures.decrease.as_ref().is_none_or(|decrease| decrease.holds)
 }
 
-/// The limit of all channels at once stands last.
+/// The limit of all channels at once is the last.
 fn of_all_channels(limits: &[StabilityLimit]) -> f64 {
     limits.last().map_or(0.0, |limit| limit.stable_to_s)
 }

@@ -7,7 +7,7 @@
 //! - disk margins at the plant's input, each channel alone and all at once, from the peak of the sensitivity;
 //! - the largest delay and the largest actuator lag up to which the sampled loop stays stable.
 //!
-//! A loop that falls apart into independent chains, as those of hover do, is taken apart first: its figures are then
+//! A loop that decouples into independent chains, as those of hover do, is taken apart first: its figures are then
 //! exact for all channels at once, too. [`certify_along`] does the same for gains over time. [`certify_region`] holds an
 //! actuator-aware gain against a region of lags, masses, inertias and delays, [`mod@cascade`] the cascade with its observers and
 //! the air as well. [`require`] holds a certificate against the

@@ -2,7 +2,7 @@
 //! spectral radius all over the region's grid out.
 //!
 //! The grid has every value of each quantity with every value of the others: each singly, and all corners. The controller
-//! predicts with the lag of its design throughout. Between the points nothing is promised; the lags stand close.
+//! predicts with the lag of its design throughout. Between the points nothing is promised; the lags are close together.
 
 use std::fmt;
 

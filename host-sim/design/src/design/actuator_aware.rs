@@ -3,7 +3,7 @@
 //! The hover linearisation of the paper, carried on to the motors: `r' = v`, `v' = g (theta_y, -theta_x, 0) + T z / m`,
 //! `theta' = omega`, `I omega' = tau`, `lag f' = u - f`, with the rotation vector theta of `q_r^-1 q` and deviations from
 //! hover throughout. Forces enter in parts, `e = H f`, with the orthonormal sign patterns H of thrust, roll, pitch and
-//! yaw: on an X with equal arms and a diagonal inertia the model then falls apart into four chains, z, y, x and heading,
+//! yaw: on an X with equal arms and a diagonal inertia the model then decouples into four chains, z, y, x and heading,
 //! and so does the gain. The controller adds the sum of the position error, `i+ = i + h r`, as the command sees it: before
 //! the present error is added.
 

@@ -60,7 +60,7 @@ impl GainsAlong {
     /// Step of that grid, a power of two.
     pub fn grid_step(&self) -> f64 {
         let largest = self.gains.last().map_or(0.0, SMatrix::amax);
-        // A largest entry that is a power of two but for its last digits stands on one side of it.
+        // A largest entry that is a power of two but for its last digits is on one side of it.
         f64::from((largest * (1.0 + 1e-6)).log2().ceil() as i32 - GRID_BITS).exp2()
     }
 

@@ -31,7 +31,7 @@ pub fn rounded_along(gains: &GainsAlong) -> Vec<[[f32; 9]; 4]> {
 /// [`DesignError`] where a design has no solution.
 pub fn paper_tables() -> Result<String, DesignError> {
     let mut text = String::from(
-        "//! The paper's four gain tables, Table I: made by `cargo run --example paper_gains` and not edited by hand.\n\n\
+        "//! The paper's four gain tables, Table I: made by `cargo gains generate` and not edited by hand.\n\n\
          use crate::law::{EquilibriumGain, FlatOutputGain};\n",
     );
     table(

@@ -2,7 +2,7 @@
 //!
 //! Columns `[x y z q1 q2 q3 vx vy vz ix iy iz]`, rows `[T p q r]`, `u = u_e - K [e; i]`. In continuous time `i' = r`.
 //! At a control rate the integral is the sum the controller forms, `i+ = i + h r`, with the command computed from the
-//! sum *before* the present error is added; the sum stands still between samples, so its share of an integral cost is
+//! sum *before* the present error is added; the sum is constant between samples, so its share of an integral cost is
 //! `h i' Q_i i` exactly.
 
 use nalgebra::DMatrix;

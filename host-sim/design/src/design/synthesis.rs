@@ -7,7 +7,7 @@
 //! - F: `z = [x y z vx vy vz ax ay az q3]`, `v = [a j q3']`, gain 7 x 10.
 //! - E: `e = [x y z q1 q2 q3 vx vy vz]`, `u = [T p q r]`, gain 4 x 9.
 //!
-//! Both models fall apart into chains, so most entries of a gain are zero by structure. What rounding leaves there is
+//! Both models decouple into chains, so most entries of a gain are zero by structure. What rounding leaves there is
 //! below 1e-12 of the largest entry and is set to exactly zero, so that the flown table has no noise in it; the poles
 //! are those of the gain after that.
 
@@ -26,7 +26,7 @@ pub const PAPER_MU: f64 = 2.0;
 /// Names of the E error in the order of the columns of its gain, with their units.
 pub const EQUILIBRIUM_ERROR_NAMES: [&str; 9] = ["x_m", "y_m", "z_m", "q1", "q2", "q3", "vx_m_s", "vy_m_s", "vz_m_s"];
 
-/// Where the E error stands in the state `[r q v]` of (2a): everything but q0.
+/// Where the E error is in the state `[r q v]` of (2a): everything but q0.
 pub(super) const ERROR_STATES: [usize; 9] = [0, 1, 2, 4, 5, 6, 7, 8, 9];
 
 /// Share of the largest entry below which an entry of a gain is zero by structure.

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 
 use super::check::{LARGEST, check, lag, one_body, positive};
-use super::flown::{AirFigures, BatteryFigures, Flown, ForceFigures, MotorFigures, PropellerFigures};
+use super::flown::{AirFigures, BatteryFigures, FlightFigures, ForceFigures, MotorFigures, PropellerFigures};
 use super::{Motors, Vehicle, VehicleError};
 use crate::model::GRAVITY_M_S2;
 
@@ -17,7 +17,7 @@ const LONGEST_NAME: usize = 64;
 /// `name`; `body` with `mass_kg` and `inertia_kg_m2`, by rows; `motors` with `arm_m`, `thrust_min_n`, `thrust_max_n`,
 /// `torque_per_thrust_m`, `lag_s` and `published_lag_s`; `limits` with `body_rates_rad_s`; and what is known of it in flight,
 /// each where somebody has measured it: `air`, `motors.flown`, `motors.force`, `propeller`, `battery`, with the keys of
-/// [`super::Flown`].
+/// [`super::FlightFigures`].
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleFile {
@@ -73,7 +73,7 @@ impl TryFrom<VehicleFile> for Vehicle {
         positive("motors.arm_m", file.motors.arm_m)?;
         let moments = inertia_kg_m2.symmetric_eigenvalues();
         one_body(file.body.mass_kg, [moments.min(), moments.max()], file.motors.arm_m, file.motors.thrust_max_n)?;
-        let flown = Flown {
+        let flown = FlightFigures {
             air: file.air,
             motors: file.motors.flown,
             force: file.motors.force,

@@ -10,7 +10,7 @@ use super::check::{lag, positive, within};
 
 /// What has been measured; absent is what nobody has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Flown {
+pub struct FlightFigures {
     /// Forces and moments of the air.
     pub air: Option<AirFigures>,
     /// Lags and delay of the motors.
@@ -91,7 +91,7 @@ pub struct BatteryFigures {
     pub hover_s: f64,
 }
 
-impl Flown {
+impl FlightFigures {
     pub(super) fn check(&self, arm_m: f64) -> Result<(), VehicleError> {
         if let Some(air) = &self.air {
             within("air.mass_kg", air.mass_kg, 1e-3, 1e3, "kilograms: 45 g are 0.045")?;

@@ -13,7 +13,7 @@ use nalgebra::{Matrix3, Matrix4, Vector3};
 
 pub use error::VehicleError;
 pub use file::VehicleFile;
-pub use flown::{AirFigures, BatteryFigures, Flown, ForceFigures, MotorFigures, PropellerFigures};
+pub use flown::{AirFigures, BatteryFigures, FlightFigures, ForceFigures, MotorFigures, PropellerFigures};
 
 use crate::model::GRAVITY_M_S2;
 
@@ -32,7 +32,7 @@ pub struct Vehicle {
     inverse_inertia: Matrix3<f64>,
     motors: Motors,
     body_rates_max_rad_s: Vector3<f64>,
-    flown: Flown,
+    flown: FlightFigures,
 }
 
 /// Four equal motors in an X.
@@ -105,7 +105,7 @@ impl Vehicle {
     }
 
     /// What is known of it in flight.
-    pub fn flown(&self) -> &Flown {
+    pub fn flown(&self) -> &FlightFigures {
         &self.flown
     }
 

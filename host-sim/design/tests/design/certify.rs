@@ -262,7 +262,7 @@ fn lqr_e_does_not_stand_fifty_milliseconds_of_motor_lag_behind_a_rate_loop() {
         let all = found.last().expect("all").stable_to_s;
         assert!(all < 0.05, "rate gain {rate_gain_1_s}: {all}");
     }
-    // The slow Lyapunov gain stands it.
+    // The slow Lyapunov gain tolerates it.
     let slow = dense(&lyapunov_equilibrium(PAPER_MU).expect("solvable").gain);
     let found = certify(&Plant::equilibrium(), &slow, &Timing::at_rate(500), Some(20.0)).expect("stable");
     assert!(found.motors_in_rate_loop.expect("asked for").last().expect("all").stable_to_s > 0.1);

@@ -257,7 +257,7 @@ impl Plan {
         }
     }
 
-    /// How far control points stand out of a corridor, m; 0 if they do not.
+    /// How far control points are outside a corridor, m; 0 if they do not.
     fn widening_m(&self, corridor: &Corridor, curve: &BSpline) -> f64 {
         let points = &curve.control_points_m()[self.points_of(corridor)];
         largest(points.iter().map(|p| (corridor.min_m - p).max().max((p - corridor.max_m).max()))).max(0.0)

@@ -7,7 +7,7 @@ use super::{Plan, PlanError};
 /// The paper's trajectories.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Course {
+pub enum PaperTrajectory {
     /// 30 s through eight waypoints.
     Mild,
     /// The letter W in 12 s.
@@ -22,7 +22,7 @@ pub const AGGRESSIVE_TOML: &str = include_str!("../../../../plans/aggressive.tom
 /// The mild flight, 30 s: Example 1 of the paper's reference \[10\].
 ///
 /// # Errors
-/// None with the file as it stands; [`PlanError`] if it was edited out of range.
+/// None with the file as it is; [`PlanError`] if it was edited out of range.
 pub fn mild() -> Result<Plan, PlanError> {
     Plan::from_toml(MILD_TOML)
 }
@@ -30,7 +30,7 @@ pub fn mild() -> Result<Plan, PlanError> {
 /// The aggressive flight, 12 s: the letter W.
 ///
 /// # Errors
-/// None with the file as it stands; [`PlanError`] if it was edited out of range.
+/// None with the file as it is; [`PlanError`] if it was edited out of range.
 pub fn aggressive() -> Result<Plan, PlanError> {
     Plan::from_toml(AGGRESSIVE_TOML)
 }

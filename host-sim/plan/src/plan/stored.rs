@@ -1,10 +1,10 @@
-//! What the board stores: a planned trajectory in; Rust source for the image out, and the stored pieces themselves.
+//! Trajectories in the board's flash: planned pieces in; Rust source for the image out, and the stored pieces themselves.
 
 use std::fmt::Write as _;
 
 use quatrack::Piece;
 
-use super::paper::Course;
+use super::paper::PaperTrajectory;
 
 /// The same files that the image is built from.
 #[allow(unreachable_pub, reason = "the image needs them public")]
@@ -15,11 +15,11 @@ mod image {
     include!("../../../../plans/aggressive.rs");
 }
 
-/// The pieces of a course as they stand in the board's flash.
-pub fn pieces(course: Course) -> &'static [Piece] {
+/// The pieces of a trajectory of the paper as they are stored in the board's flash.
+pub fn pieces(course: PaperTrajectory) -> &'static [Piece] {
     match course {
-        Course::Mild => &image::MILD,
-        Course::Aggressive => &image::AGGRESSIVE,
+        PaperTrajectory::Mild => &image::MILD,
+        PaperTrajectory::Aggressive => &image::AGGRESSIVE,
     }
 }
 
@@ -71,8 +71,8 @@ mod tests {
 
     #[test]
     fn what_is_stored_is_what_is_planned() {
-        assert_regenerates(pieces(Course::Mild), &paper::mild().unwrap());
-        assert_regenerates(pieces(Course::Aggressive), &paper::aggressive().unwrap());
+        assert_regenerates(pieces(PaperTrajectory::Mild), &paper::mild().unwrap());
+        assert_regenerates(pieces(PaperTrajectory::Aggressive), &paper::aggressive().unwrap());
     }
 
     #[test]
@@ -80,7 +80,7 @@ mod tests {
         let piece = Piece {
             duration_ns: 7,
             x: [0.1, -1.5e-30, 1e20, 0.0, -0.0, 3.0, 1.0 / 3.0, 2.0],
-            ..pieces(Course::Mild)[0]
+            ..pieces(PaperTrajectory::Mild)[0]
         };
         let text = rust_source("ONE", &[piece]);
         assert!(text.contains("x: [0.1, -1.5e-30, 1e20, 0.0, -0.0, 3.0, 0.33333334, 2.0],"), "{text}");

@@ -14,7 +14,7 @@ pub struct FifthOrder {
 }
 
 /// A flat output that can be followed down to the motors, over `0 <= t <= duration_s`; it rests after that.
-pub trait Course {
+pub trait FlatTrajectory {
     /// Length in time, s.
     fn duration_s(&self) -> f64;
     /// The flat output at a time.
@@ -39,7 +39,7 @@ pub struct Eight {
     pub duration_s: f64,
 }
 
-impl Course for Eight {
+impl FlatTrajectory for Eight {
     fn duration_s(&self) -> f64 {
         self.duration_s
     }
@@ -68,7 +68,7 @@ pub struct Rest {
     pub duration_s: f64,
 }
 
-impl Course for Rest {
+impl FlatTrajectory for Rest {
     fn duration_s(&self) -> f64 {
         self.duration_s
     }
@@ -91,7 +91,7 @@ pub struct Jump {
     pub duration_s: f64,
 }
 
-impl Course for Jump {
+impl FlatTrajectory for Jump {
     fn duration_s(&self) -> f64 {
         self.duration_s
     }
@@ -121,7 +121,7 @@ impl RestToRest {
     }
 }
 
-impl Course for RestToRest {
+impl FlatTrajectory for RestToRest {
     fn duration_s(&self) -> f64 {
         self.duration_s
     }
@@ -154,7 +154,7 @@ impl Braking {
     }
 }
 
-impl Course for Braking {
+impl FlatTrajectory for Braking {
     fn duration_s(&self) -> f64 {
         self.duration_s
     }
@@ -175,7 +175,7 @@ impl Course for Braking {
     }
 }
 
-impl Course for PiecewisePolynomial {
+impl FlatTrajectory for PiecewisePolynomial {
     fn duration_s(&self) -> f64 {
         super::Trajectory::duration_s(self)
     }

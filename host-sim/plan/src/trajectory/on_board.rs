@@ -23,7 +23,7 @@ pub fn pieces(trajectory: &PiecewisePolynomial) -> Vec<Piece> {
         .collect()
 }
 
-/// Pieces of the board as a trajectory, every number as it stands there; [`pieces`] gives them back.
+/// Pieces of the board as a trajectory, every number as it is stored; [`pieces`] gives them back.
 ///
 /// # Errors
 /// [`PolynomialError`] for pieces that do not follow each other.

@@ -19,7 +19,7 @@ use crate::gains::{self, GainsError, Problem};
 use crate::vehicles;
 
 /// Control period, s.
-const PERIOD_S: f64 = 0.002;
+pub(super) const PERIOD_S: f64 = 0.002;
 
 /// Factors on the feedback that are tried, the largest first.
 const FACTORS: [f64; 5] = [2.0, 1.75, 1.5, 1.25, 1.1];
@@ -32,6 +32,7 @@ macro_rules! text {
         ($name, include_str!(concat!("../../../../gains/", $name, ".toml")))
     };
 }
+pub(super) use text;
 
 /// What the gains of a craft are called in the source, and the designs that they come from, by name and text: for the
 /// shortest lags first, the last one for any published lag, too.
@@ -61,6 +62,12 @@ pub enum CodegenError {
     /// A design for another law.
     #[error("gains/{name}.toml: method must be actuator-aware")]
     Method {
+        /// Its name.
+        name: &'static str,
+    },
+    /// A design without a table.
+    #[error("gains/{name}.toml: must give a table, delay_samples = 0")]
+    NoTable {
         /// Its name.
         name: &'static str,
     },
@@ -131,7 +138,7 @@ impl Stated {
 pub struct Design {
     /// Name of its design.
     pub name: &'static str,
-    /// Whom it is for.
+    /// The vehicle that it is for.
     pub vehicle: Vehicle,
     /// The lag that it is designed for, s.
     pub lag_s: f64,
@@ -211,7 +218,7 @@ fn largest_factor(
 /// [`CodegenError`] where a craft has no design or no certificate.
 pub fn motor_gains() -> Result<String, CodegenError> {
     let mut source = String::from(
-        "//! Gains for motor forces of each craft: made by `cargo run --example crazyflie_tables` and not edited by hand.\n\
+        "//! Gains for motor forces of each craft: made by `cargo gains generate` and not edited by hand.\n\
          //!\n\
          //! With the lag that is stated each is certified for a true one off by a quarter, the mass off by 20 %, the inertia by\n\
          //! 30 % and 10 ms of delay, all at once, and with the feedback off by its factor; the last of each craft with none stated\n\

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use quatrack_plan::plan::{self, Plan, PlanError};
 use quatrack_plan::trajectory::bspline::BSpline;
-use quatrack_plan::trajectory::fifth_order::{Course as _, Eight, FifthOrder};
+use quatrack_plan::trajectory::fifth_order::{Eight, FifthOrder, FlatTrajectory as _};
 use thiserror::Error;
 
 /// Position and its derivatives up to the jerk at one time, SI, world frame.
@@ -89,7 +89,7 @@ impl Course {
         self.at(t_s).map(|[position_m, ..]| position_m)
     }
 
-    /// Farthest that pieces are from the curve that they stand for, m; 0 for what is flown as it is.
+    /// Farthest that pieces are from the curve that they are fitted to, m; 0 for what is flown as it is.
     pub fn fit_error_m(&self) -> f64 {
         if let Self::Septics(septics) = self { septics.fit_error_m() } else { 0.0 }
     }

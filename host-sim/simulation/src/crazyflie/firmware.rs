@@ -53,7 +53,7 @@ impl Setpoints {
     }
 }
 
-/// What stands between the plant and the controller.
+/// The sensors between the plant and the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensors {
     /// Standard deviation of a gyroscope reading, rad/s, white from step to step.
@@ -71,7 +71,7 @@ pub struct Tune {
     pub motor_lag_s: f64,
 }
 
-/// The controller is one for all: who flies it keeps the others out.
+/// The controller is one for all: a flight locks it against the others.
 static CONTROLLER: Mutex<()> = Mutex::new(());
 
 /// The stabilizer of a craft that is switched on.

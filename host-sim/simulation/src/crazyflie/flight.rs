@@ -61,7 +61,7 @@ impl Case {
 
 /// How a flight went.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Flown {
+pub struct FlightErrors {
     /// Integral of the position error over time, m s; nothing where the craft was lost.
     pub iae: Option<f64>,
     /// Largest position error, m.
@@ -73,7 +73,7 @@ pub struct Flown {
 }
 
 /// Flies a course from its start in the air, or from the ground where it begins there.
-pub fn fly(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case) -> Flown {
+pub fn fly(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case) -> FlightErrors {
     let mut firmware = Firmware::start(vehicle, tune, case.sensors);
     carry(&mut firmware, vehicle, course, case);
     fly_with(&mut firmware, vehicle, course, case, None)
@@ -111,7 +111,7 @@ fn fly_with(
     course: &Course,
     case: &Case,
     recorded: Option<Recorded>,
-) -> Flown {
+) -> FlightErrors {
     let mut craft = Craft::new(vehicle);
     craft.body = craft.body.scaled(case.mass_factor, case.inertia_factor);
     craft.motors = craft.motors.with_lag(case.lag_s, case.lag_s);
@@ -126,7 +126,7 @@ fn fly_with(
     let mut on_their_way = VecDeque::from(vec![state.thrusts_n; case.late_steps]);
 
     let whole = (course.duration_s() * f64::from(STEPS_HZ)).round() as u32;
-    let mut flown = Flown { iae: Some(0.0), max_error_m: 0.0, end_error_m: 0.0, max_tilt_deg: 0.0 };
+    let mut flown = FlightErrors { iae: Some(0.0), max_error_m: 0.0, end_error_m: 0.0, max_tilt_deg: 0.0 };
     for step in 0..recorded.map_or(whole + 1, |recorded| recorded.steps) {
         match recorded {
             Some(Recorded { steps, then: Some(table) }) if step == steps / 2 => firmware.ask_for(table),
@@ -142,7 +142,7 @@ fn fly_with(
         flown.end_error_m = error_m;
         flown.max_tilt_deg = flown.max_tilt_deg.max(state.thrust_axis().z.clamp(-1.0, 1.0).acos().to_degrees());
         if !state.is_finite() || error_m > LOST_M {
-            return Flown { iae: None, ..flown };
+            return FlightErrors { iae: None, ..flown };
         }
         let measured = case.noise.map_or(state, |noise| source.measured(&state, &noise));
         on_their_way.push_back(firmware.step(&measured, None));

@@ -12,12 +12,14 @@ mod codegen;
 mod course;
 mod firmware;
 mod flight;
+mod paper_limits;
 mod recording;
 mod report;
 
 pub use codegen::{CodegenError, Design, Stated, motor_gains};
 pub use course::{Course, CourseError, Septics};
 pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune, platform};
-pub use flight::{Case, Flown, Recorded, fly, fly_recorded};
+pub use flight::{Case, FlightErrors, Recorded, fly, fly_recorded};
+pub use paper_limits::paper_limits;
 pub use recording::{CONTROL_BYTES, Recording};
-pub use report::{Report, Row};
+pub use report::{CrazyflieReport, Row};

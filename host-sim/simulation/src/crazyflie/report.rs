@@ -2,7 +2,7 @@
 //!
 //! The actuator-aware table flies with nothing stated where it is certified so, and with the motors' lag stated: every course
 //! with a noisy gyroscope, and a figure eight with exact measurements with one thing wrong at a time. The paper's tables fly at
-//! the lags that they stand, the two that hold no position over the ground on what is smooth alone.
+//! the lags that they tolerate, the two that hold no position over the ground on what is smooth alone.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::course::{Course, CourseError};
 use super::firmware::{Sensors, Setpoints, Tune};
-use super::flight::{Case, Flown, fly};
+use super::flight::{Case, FlightErrors, fly};
 use crate::flight::robustness;
 
 /// Standard deviation of a gyroscope reading, rad/s: 1 degree a second and a bit.
@@ -41,12 +41,12 @@ pub struct Row {
     pub lag_ms: f64,
     /// How it went.
     #[serde(flatten)]
-    pub flown: Flown,
+    pub flown: FlightErrors,
 }
 
 /// All flights of a vehicle.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct CrazyflieReport {
     /// How far the paper's trajectories are from the pieces that are flown, m: mild, aggressive.
     pub fit_error_m: [f64; 2],
     /// The flights.
@@ -102,7 +102,7 @@ fn courses() -> Result<[Named; 8], CourseError> {
     ])
 }
 
-impl Report {
+impl CrazyflieReport {
     /// Flies everything.
     ///
     /// # Errors
@@ -170,7 +170,7 @@ impl Flights<'_> {
     }
 }
 
-impl fmt::Display for Report {
+impl fmt::Display for CrazyflieReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Some(first) = self.rows.first() else { return Ok(()) };
         writeln!(

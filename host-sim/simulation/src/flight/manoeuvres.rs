@@ -7,7 +7,7 @@ use std::cell::Cell;
 use nalgebra::{UnitQuaternion, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
-use quatrack_plan::trajectory::fifth_order::{Braking, Course, FifthOrder, Jump, Rest, RestToRest};
+use quatrack_plan::trajectory::fifth_order::{Braking, FifthOrder, FlatTrajectory, Jump, Rest, RestToRest};
 
 use super::motor_laws::{AwareTable, FlightError, fly};
 use super::motor_loop::{PERIOD_S, STEPS_A_SAMPLE};
@@ -83,7 +83,7 @@ impl Manoeuvre {
         let aloft_m = Vector3::new(0.0, 0.0, HEIGHT_M);
         let hovering = RigidState::at_rest(aloft_m, vehicle.hover_thrust_n());
         let rest = |position_m, duration_s| Rest { position_m, heading_rad: 0.0, duration_s };
-        let (start, course): (RigidState, Box<dyn Course>) = match self {
+        let (start, course): (RigidState, Box<dyn FlatTrajectory>) = match self {
             Self::TakeOff => {
                 (RigidState::at_rest(standing_m, 0.0), Box::new(RestToRest::new(standing_m, aloft_m, 2.0, 4.0)))
             }

@@ -1,5 +1,5 @@
-//! Laws carried to the motors of a vehicle: a vehicle, a lag and weights in; tables with their certificates, and what a
-//! law of the paper stands behind a rate loop, out; and one flight with any of them.
+//! Laws carried to the motors of a vehicle: a vehicle, a lag and weights in; tables with their certificates, and the
+//! lag that a law of the paper tolerates behind a rate loop, out; and one flight with any of them.
 
 use nalgebra::{DMatrix, SMatrix, Vector4};
 use quatrack::airframe::AirframeError;
@@ -18,7 +18,7 @@ use quatrack_design::certify::{
 use quatrack_design::design::DesignError;
 use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use quatrack_design::vehicle::{Vehicle, VehicleError};
-use quatrack_plan::trajectory::fifth_order::Course;
+use quatrack_plan::trajectory::fifth_order::FlatTrajectory;
 
 use super::motor_loop::{self, MotorLoop, PERIOD_S};
 use super::rigid_loop::{Conditions, RigidFlight, fly_rigid};
@@ -120,20 +120,20 @@ impl AwareTable {
     /// [`FlightError::Lag`] for a lag below two control periods.
     pub fn craft_law(&self) -> Result<CraftLaw<'_>, FlightError> {
         let actuation = Actuation::new(&self.airframe, motor_loop::RATE)?;
-        Ok(CraftLaw { flown: Flown::Gain(&self.gain), actuation })
+        Ok(CraftLaw { flown: ControllerSource::Gain(&self.gain), actuation })
     }
 }
 
 /// A law on a craft as the core takes it.
 #[derive(Clone, Copy, Debug)]
 pub struct CraftLaw<'a> {
-    flown: Flown<'a>,
+    flown: ControllerSource<'a>,
     actuation: Actuation,
 }
 
 /// What a controller is made of, on the craft.
 #[derive(Clone, Copy, Debug)]
-enum Flown<'a> {
+enum ControllerSource<'a> {
     Gain(&'a ActuatorAwareGain),
     Table(AcceptedTable<'a>),
     ByBodyRates(Equilibrium<'a>, Limits),
@@ -147,7 +147,7 @@ impl<'a> CraftLaw<'a> {
     pub fn of_table(vehicle: &Vehicle, table: AcceptedTable<'a>) -> Result<Self, FlightError> {
         let lag_s = table.lag().map_or_else(|| vehicle.motors().lag_s, |lag| f64::from(lag.lag_s()));
         let board = Actuation::new(&motor_loop::airframe(vehicle, lag_s)?, motor_loop::RATE)?;
-        Ok(Self { flown: Flown::Table(table), actuation: table.actuation(&board) })
+        Ok(Self { flown: ControllerSource::Table(table), actuation: table.actuation(&board) })
     }
 
     /// A law of the paper on a vehicle's motors, through the core's body-rate loop and mixer.
@@ -156,7 +156,7 @@ impl<'a> CraftLaw<'a> {
     /// [`FlightError`] where the core refuses vehicle or lag.
     pub fn by_body_rates(vehicle: &Vehicle, law: Equilibrium<'a>, lag_s: f64) -> Result<Self, FlightError> {
         let actuation = Actuation::new(&motor_loop::airframe(vehicle, lag_s)?, motor_loop::RATE)?;
-        Ok(Self { flown: Flown::ByBodyRates(law, vehicles::limits(vehicle)?), actuation })
+        Ok(Self { flown: ControllerSource::ByBodyRates(law, vehicles::limits(vehicle)?), actuation })
     }
 
     /// The craft as the core takes it.
@@ -171,9 +171,13 @@ impl<'a> CraftLaw<'a> {
 
     fn controller(&self) -> Result<CoreController<'_>, ControllerError> {
         match &self.flown {
-            Flown::Gain(gain) => Ok(CoreController::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE)),
-            Flown::ByBodyRates(law, limits) => Ok(CoreController::new(*law, *limits).with_actuation(&self.actuation)),
-            Flown::Table(table) => table.controller(&Settings {
+            ControllerSource::Gain(gain) => {
+                Ok(CoreController::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE))
+            }
+            ControllerSource::ByBodyRates(law, limits) => {
+                Ok(CoreController::new(*law, *limits).with_actuation(&self.actuation))
+            }
+            ControllerSource::Table(table) => table.controller(&Settings {
                 limits: Limits::NONE,
                 actuation: Some(&self.actuation),
                 feed_forward: FeedForward::Without,
@@ -184,7 +188,7 @@ impl<'a> CraftLaw<'a> {
     }
 }
 
-/// The motor lag that a gain of the paper stands at hover, s, behind the rate loop that the core would run for motors of
+/// The motor lag that a gain of the paper tolerates at hover, s, behind the rate loop that the core would run for motors of
 /// `lag_s`.
 ///
 /// # Errors
@@ -193,7 +197,7 @@ pub fn paper_law_limit_s(gain: &SMatrix<f64, 4, 9>, lag_s: f64) -> Result<f64, C
     let controller = Controller::memoryless(DMatrix::from_column_slice(4, 9, gain.as_slice()));
     let timing = Timing::at_rate(motor_loop::RATE.hz());
     let found = certify(&Plant::equilibrium(), &controller, &timing, Some(body_rate_bandwidth_rad_s(lag_s)))?;
-    // All channels at once stand last.
+    // All channels at once are the last.
     Ok(found.motors_in_rate_loop.iter().flatten().last().map_or(0.0, |limit| limit.stable_to_s))
 }
 
@@ -202,7 +206,7 @@ pub fn fly(
     law: &CraftLaw<'_>,
     craft: &Craft,
     start: &RigidState,
-    course: &dyn Course,
+    course: &dyn FlatTrajectory,
     conditions: &Conditions,
 ) -> RigidFlight {
     let mut control = law.started(&start.thrusts_n);

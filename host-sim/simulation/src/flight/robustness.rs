@@ -3,7 +3,7 @@
 //!
 //! A law flies only where its certificate holds: an actuator-aware table for a known lag from half to one and a half of
 //! that lag, the default table over all of [`Region::of_any_crazyflie`], one of the paper's, fed forward, behind the core's
-//! body-rate loop only if it stands that lag. What does not fly is listed with the figure that keeps it on the ground.
+//! body-rate loop only if it tolerates that lag. What does not fly is listed with the figure that keeps it on the ground.
 //!
 //! The flight is `x = sin(w t)`, `y = 1/2 sin(2 w t)` at 1 m with `w = 1.485 rad/s` (2.1 m/s), 12 s, from a start on the
 //! reference; the fast one has `w = 2.19 rad/s` (3.1 m/s). The f32 core runs at 500 Hz on the rigid plant.
@@ -15,7 +15,7 @@ use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
 use quatrack_design::design::codegen::rounded;
 use quatrack_design::design::synthesis::{EquilibriumWeights, PAPER_MU, lqr_equilibrium, lyapunov_equilibrium};
 use quatrack_design::vehicle::Vehicle;
-use quatrack_plan::trajectory::fifth_order::{Course as _, Eight};
+use quatrack_plan::trajectory::fifth_order::{Eight, FlatTrajectory as _};
 use serde::Serialize;
 
 use super::motor_laws::{
@@ -112,7 +112,7 @@ pub struct Grounded {
 
 /// All flights.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Report {
+pub struct RobustnessReport {
     /// Name of the vehicle.
     pub vehicle: String,
     /// Lag that the default table is designed for, ms.
@@ -127,11 +127,11 @@ pub struct Report {
 ///
 /// # Errors
 /// [`FlightError`] where a design has no solution or the core refuses the vehicle.
-pub fn report(vehicle: &Vehicle) -> Result<Report, FlightError> {
+pub fn report(vehicle: &Vehicle) -> Result<RobustnessReport, FlightError> {
     let weights = &ActuatorAwareWeights::STANDARD;
     let default_lag_s = default_lag_s(vehicle);
     let default = AwareTable::new(vehicle, default_lag_s, weights, &Region::of_any_crazyflie())?;
-    let mut report = Report {
+    let mut report = RobustnessReport {
         vehicle: vehicle.name().to_owned(),
         default_lag_ms: 1e3 * default_lag_s,
         rows: Vec::new(),

@@ -10,14 +10,14 @@ use serde_json::{Value, json};
 
 use super::certified::Certified;
 use super::designed::Gains;
-use super::significant::{rounded, without_dust};
+use super::rounding::{rounded, without_dust};
 
 /// A file to be written or compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Artifact {
     /// Where it belongs.
     pub path: PathBuf,
-    /// What stands in it.
+    /// Its bytes.
     pub contents: Vec<u8>,
 }
 

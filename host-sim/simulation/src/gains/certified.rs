@@ -5,9 +5,9 @@ use quatrack_design::certify::{Certificate, Minimum, RegionCertificate, certify_
 use serde::Serialize;
 
 use super::GainsError;
+use super::board_certificate::{BoardCertificate, sha256};
 use super::design::{Design, Problem};
 use super::designed::{Designed, Gains, TableRows};
-use super::statement::{Statement, sha256};
 use super::table::Table;
 use crate::vehicles;
 
@@ -25,7 +25,7 @@ pub struct Certified {
     /// Over the region that an actuator-aware design asks for.
     pub region: Option<RegionCertificate>,
     /// What the table says of them.
-    pub statement: Statement,
+    pub statement: BoardCertificate,
     /// The table; none where no law on board flies the gains, as those that remember past commands.
     pub table: Option<Table>,
 }
@@ -69,7 +69,7 @@ impl Design {
         }
         require(&certificate, &self.minimum)?;
         let design_hash = sha256(&self.essence());
-        let statement = Statement::new(self, &design_hash, &designed, &certificate);
+        let statement = BoardCertificate::new(self, &design_hash, &designed, &certificate);
         let head = TableHead {
             name: self.name,
             vehicle: self.table_vehicle()?,

@@ -1,19 +1,18 @@
-//! What is committed against what its designs give today: designs and their files in; the first difference of each file
-//! out.
+//! Committed files against what their designs give today: designs and their files in; the first difference of each file
+//! out, and what belongs in it.
 //!
 //! Rust and binary tables are compared byte for byte. In the JSON, gains in f64 agree to 1e-9 and figures of the
 //! certificate to 1e-6 of themselves beyond their rounding to six digits; everything else is the same.
 
 use std::path::{Path, PathBuf};
 
-use quatrack_design::design::codegen;
 use serde_json::Value;
 
 use super::GainsError;
 use super::artifacts::{FIGURES, artifacts, default_folder, document};
 use super::certified::Certified;
 use super::design::Design;
-use super::significant::{SAME_GAIN, is_same_figure};
+use super::rounding::{SAME_GAIN, is_same_figure};
 
 /// A decimal of an f64 is read to one rounding.
 const READ: f64 = 1e-15;
@@ -25,6 +24,29 @@ pub struct Checked {
     pub path: PathBuf,
     /// The first difference; none if it is what its design gives.
     pub difference: Option<String>,
+    /// What belongs in it; none if no design gives it.
+    pub contents: Option<Vec<u8>>,
+}
+
+/// How a file is compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Comparison {
+    /// Byte for byte.
+    Bytes,
+    /// Text byte for byte between its numbers; integers exactly, others to this share of themselves, or of 1 below 1.
+    Numbers(f64),
+}
+
+impl Checked {
+    /// A file against what belongs in it.
+    pub(crate) fn against(path: PathBuf, contents: Vec<u8>, comparison: Comparison) -> Self {
+        let difference = match std::fs::read(&path) {
+            Err(error) => Some(format!("cannot be read ({error}); make it with `cargo gains generate`")),
+            Ok(committed) if is_near(&committed, &contents, comparison) => None,
+            Ok(committed) => byte_difference(&committed, &with_near_lines_of(&committed, &contents, comparison)),
+        };
+        Self { path, difference, contents: Some(contents) }
+    }
 }
 
 /// A design that could not be carried out.
@@ -62,13 +84,12 @@ pub fn check_design(path: &Path, folder: &Path) -> Result<Vec<Checked>, Failed> 
             }
             Ok(committed) => byte_difference(&committed, &file.contents),
         };
-        Checked { path: file.path, difference }
+        Checked { path: file.path, difference, contents: Some(file.contents) }
     });
     Ok(compared.collect())
 }
 
-/// Compares everything that belongs to a folder of designs: their files, files that no design gives, and the core's own
-/// tables of the paper where the folder stands beside it.
+/// Compares the files of a folder of designs, and finds those that no design gives.
 ///
 /// # Errors
 /// [`Failed`] for the first design that gives no files, or for the folder if it cannot be read.
@@ -87,15 +108,9 @@ pub fn check_folder(folder: &Path) -> Result<Vec<Checked>, Failed> {
         for path in with_extension(&generated, &["json", "rs", "bin"]).map_err(unreadable)? {
             if !checked.iter().any(|file| file.path == path) {
                 let difference = Some("no design gives it; delete it".to_owned());
-                checked.push(Checked { path, difference });
+                checked.push(Checked { path, difference, contents: None });
             }
         }
-    }
-    let paper = folder.join("../core/src/gains/paper.rs");
-    if let Ok(committed) = std::fs::read(&paper) {
-        let path = paper.canonicalize().unwrap_or(paper);
-        let computed = codegen::paper_tables().map_err(|error| Failed { path: path.clone(), error: error.into() })?;
-        checked.push(Checked { path, difference: byte_difference(&committed, computed.as_bytes()) });
     }
     Ok(checked)
 }
@@ -112,6 +127,48 @@ fn with_extension(folder: &Path, extensions: &[&str]) -> std::io::Result<Vec<Pat
     }
     paths.sort();
     Ok(paths)
+}
+
+/// The computed text with each line that is near the committed one as committed: the first difference is a real one.
+fn with_near_lines_of(committed: &[u8], computed: &[u8], comparison: Comparison) -> Vec<u8> {
+    let lines = |text| <[u8]>::split_inclusive(text, |byte| *byte == b'\n');
+    let nothing: &[u8] = &[];
+    let pairs = lines(computed).zip(lines(committed).chain(std::iter::repeat(nothing)));
+    pairs.flat_map(|(there, here)| if is_near(here, there, comparison) { here } else { there }).copied().collect()
+}
+
+fn is_near(committed: &[u8], computed: &[u8], comparison: Comparison) -> bool {
+    let (Comparison::Numbers(share), Ok(committed), Ok(computed)) =
+        (comparison, std::str::from_utf8(committed), std::str::from_utf8(computed))
+    else {
+        return committed == computed;
+    };
+    let is_in_number = |c: char| c.is_ascii_alphanumeric() || ['.', '-', '_'].contains(&c);
+    let words = |text| str::split_inclusive(text, move |c| !is_in_number(c));
+    let (mut here, mut there) = (words(committed), words(computed));
+    loop {
+        match (here.next(), there.next()) {
+            (None, None) => return true,
+            (Some(here), Some(there)) if here == there => {}
+            (Some(here), Some(there)) if is_near_number(here, there, share) => {}
+            _ => return false,
+        }
+    }
+}
+
+/// Two numbers with a point, each with what ends it.
+fn is_near_number(here: &str, there: &str, share: f64) -> bool {
+    let parted = |word: &str| {
+        let (at, end) = word.char_indices().next_back()?;
+        let digits = word.get(..at).filter(|digits| digits.contains('.') || digits.contains('e'))?;
+        digits.parse::<f64>().ok().map(|number| (number, end))
+    };
+    match (parted(here), parted(there)) {
+        (Some((here, end)), Some((there, other_end))) => {
+            end == other_end && (here - there).abs() <= share * there.abs().max(1.0)
+        }
+        _ => false,
+    }
 }
 
 fn byte_difference(committed: &[u8], computed: &[u8]) -> Option<String> {
@@ -187,5 +244,27 @@ fn difference(path: &str, committed: &Value, computed: &Value, rule: Rule) -> Op
         }
         _ if committed == computed => None,
         _ => Some(format!("{path} is {committed}; its design gives {computed}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_may_differ_in_their_last_digits_and_nothing_else() {
+        let near = |committed: &str, computed: &str| {
+            is_near(committed.as_bytes(), computed.as_bytes(), Comparison::Numbers(1e-6))
+        };
+        let text = "pub static W: [Piece; 1] = [\n    duration_ns: 315789474,\n    x: [0.25, -1.5e-3, 2000.0],\n];\n";
+        assert!(near(text, text));
+        // Below 1 by 1e-6, above by that share.
+        assert!(near(&text.replace("0.25", "0.2500009"), text) && !near(&text.replace("0.25", "0.2500011"), text));
+        assert!(near(&text.replace("2000.0", "2000.0019"), text) && !near(&text.replace("2000.0", "2000.0021"), text));
+        assert!(near(&text.replace("-1.5e-3", "-0.0015005"), text) && !near(&text.replace("-1.5e-3", "1.5e-3"), text));
+        // Integers, names, and how many numbers there are.
+        for (from, to) in [("474", "475"), ("W", "V"), (", 2000.0", ""), ("2000.0]", "2000.0)"), ("];\n", "];")] {
+            assert!(!near(&text.replace(from, to), text), "{to} instead of {from}");
+        }
     }
 }

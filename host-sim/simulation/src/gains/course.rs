@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use quatrack::{Piece, Trajectory};
-use quatrack_plan::plan::paper::Course as PaperCourse;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 use quatrack_plan::trajectory::Trajectory as _;
 use quatrack_plan::trajectory::file::{self, TrajectoryFile};
@@ -20,14 +20,14 @@ use super::GainsError;
 /// difference of numbers of some size.
 const REST: f64 = 1e-2;
 
-/// A trajectory as it stands on board.
+/// A trajectory as a board stores it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Course {
+pub struct OnBoardTrajectory {
     trajectory: PiecewisePolynomial,
     checksum: u32,
 }
 
-impl Course {
+impl OnBoardTrajectory {
     /// `mild` or `aggressive` as they are stored on board, or a file, from a folder, of pieces or control points.
     ///
     /// # Errors
@@ -37,8 +37,8 @@ impl Course {
             |must: String| GainsError::Value { key: "trajectory".into(), value: format!("\"{written}\""), must };
         let unusable = |reason: &dyn std::fmt::Display| refused(format!("a trajectory that flies ({reason})"));
         let pieces: Vec<Piece> = match written {
-            "mild" => stored::pieces(PaperCourse::Mild).to_vec(),
-            "aggressive" => stored::pieces(PaperCourse::Aggressive).to_vec(),
+            "mild" => stored::pieces(PaperTrajectory::Mild).to_vec(),
+            "aggressive" => stored::pieces(PaperTrajectory::Aggressive).to_vec(),
             path => match file::read(&folder.join(path)).map_err(|error| unusable(&error))? {
                 TrajectoryFile::Pieces(pieces) => on_board::pieces(&pieces),
                 TrajectoryFile::Spline(spline) => {
@@ -75,7 +75,7 @@ impl Course {
     }
 }
 
-impl Serialize for Course {
+impl Serialize for OnBoardTrajectory {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(&format_args!("{:08x}", self.checksum))
     }

@@ -19,7 +19,7 @@ pub enum GainsError {
     Syntax {
         /// Line, from 1.
         line: usize,
-        /// What stands in it.
+        /// The text of it.
         written: String,
         /// What the reader says.
         reason: String,
@@ -51,7 +51,7 @@ pub enum GainsError {
         key: String,
         /// Its value.
         value: String,
-        /// Where it stands.
+        /// Where it is written.
         with: String,
     },
     /// The file's name is no name for a table.

@@ -1,6 +1,6 @@
 //! Exchange with other tools: a design in; every matrix with the names and units of its rows and columns out.
 //!
-//! Everything that K is computed from stands in it: A, B, Q and R for the continuous designs; A_d, B_d and the cost
+//! It has everything that K is computed from: A, B, Q and R for the continuous designs; A_d, B_d and the cost
 //! between the samples, Q_d, S_d, R_d, for those at a control rate.
 
 use std::fmt::Write as _;
@@ -17,14 +17,14 @@ use super::design::{Design, Problem};
 use super::designed::{Designed, Gains, Poles, SampledProblem};
 use super::names::{MODEL_STATES, Signal};
 
-/// A matrix with what its rows and columns stand for.
+/// A matrix with the meaning of its rows and columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matrix {
     /// Its name: `A`, `B`, `Q`, `R`, `K`, `P`, `T_e`, `A_d`...
     pub name: String,
-    /// What the rows stand for.
+    /// The signals of the rows.
     pub rows: Vec<Signal>,
-    /// What the columns stand for.
+    /// The signals of the columns.
     pub columns: Vec<Signal>,
     /// The entries.
     pub entries: DMatrix<f64>,
@@ -57,7 +57,7 @@ impl Export {
             return Err(GainsError::Value {
                 key: "method".into(),
                 value: "\"along\"".into(),
-                must: "one with one gain to be exported; the gains over time stand in the design's JSON".into(),
+                must: "one with one gain to be exported; the gains over time are in the design's JSON".into(),
             });
         }
         let designed = Designed::of(design)?;
@@ -126,7 +126,7 @@ impl Export {
         })
     }
 
-    /// As CSV: an entry a line, with its place and what that stands for. Poles are a matrix of two columns.
+    /// As CSV: an entry a line, with its place and the signals of that. Poles are a matrix of two columns.
     pub fn to_csv(&self) -> String {
         let mut text = String::from("matrix,row,column,value,row_name,row_unit,column_name,column_unit\n");
         // Writing to a string does not fail.

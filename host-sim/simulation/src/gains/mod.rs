@@ -1,10 +1,10 @@
 //! Gain tables that somebody may fly: design files in; gains, certificates and tables out, or the figure that fails.
 //!
 //! ```text
-//! check          what is committed against what its designs give today
+//! check          committed files against what their designs give today
 //!   artifacts    NAME.json, NAME.rs, NAME.bin
 //!     certified  gains, certificate, the table; the design's own minimum
-//!       statement  what the table promises on board, the same on every processor
+//!       board_certificate  the figures that a table carries, the same on every processor
 //!       table      of any kind, as bytes
 //!       designed   model and gain, in f64
 //!         design   what belongs together and is in range
@@ -16,6 +16,7 @@
 //! A kind of table is a variant of [`Gains`]; a method a variant of [`Method`] under the [`Problem`] that it is for.
 
 mod artifacts;
+mod board_certificate;
 mod certified;
 mod check;
 mod course;
@@ -25,18 +26,18 @@ mod error;
 mod export;
 mod file;
 mod names;
-mod significant;
-mod statement;
+mod rounding;
 mod table;
 
 pub use artifacts::{Artifact, artifacts, default_folder, json_document, rust_source};
+pub use board_certificate::BoardCertificate;
 pub use certified::Certified;
+pub(crate) use check::Comparison;
 pub use check::{Checked, Failed, check_design, check_folder, designs};
-pub use course::Course;
+pub use course::OnBoardTrajectory;
 pub use design::{Design, Method, Problem};
 pub use designed::{Designed, Gains, LinearModel, Poles, SampledProblem, TableRows, Weights};
 pub use error::GainsError;
 pub use export::{Export, Matrix};
 pub use names::{Signal, signals};
-pub use statement::Statement;
 pub use table::Table;

@@ -1,4 +1,4 @@
-//! What the rows and columns of the matrices stand for, with their units.
+//! The signals of the rows and columns of the matrices, with their units.
 
 use quatrack::gains::table::TableKind;
 use serde::Serialize;
@@ -115,7 +115,7 @@ pub(super) const MOTOR_STATES: [Signal; 19] = [
 pub(super) const MOTOR_INPUTS: [Signal; 4] =
     [signal("u1", "N"), signal("u2", "N"), signal("u3", "N"), signal("u4", "N")];
 
-/// What the rows and the columns of a table stand for.
+/// The signals of the rows and the columns of a table.
 pub fn signals(kind: TableKind) -> (&'static [Signal], &'static [Signal]) {
     match kind {
         TableKind::Integral => (&EQUILIBRIUM_INPUTS, &INTEGRAL_STATES),

@@ -7,34 +7,34 @@ use std::thread;
 
 use quatrack_design::design::DesignError;
 use quatrack_design::design::synthesis::PAPER_MU;
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::trajectory::Trajectory;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use serde::Serialize;
 
-use super::beyond::Beyond;
-use super::table::{CORE_RATES_HZ, CRASH_MU, Controller, Gains, Outcome, fly_cell, fly_crash};
+use super::extensions::Extensions;
+use super::table::{CORE_RATES_HZ, CRASH_MU, Controller, Outcome, PaperGains, fly_cell, fly_crash};
 use crate::flight::metrics::Metrics;
 
 /// All flights of Table I, and the two at the decay rate that crashes.
 pub struct Reproduction {
-    duration_s: BTreeMap<Course, f64>,
-    outcomes: BTreeMap<Course, BTreeMap<Controller, Outcome>>,
+    duration_s: BTreeMap<PaperTrajectory, f64>,
+    outcomes: BTreeMap<PaperTrajectory, BTreeMap<Controller, Outcome>>,
     crash: BTreeMap<Controller, Metrics>,
 }
 
 /// The table as it is written to a file.
 #[derive(Serialize)]
-pub struct Report<'a> {
-    iae: BTreeMap<Course, BTreeMap<Controller, &'a super::table::Cell>>,
+pub struct ReproductionReport<'a> {
+    iae: BTreeMap<PaperTrajectory, BTreeMap<Controller, &'a super::table::Cell>>,
     min_z: BTreeMap<Controller, f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    beyond: Option<&'a Beyond>,
+    beyond: Option<&'a Extensions>,
 }
 
-impl<'a> Report<'a> {
+impl<'a> ReproductionReport<'a> {
     /// The same with what lies past the paper.
-    pub fn with(self, beyond: Option<&'a Beyond>) -> Self {
+    pub fn with(self, beyond: Option<&'a Extensions>) -> Self {
         Self { beyond, ..self }
     }
 }
@@ -45,13 +45,13 @@ impl Reproduction {
     /// # Errors
     /// [`DesignError`] where a gain cannot be designed.
     pub fn fly(mild: &PiecewisePolynomial, aggressive: &PiecewisePolynomial) -> Result<Self, DesignError> {
-        let gains = Gains::design(PAPER_MU)?;
-        let fly_course = |course: Course, trajectory: &PiecewisePolynomial| {
+        let gains = PaperGains::design(PAPER_MU)?;
+        let fly_course = |course: PaperTrajectory, trajectory: &PiecewisePolynomial| {
             Controller::ALL.map(|controller| (controller, fly_cell(course, trajectory, controller, &gains)))
         };
         let (mild_cells, aggressive_cells) = thread::scope(|scope| {
-            let beside = scope.spawn(|| fly_course(Course::Mild, mild));
-            let aggressive_cells = fly_course(Course::Aggressive, aggressive);
+            let beside = scope.spawn(|| fly_course(PaperTrajectory::Mild, mild));
+            let aggressive_cells = fly_course(PaperTrajectory::Aggressive, aggressive);
             // A panic of the other thread goes on in this one.
             let mild_cells = beside.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
             (mild_cells, aggressive_cells)
@@ -61,14 +61,22 @@ impl Reproduction {
             crash.insert(controller, Metrics::of(&fly_crash(aggressive, controller)?));
         }
         Ok(Self {
-            duration_s: [(Course::Mild, mild.duration_s()), (Course::Aggressive, aggressive.duration_s())].into(),
-            outcomes: [(Course::Mild, mild_cells.into()), (Course::Aggressive, aggressive_cells.into())].into(),
+            duration_s: [
+                (PaperTrajectory::Mild, mild.duration_s()),
+                (PaperTrajectory::Aggressive, aggressive.duration_s()),
+            ]
+            .into(),
+            outcomes: [
+                (PaperTrajectory::Mild, mild_cells.into()),
+                (PaperTrajectory::Aggressive, aggressive_cells.into()),
+            ]
+            .into(),
             crash,
         })
     }
 
     /// The flights of one cell.
-    pub fn outcome(&self, course: Course, controller: Controller) -> Option<&Outcome> {
+    pub fn outcome(&self, course: PaperTrajectory, controller: Controller) -> Option<&Outcome> {
         self.outcomes.get(&course)?.get(&controller)
     }
 
@@ -83,8 +91,8 @@ impl Reproduction {
     }
 
     /// The table as it is written to a file.
-    pub fn report(&self) -> Report<'_> {
-        Report {
+    pub fn report(&self) -> ReproductionReport<'_> {
+        ReproductionReport {
             iae: self
                 .outcomes
                 .iter()

@@ -23,7 +23,7 @@ use crate::flight::metrics::Metrics;
 use crate::flight::reference::{Exact, Sampled};
 use crate::integrator::DormandPrince;
 
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 
 /// Rates at which the core is flown, Hz.
 pub const CORE_RATES_HZ: [u32; 3] = [100, 500, 1000];
@@ -68,16 +68,16 @@ impl fmt::Display for Controller {
 }
 
 /// IAE as printed in the paper's Table I, m s, in the order of [`Controller::ALL`].
-pub fn printed(course: Course) -> [&'static str; 4] {
+pub fn printed(course: PaperTrajectory) -> [&'static str; 4] {
     match course {
-        Course::Mild => ["4.68", "0.22", "0.31", "0.018"],
-        Course::Aggressive => ["5.69", "2.14", "0.83", "0.11"],
+        PaperTrajectory::Mild => ["4.68", "0.22", "0.31", "0.018"],
+        PaperTrajectory::Aggressive => ["5.69", "2.14", "0.83", "0.11"],
     }
 }
 
 /// The four gains, in f64.
 #[derive(Clone, Copy, Debug)]
-pub struct Gains {
+pub struct PaperGains {
     lyap_f: FlatOutputGain,
     lyap_e: EquilibriumGain,
     lqr_f: FlatOutputGain,
@@ -91,7 +91,7 @@ enum AnyGain<'a> {
     FlatOutput(&'a FlatOutputGain),
 }
 
-impl Gains {
+impl PaperGains {
     /// The paper's designs, with the decay rate `mu` of the Lyapunov ones.
     ///
     /// # Errors
@@ -162,7 +162,12 @@ pub struct Outcome {
 }
 
 /// Flies one cell.
-pub fn fly_cell(course: Course, trajectory: &PiecewisePolynomial, controller: Controller, gains: &Gains) -> Outcome {
+pub fn fly_cell(
+    course: PaperTrajectory,
+    trajectory: &PiecewisePolynomial,
+    controller: Controller,
+    gains: &PaperGains,
+) -> Outcome {
     let index = Controller::ALL.iter().position(|c| *c == controller).unwrap_or_default();
     let gain = gains.of(controller);
     let published_flight = fly_published(trajectory, gain);
@@ -193,7 +198,7 @@ pub fn fly_cell(course: Course, trajectory: &PiecewisePolynomial, controller: Co
 
 /// The published flight of a Lyapunov controller at the decay rate that crashes in the paper's text.
 pub fn fly_crash(trajectory: &PiecewisePolynomial, controller: Controller) -> Result<Flight, DesignError> {
-    Ok(fly_published(trajectory, Gains::design(CRASH_MU)?.of(controller)))
+    Ok(fly_published(trajectory, PaperGains::design(CRASH_MU)?.of(controller)))
 }
 
 fn law(gain: AnyGain<'_>) -> Law<'_> {

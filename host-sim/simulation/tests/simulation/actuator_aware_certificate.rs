@@ -32,7 +32,7 @@ fn a_predicted_actuator_that_is_right_leaves_the_poles_where_the_design_put_them
     }
     assert!(certificate.sampled.decrease.holds);
     assert_eq!(certificate.sampled.margins.each.len(), 4);
-    // Every channel stands a change of gain by a third and 25 degrees, with the motors predicted and not measured.
+    // Every channel tolerates a change of gain by a third and 25 degrees, with the motors predicted and not measured.
     for margins in &certificate.sampled.margins.each {
         assert!(margins.balanced.gain_min < 0.75 && margins.balanced.phase_rad > 0.4, "{margins:?}");
     }
@@ -80,6 +80,6 @@ fn the_lag_limit_parts_stable_from_unstable() {
         let found = certify_region(&vehicle, &design.gain_in_parts, 0.0635, PERIOD_S, &region).expect("computed");
         assert_eq!(found.spectral_radius < 1.0, stable, "{lag_s} s: {}", found.spectral_radius);
     }
-    // More than twice the lag that it reckons with, and not any: LQR-E stands none behind a rate loop.
+    // More than twice the lag that it reckons with, and not any: LQR-E tolerates none behind a rate loop.
     assert!(limit.stable_to_s > 2.0 * 0.0635 && limit.stable_to_s < 0.2, "{limit:?}");
 }

@@ -114,7 +114,7 @@ fn every_chain_has_all_its_entries_and_no_other() {
 }
 
 #[test]
-fn as_f32_the_gain_of_the_motors_still_falls_apart_exactly() {
+fn as_f32_the_gain_of_the_motors_still_decouples_exactly() {
     let design = design(0.126);
     let flown = codegen::rounded(&shaped::<4, 19>(&design.gain).expect("4 x 19"));
     let flown = DMatrix::from_fn(4, ERRORS, |i, j| f64::from(flown[i][j]));

@@ -14,10 +14,10 @@ use quatrack_design::design::sampled::{Sampling, sampled_equilibrium};
 use quatrack_design::design::synthesis::EquilibriumWeights;
 use quatrack_design::model::flat::FlatSample;
 use quatrack_design::model::flat::{ReferencePoint, reference_point};
-use quatrack_plan::plan::paper::Course as Paper;
+use quatrack_plan::plan::paper::PaperTrajectory as Paper;
 use quatrack_plan::plan::stored;
 use quatrack_plan::trajectory::Trajectory as _;
-use quatrack_simulation::gains::{Course, Design, GainsError, Problem, Table};
+use quatrack_simulation::gains::{Design, GainsError, OnBoardTrajectory, Problem, Table};
 use serde_json::Value;
 
 mod generated {
@@ -60,7 +60,7 @@ fn at_rest() -> ReferencePoint {
 
 /// The letter W as it is stored, and the design along it for 100 Hz, not yet on its grid.
 fn the_w() -> (impl Fn(f64) -> ReferencePoint, GainsAlong) {
-    let course = Course::named("aggressive", Path::new("")).unwrap();
+    let course = OnBoardTrajectory::named("aggressive", Path::new("")).unwrap();
     let duration_s = course.trajectory().duration_s();
     let reference = move |time_s: f64| reference_point(&course.trajectory().at(time_s));
     let along = gains_along(&reference, duration_s, &EquilibriumWeights::paper(), &Sampling::at_rate(100), 21).unwrap();

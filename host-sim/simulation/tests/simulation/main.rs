@@ -10,7 +10,7 @@ mod gains_export;
 mod gains_tables;
 mod plant;
 mod reproduction;
-mod reproduction_beyond;
+mod reproduction_extensions;
 mod rigid;
 mod robustness;
 mod sampled_along;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use quatrack_plan::plan;
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::trajectory::file::{self, TrajectoryFile};
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::closed_loop::{SAMPLE_PERIOD_S, Solver, fly_continuous};
@@ -11,7 +11,7 @@ use quatrack_simulation::flight::metrics::Metrics;
 use quatrack_simulation::flight::reference::{Exact, Sampled};
 use quatrack_simulation::integrator::Method;
 use quatrack_simulation::reproduction::report::Reproduction;
-use quatrack_simulation::reproduction::table::{Controller, Gains, fly_cell};
+use quatrack_simulation::reproduction::table::{Controller, PaperGains, fly_cell};
 
 fn paper_trajectories() -> [PiecewisePolynomial; 2] {
     [plan::paper::mild(), plan::paper::aggressive()]
@@ -85,7 +85,7 @@ fn the_core_converges_to_the_exact_law_with_its_rate() {
 #[test]
 fn the_paper_s_integrator_agrees_with_runge_kutta_to_four_digits() {
     let [mild, aggressive] = paper_trajectories();
-    let gains = Gains::design(2.0).unwrap();
+    let gains = PaperGains::design(2.0).unwrap();
     for trajectory in [mild, aggressive] {
         for controller in [Controller::LyapE, Controller::LqrE] {
             let reference =
@@ -125,9 +125,9 @@ fn a_real_trajectory_file_flies_as_it_should() {
         return;
     }
     let TrajectoryFile::Pieces(pieces) = file::read(&path).unwrap() else { panic!("figure8.csv holds pieces") };
-    let gains = Gains::design(2.0).unwrap();
+    let gains = PaperGains::design(2.0).unwrap();
     for (controller, value) in Controller::ALL.into_iter().zip([3.36525, 0.59608, 0.21974, 0.04404]) {
-        let found = fly_cell(Course::Mild, &pieces, controller, &gains).cell.as_published.unwrap();
+        let found = fly_cell(PaperTrajectory::Mild, &pieces, controller, &gains).cell.as_published.unwrap();
         assert!((found - value).abs() < 6e-6, "{controller}: {found}, not {value}");
     }
 }

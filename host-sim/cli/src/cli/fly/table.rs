@@ -9,14 +9,14 @@ use quatrack::{Limits, Rate, Settings, Trajectory};
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::reference::{Exact, Reference};
-use quatrack_simulation::gains::{Course, Design};
+use quatrack_simulation::gains::{Design, OnBoardTrajectory};
 
-use super::{Args, Flown, Precision, fly_law, load};
+use super::{Args, DescribedFlight, Precision, fly_law, load};
 use crate::cli::limits::LimitsChoice;
 use crate::cli::{Failure, gains};
 
 /// Flies the table of a file at its own rate; another one that is asked for is refused.
-pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Flown, Failure> {
+pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<DescribedFlight, Failure> {
     if args.precision == Precision::F64 {
         return Err(Failure::input("--precision f64: a table is flown by the f32 core; leave --precision out"));
     }
@@ -49,7 +49,7 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Flown,
         .limits
         .clone()
         .unwrap_or_else(|| LimitsChoice { name: format!("of the table, {}", head.vehicle.name), limits: head.limits });
-    Ok(Flown {
+    Ok(DescribedFlight {
         law: format!("{} ({kind})", head.name),
         clock: format!("f32 core, {} Hz hold", head.rate.hz()),
         limits: limits.name,
@@ -58,11 +58,11 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Flown,
     })
 }
 
-/// The paper's trajectories as they stand on board: gains over time belong to their bits, and those of one that is planned
+/// The paper's trajectories as they are stored on board: gains over time belong to their bits, and those of one that is planned
 /// anew depend on the processor.
 fn stored(name: &str) -> Option<PiecewisePolynomial> {
     matches!(name, "mild" | "aggressive")
-        .then(|| Course::named(name, Path::new("")).ok())
+        .then(|| OnBoardTrajectory::named(name, Path::new("")).ok())
         .flatten()
         .map(|course| course.trajectory().clone())
 }

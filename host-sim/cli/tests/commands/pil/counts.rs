@@ -1,7 +1,7 @@
 //! Instructions a step: what the control path may cost at its worst.
 
 use quatrack_cli::pil::image::{self, Image};
-use quatrack_cli::pil::measure::{Images, Report, count};
+use quatrack_cli::pil::measure::{Images, InstructionReport, count};
 
 use super::emulated::pipes_image;
 use super::support::has_emulator;
@@ -9,7 +9,7 @@ use super::support::has_emulator;
 /// Steps of each flight: the costs do not depend on the values, but for what is limited and which sign a quaternion has.
 const STEPS: usize = 200;
 
-fn report() -> Report {
+fn report() -> InstructionReport {
     let build = |image| image::build(&image::checkout().unwrap(), image).unwrap();
     let images = Images {
         counting: build(Image::Measure),

@@ -16,7 +16,7 @@ use quatrack::{
     Settings, State, Step, Target, Trajectory,
 };
 use quatrack_cli::pil::client::Client;
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 
 use super::emulated::connected;
@@ -114,7 +114,7 @@ impl Flight {
         let limits = LimitsSetting { thrust_min_m_s2: 0.0, thrust_max_m_s2: 16.5, body_rates_max_rad_s: [20.0; 3] };
         client.set(Parameter::Limits(limits)).unwrap();
         client.request(&ToBoard::SelectLaw(choice(Table::LqrE))).unwrap();
-        let trajectory = Trajectory::new(stored::pieces(Course::Aggressive)).unwrap();
+        let trajectory = Trajectory::new(stored::pieces(PaperTrajectory::Aggressive)).unwrap();
         let player = Player::new(trajectory, Rate::from_hz(TICK_HZ).unwrap());
         let mut flight = Self { client, player, step: 0, uploads: 0 };
         flight.start();
@@ -302,7 +302,7 @@ fn tables_that_remember_or_follow_a_clock_fly_bit_for_bit() {
     for blob in [LQI, &along_at_500_hz()] {
         let table = GainTable::from_bytes(blob).unwrap();
         let (built_in, new) = (controller(choice(Table::LqrE).built_in().unwrap()), loaded(&table));
-        let trajectory = Trajectory::new(stored::pieces(Course::Aggressive)).unwrap().checksum();
+        let trajectory = Trajectory::new(stored::pieces(PaperTrajectory::Aggressive)).unwrap().checksum();
         let mut flight = Flight::begin();
         flight.fly(20, |state, reference| step(&built_in, state, reference));
         let id = flight.upload(blob, 0);

@@ -11,7 +11,7 @@ use quatrack::{
     Actuation, Airframe, ErrorForm, FeedForward, Limits, Memory, Player, Rate, RigidState, Settings, State, Trajectory,
 };
 use quatrack_cli::pil::client::Client;
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 
 use super::emulated::connected;
@@ -121,7 +121,7 @@ fn a_table_for_motor_forces_flies_bit_for_bit() {
     client.request(&ToBoard::Trajectory(TrajectoryCommand::Start(TrajectoryId::Mild))).unwrap();
     client.request(&ToBoard::Arm).unwrap();
 
-    let mut player = Player::new(Trajectory::new(stored::pieces(Course::Mild)).unwrap(), ticks);
+    let mut player = Player::new(Trajectory::new(stored::pieces(PaperTrajectory::Mild)).unwrap(), ticks);
     let mut memory = Memory::at_rest();
     for step in 0..500_u16 {
         let tick = 2 * u32::from(step);

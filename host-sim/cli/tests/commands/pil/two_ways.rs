@@ -7,7 +7,7 @@ use quatrack::link::{
 use quatrack::nalgebra::Vector3;
 use quatrack::{Controller, FlatSample, Limits, Memory, Player, Rate, Reference, State, Step, Trajectory};
 use quatrack_cli::pil::client::Client;
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 
 use super::emulated::connected;
@@ -62,7 +62,7 @@ fn an_uploaded_trajectory_flies_bit_for_bit() {
     let start = ToBoard::Trajectory(TrajectoryCommand::Start(TrajectoryId::Uploaded));
     assert!(client.request(&start).is_err(), "there is nothing to fly yet");
 
-    let pieces = stored::pieces(Course::Aggressive);
+    let pieces = stored::pieces(PaperTrajectory::Aggressive);
     let mut buffer = [0; TRAJECTORY_BLOB_BYTES];
     let blob = encode_trajectory(pieces, &mut buffer).unwrap();
     let begin = UploadBegin::of(BlobKind::Trajectory, 7, blob).unwrap();

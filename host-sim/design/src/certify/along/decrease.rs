@@ -60,7 +60,7 @@ pub fn moving_decrease(
         p_smallest_over_largest: 1.0,
         rounding: 0.0,
     };
-    // Behind the last knot it hovers: one step stands for all.
+    // Behind the last knot it hovers: one step is like all others.
     let followed = designed.p.iter().skip(1).chain(designed.p.last());
     for (step, (before, after)) in designed.p.iter().zip(followed).enumerate() {
         let start_s = step as f64 * period_s;

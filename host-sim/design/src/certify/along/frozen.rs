@@ -1,4 +1,4 @@
-//! The loop as it stands at each knot: the gains as flown in; the worst margins and limits of the knots out.
+//! The loop with the gain of each knot, frozen: the gains as flown in; the worst margins and limits of the knots out.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
@@ -195,7 +195,7 @@ pub(super) fn margins(knots: &[Frozen]) -> Result<(LoopMargins, usize), CertifyE
 }
 
 /// The least limits of all knots: of delay, and of lag by each model. They start from those of the hover behind the last
-/// knot, which falls apart into chains and is searched in small steps.
+/// knot, which decouples into chains and is searched in small steps.
 pub(super) fn limits(
     knots: &[Frozen],
     last: &Frozen,

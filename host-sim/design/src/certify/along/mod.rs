@@ -4,7 +4,7 @@
 //!
 //! - of the loop as it moves, exactly to first order in the error: `V = e' P_k e`, with P of the design's Riccati equation,
 //!   falls at every control step and behind the last one, where the hover's P covers all time that follows;
-//! - of the loop as it stands at each knot, frozen: spectral radius, disk margins of each channel and of all at once,
+//! - of the loop with the gain of each knot, frozen: spectral radius, disk margins of each channel and of all at once,
 //!   largest delay and largest lag. What is stated is the worst of the knots.
 //!
 //! Frozen loops off hover hang together in all four channels. The margin of all at once is therefore taken from an upper

@@ -23,7 +23,7 @@ pub enum CsvError {
         line: usize,
         /// Which column.
         column: usize,
-        /// What stands there.
+        /// The text there.
         found: String,
         /// What should.
         expected: String,
@@ -46,7 +46,7 @@ pub enum CsvError {
         line: usize,
         /// Name of the column.
         column: String,
-        /// What stands there, shortened.
+        /// The text there, shortened.
         found: String,
     },
     /// A duration that is zero or negative.

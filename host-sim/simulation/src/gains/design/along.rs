@@ -10,7 +10,7 @@ use super::entry::{misplaced, missing};
 use super::problem::Problem;
 use super::weights::equilibrium_weights;
 use crate::gains::file::{DesignFile, Linearisation, Weights};
-use crate::gains::{Course, GainsError};
+use crate::gains::{GainsError, OnBoardTrajectory};
 
 /// As many knots as a table holds.
 pub(super) fn along(file: &DesignFile, weights: &Weights, folder: &Path, rate: Rate) -> Result<Problem, GainsError> {
@@ -26,7 +26,7 @@ pub(super) fn along(file: &DesignFile, weights: &Weights, folder: &Path, rate: R
         .trajectory
         .as_ref()
         .ok_or_else(|| missing("trajectory", &file.method, "trajectory = \"aggressive\", or the path of a file"))?;
-    let trajectory = Course::named(written, folder)?;
+    let trajectory = OnBoardTrajectory::named(written, folder)?;
     let steps = (trajectory.trajectory().duration_s() * f64::from(rate.hz())).ceil();
     let steps_per_knot = (steps / (KNOTS_MAX - 1) as f64).ceil().max(1.0);
     if steps_per_knot > f64::from(u16::MAX) {

@@ -6,7 +6,7 @@ use quatrack_design::design::integral::IntegralWeights;
 use quatrack_design::design::synthesis::{EquilibriumWeights, FlatWeights};
 use serde::Serialize;
 
-use crate::gains::Course;
+use crate::gains::OnBoardTrajectory;
 
 /// A linearisation with a method that is defined for it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -35,7 +35,7 @@ pub enum Problem {
         /// Diagonals of Q and R.
         weights: EquilibriumWeights,
         /// Which trajectory.
-        trajectory: Course,
+        trajectory: OnBoardTrajectory,
         /// Control steps from one knot to the next.
         steps_per_knot: u16,
     },

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use quatrack::Rate;
 use quatrack::gains::table::{GainTable, TableKind};
-use quatrack_plan::trajectory::fifth_order::Course as _;
+use quatrack_plan::trajectory::fifth_order::FlatTrajectory as _;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::motor_laws::{CraftLaw, fly as fly_motors};
 use quatrack_simulation::flight::motor_loop::{RATE, STEPS_A_SAMPLE, state_on};
@@ -13,7 +13,7 @@ use quatrack_simulation::flight::rigid_loop::Conditions;
 use quatrack_simulation::plant::Craft;
 use quatrack_simulation::vehicles;
 
-use super::super::{Args, Flown};
+use super::super::{Args, DescribedFlight};
 use super::{not_accepted, refused};
 use crate::cli::Failure;
 
@@ -23,7 +23,7 @@ pub(super) fn fly(
     table: &GainTable<'_>,
     rate: Option<Rate>,
     trajectory: &PiecewisePolynomial,
-) -> Result<Flown, Failure> {
+) -> Result<DescribedFlight, Failure> {
     if args.limits.is_some() {
         return Err(refused(path, &"its limits are those of its vehicle's motors; leave --limits out"));
     }
@@ -47,7 +47,7 @@ pub(super) fn fly(
     let duration_s = trajectory.duration_s();
     let conditions = Conditions { duration_s, steps_a_sample: STEPS_A_SAMPLE, delay_s: 0.0, noise: None };
     let flight = fly_motors(&law, &craft, &start, trajectory, &conditions);
-    Ok(Flown {
+    Ok(DescribedFlight {
         law: format!("{} ({})", head.name, TableKind::ActuatorAware),
         clock: format!("f32 core, {} Hz hold, rigid craft with {:.1} ms of motor lag", head.rate.hz(), 1e3 * lag_s),
         limits: format!("of the motors, {}", head.vehicle.name),

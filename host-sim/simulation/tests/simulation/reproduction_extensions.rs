@@ -3,24 +3,24 @@
 use std::sync::LazyLock;
 
 use quatrack_plan::plan;
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
-use quatrack_simulation::reproduction::beyond::{Beyond, Figures, Method, RATES_HZ};
+use quatrack_simulation::reproduction::extensions::{Extensions, Figures, Method, RATES_HZ};
 use quatrack_simulation::reproduction::report::Reproduction;
 
-const COURSES: [Course; 2] = [Course::Mild, Course::Aggressive];
+const COURSES: [PaperTrajectory; 2] = [PaperTrajectory::Mild, PaperTrajectory::Aggressive];
 
 fn paper_trajectories() -> [PiecewisePolynomial; 2] {
     [plan::paper::mild(), plan::paper::aggressive()]
         .map(|plan| PiecewisePolynomial::from_bspline(&plan.unwrap().solve().unwrap()).unwrap())
 }
 
-static BEYOND: LazyLock<Beyond> = LazyLock::new(|| {
+static BEYOND: LazyLock<Extensions> = LazyLock::new(|| {
     let [mild, aggressive] = paper_trajectories();
-    Beyond::fly(&mild, &aggressive).unwrap()
+    Extensions::fly(&mild, &aggressive).unwrap()
 });
 
-fn figures(course: Course, method: Method, rate_hz: u32) -> &'static Figures {
+fn figures(course: PaperTrajectory, method: Method, rate_hz: u32) -> &'static Figures {
     BEYOND.figures(course, method, rate_hz).unwrap()
 }
 
@@ -33,7 +33,7 @@ fn the_readme_shows_the_table() {
 /// The paper's best are 0.018 and 0.11.
 #[test]
 fn with_the_reference_s_input_lqr_e_is_within_its_bars_at_100_hz() {
-    for (course, bar) in [(Course::Mild, 1e-4), (Course::Aggressive, 0.003)] {
+    for (course, bar) in [(PaperTrajectory::Mild, 1e-4), (PaperTrajectory::Aggressive, 0.003)] {
         for method in [Method::LqrE, Method::SampledLqrE, Method::SampledLqiE, Method::LqrAlong] {
             let iae = figures(course, method, 100).feed_forward.unwrap();
             assert!(iae <= bar, "{course:?} {method}: {iae}");
@@ -45,10 +45,10 @@ fn with_the_reference_s_input_lqr_e_is_within_its_bars_at_100_hz() {
 #[test]
 fn held_commands_agree_with_an_independent_implementation() {
     for (course, method, value) in [
-        (Course::Mild, Method::LyapE, 8.8e-4),
-        (Course::Mild, Method::LqrE, 6.4e-5),
-        (Course::Aggressive, Method::LyapE, 0.0319),
-        (Course::Aggressive, Method::LqrE, 0.0016),
+        (PaperTrajectory::Mild, Method::LyapE, 8.8e-4),
+        (PaperTrajectory::Mild, Method::LqrE, 6.4e-5),
+        (PaperTrajectory::Aggressive, Method::LyapE, 0.0319),
+        (PaperTrajectory::Aggressive, Method::LqrE, 0.0016),
     ] {
         let found = figures(course, method, 100).feed_forward.unwrap();
         // Half a digit is up to 3 % of it, and that implementation's plant was integrated in steps of the period.
@@ -103,7 +103,7 @@ fn the_report_holds_the_same_figures() {
     let report = serde_json::to_value(reproduction.report().with(Some(&BEYOND))).unwrap();
     assert_eq!(report["iae"], without["iae"], "beside the paper's table");
     let report = &report["beyond"];
-    for (course, name) in [(Course::Mild, "mild"), (Course::Aggressive, "aggressive")] {
+    for (course, name) in [(PaperTrajectory::Mild, "mild"), (PaperTrajectory::Aggressive, "aggressive")] {
         for (method, rate_hz) in Method::ALL.into_iter().flat_map(|method| RATES_HZ.map(|rate_hz| (method, rate_hz))) {
             let row = &report[name][method.to_string()][rate_hz.to_string()];
             let Figures { feedback, feed_forward, half_period_ahead } = *figures(course, method, rate_hz);

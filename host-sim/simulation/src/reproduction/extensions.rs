@@ -15,7 +15,7 @@ use quatrack_design::design::codegen::{rounded, rounded_along};
 use quatrack_design::design::integral::{IntegralWeights, sampled_lqi};
 use quatrack_design::design::sampled::{Sampling, sampled_equilibrium, sampled_flat, shaped};
 use quatrack_design::design::synthesis::{EquilibriumWeights, FlatWeights};
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::trajectory::Trajectory as _;
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
@@ -113,11 +113,11 @@ pub type ByMethod = BTreeMap<Method, BTreeMap<u32, Figures>>;
 /// All of them by course.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
-pub struct Beyond {
-    figures: BTreeMap<Course, ByMethod>,
+pub struct Extensions {
+    figures: BTreeMap<PaperTrajectory, ByMethod>,
 }
 
-impl Beyond {
+impl Extensions {
     /// Designs and flies everything, the two courses side by side.
     ///
     /// # Errors
@@ -129,16 +129,16 @@ impl Beyond {
             // A panic of the other thread goes on in this one.
             (beside.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), aggressive)
         });
-        Ok(Self { figures: [(Course::Mild, mild?), (Course::Aggressive, aggressive?)].into() })
+        Ok(Self { figures: [(PaperTrajectory::Mild, mild?), (PaperTrajectory::Aggressive, aggressive?)].into() })
     }
 
     /// The figures of one method.
-    pub fn figures(&self, course: Course, method: Method, rate_hz: u32) -> Option<&Figures> {
+    pub fn figures(&self, course: PaperTrajectory, method: Method, rate_hz: u32) -> Option<&Figures> {
         self.figures.get(&course)?.get(&method)?.get(&rate_hz)
     }
 
     /// By course.
-    pub(super) fn courses(&self) -> impl Iterator<Item = (Course, &ByMethod)> {
+    pub(super) fn courses(&self) -> impl Iterator<Item = (PaperTrajectory, &ByMethod)> {
         self.figures.iter().map(|(course, methods)| (*course, methods))
     }
 }

@@ -11,7 +11,7 @@ use quatrack::{
     Command, Controller as CoreController, Equilibrium, FeedForward, Law, Limits, Measured, Memory, Piece, Player,
     Quaternion, Rate, Reference, State, Target, Trajectory, gains::paper,
 };
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 use quatrack_simulation::reproduction::table::Controller;
 
@@ -72,7 +72,7 @@ pub(super) struct Host {
 
 impl Host {
     /// At the start of a course, with a controller of the paper's or the dense gain.
-    pub(super) fn new(course: Course, controller: Option<Controller>) -> Result<Self, PilError> {
+    pub(super) fn new(course: PaperTrajectory, controller: Option<Controller>) -> Result<Self, PilError> {
         let refused = |what: &str| PilError::Answer(format!("the core refuses {what}"));
         let rate = Rate::from_hz(RATE_HZ).ok_or_else(|| refused("the rate"))?;
         let pieces = stored::pieces(course);

@@ -10,7 +10,7 @@ use quatrack::{
     Actuation, ActuatorAware, Airframe, Controller, Limits, Memory, MotorReference, Output, Piece, Player, Rate,
     RigidState, State, Target, Trajectory,
 };
-use quatrack_plan::plan::paper::Course;
+use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 
 use super::{HASH, hashed, turn};
@@ -58,11 +58,11 @@ pub(in crate::pil) struct Motors {
 
 impl Motors {
     /// On a course.
-    pub(in crate::pil) fn new(course: Course) -> Result<Self, PilError> {
+    pub(in crate::pil) fn new(course: PaperTrajectory) -> Result<Self, PilError> {
         Self::of(course).ok_or_else(|| PilError::Answer("the core refuses the way to the motors".to_owned()))
     }
 
-    fn of(course: Course) -> Option<Self> {
+    fn of(course: PaperTrajectory) -> Option<Self> {
         let rate = Rate::from_hz(RATE_HZ)?;
         let pieces = stored::pieces(course);
         let actuation = Actuation::new(&Airframe::CRAZYFLIE_2_1.commanded_at(rate), rate).ok()?;

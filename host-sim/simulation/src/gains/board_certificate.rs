@@ -1,9 +1,10 @@
-//! What a table promises on board, as a short document: figures rounded to the safe side, the same on every processor.
+//! The certificate that a table carries on board, as a short document: figures rounded to the safe side, the same on every
+//! processor.
 //!
 //! f64 figures differ in their last digits between processors with and without fused multiplication; a hash or an f32
 //! must not. So a figure is first moved to the safe side by [`GUARD`], far more than those digits, and then rounded down
-//! to four digits: figures that are round numbers by design (a phase of 60 degrees, a delay of one sample) do not stand
-//! on the edge of a digit any more.
+//! to four digits: figures that are round numbers by design (a phase of 60 degrees, a delay of one sample) are no
+//! longer on the edge of a digit.
 
 use quatrack::gains::table::{self, Hash, Margins};
 use quatrack_design::certify::{Certificate, StabilityLimit};
@@ -20,7 +21,7 @@ const DISTANCE_UNIT: f64 = 1e-10;
 
 /// The document of which a table carries the hash.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Statement {
+pub struct BoardCertificate {
     format: &'static str,
     design_sha256: String,
     control_rate_hz: u32,
@@ -42,7 +43,7 @@ struct MarginsStated {
     phase_rad: f64,
 }
 
-impl Statement {
+impl BoardCertificate {
     pub(super) fn new(design: &Design, design_sha256: &Hash, designed: &Designed, certificate: &Certificate) -> Self {
         let each = certificate.sampled.margins.each.iter().map(|channel| channel.balanced);
         let largest = table::Certificate::GAIN_FACTOR_MAX;

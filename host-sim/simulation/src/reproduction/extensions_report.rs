@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use super::beyond::{Beyond, Figures, RATES_HZ};
+use super::extensions::{Extensions, Figures, RATES_HZ};
 use super::report::digits;
 
-impl fmt::Display for Beyond {
+impl fmt::Display for Extensions {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "Past the paper: IAE (23) of the position with the f32 core under a hold, m s")?;
         for (course, methods) in self.courses() {
