@@ -150,7 +150,7 @@ pub fn attitude_along(force: &Vector3<f64>, heading_rad: f64) -> Option<[Vector3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use quatrack_plan::trajectory::fifth_order::{Course, Eight};
+    use quatrack_plan::trajectory::fifth_order::{Eight, FlatTrajectory};
 
     #[test]
     fn a_setpoint_that_is_carried_on_leaves_its_course_by_the_next_term_alone() {

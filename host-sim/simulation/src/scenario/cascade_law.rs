@@ -50,7 +50,7 @@ impl CascadeLaw {
             self.fit.accept(&setpoint.jerk_m_s3.cast(), after_s as f32);
             self.newest = Some(*setpoint);
         }
-        let [snap_m_s4, crackle_m_s5] = self.fit.snap_and_crackle().map(|derivative| derivative.cast());
+        let [snap_m_s4, crackle_m_s5] = self.fit.snap_and_crackle().map(Vector3::cast);
         Setpoint { snap_m_s4, crackle_m_s5, ..*setpoint }
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use quatrack_plan::trajectory::fifth_order::{Course, FifthOrder, Jump, Rest};
+use quatrack_plan::trajectory::fifth_order::{FifthOrder, FlatTrajectory, Jump, Rest};
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 
 /// Hover before anything moves, s.
@@ -15,7 +15,7 @@ const HEIGHT_M: f64 = 1.0;
 /// A course with the part of it that counts.
 pub struct Flown {
     /// From before the start of what is measured to its end.
-    pub course: Box<dyn Course>,
+    pub course: Box<dyn FlatTrajectory>,
     /// From when it is measured, s.
     pub measured_from_s: f64,
 }
@@ -47,7 +47,7 @@ impl Flown {
         let start = trajectory.at(0.0);
         let moves = start.position[1..4].iter().any(|derivative| derivative.norm() > 1e-6);
         let before_s = if moves { 0.0 } else { HOVER_S };
-        let whole_s = Course::duration_s(&trajectory);
+        let whole_s = FlatTrajectory::duration_s(&trajectory);
         let duration_s = before_s + measured_s.unwrap_or(whole_s).min(whole_s);
         Self { course: Box::new(Delayed { trajectory, before_s, duration_s }), measured_from_s: before_s }
     }
@@ -60,7 +60,7 @@ struct RampedEight {
     measured_s: f64,
 }
 
-impl Course for RampedEight {
+impl FlatTrajectory for RampedEight {
     fn duration_s(&self) -> f64 {
         HOVER_S + RAMP_S + self.measured_s
     }
@@ -122,7 +122,7 @@ struct Delayed {
     duration_s: f64,
 }
 
-impl Course for Delayed {
+impl FlatTrajectory for Delayed {
     fn duration_s(&self) -> f64 {
         self.duration_s
     }
@@ -133,7 +133,7 @@ impl Course for Delayed {
             let start = self.trajectory.at(0.0);
             return FifthOrder::at_rest(start.position[0], start.heading[0]);
         }
-        Course::at(&self.trajectory, since)
+        FlatTrajectory::at(&self.trajectory, since)
     }
 }
 
