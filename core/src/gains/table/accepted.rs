@@ -114,6 +114,7 @@ impl<'t> AcceptedTable<'t> {
         }
     }
 
+    #[cfg(feature = "link")]
     pub(crate) const fn parts(&self) -> (&'t Content, &'t [Knot]) {
         (self.content, self.knots)
     }

@@ -36,6 +36,7 @@ pub use accepted::{AcceptedTable, margin_behind};
 pub use certificate::{Certificate, Figure, Hash, Margins, Vehicle};
 pub use error::{AcceptError, KnotFault, LoadError, TableError};
 pub use gain_table::GainTable;
+#[cfg(feature = "link")]
 pub(crate) use gains::Content;
 pub use name::{Name, NameError};
 pub use wire::{FORMAT_VERSION, MAGIC};
