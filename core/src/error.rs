@@ -121,6 +121,7 @@ pub enum StepError {
     /// The law gives motor forces, and the target has none.
     NoForces,
     /// The law makes a reference of its own, and the target has no sample for it.
+    #[cfg(feature = "cascade")]
     NoSample,
     /// Nothing is known of the motors that a command is to be carried to.
     NoActuation,
@@ -169,6 +170,7 @@ impl fmt::Display for StepError {
             Self::Singular => f.write_str("law: the asked acceleration has no attitude; stop or level"),
             Self::NoBodyRates => f.write_str("controller: motor forces take body rates; measure them"),
             Self::NoForces => f.write_str("controller: the law gives motor forces; make the target with them"),
+            #[cfg(feature = "cascade")]
             Self::NoSample => {
                 f.write_str("controller: the cascade makes its own reference; make the target with a sample")
             }

@@ -43,7 +43,7 @@
 //!                   math, checksum  square root, sine and cosine; CRC-32C
 //! ```
 //!
-//! Features, none of them default: `link` for the serial link's frames; `serde` and `defmt` for plain data to be stored or logged.
+//! Features, none of them default: `cascade` for the law of nested loops; `link` for the serial link's frames; `serde` and `defmt` for plain data to be stored or logged.
 //!
 //! Conventions: world frame z up; quaternion scalar first, Hamilton product, body to world; thrust divided by mass, in
 //! m/s^2; body rates in rad/s.
@@ -56,6 +56,7 @@ extern crate std;
 pub mod actuation;
 pub mod airframe;
 pub mod body_rate;
+#[cfg(feature = "cascade")]
 pub mod cascade;
 pub mod checksum;
 pub mod clock;
@@ -87,6 +88,7 @@ pub use nalgebra;
 pub use actuation::Actuation;
 pub use airframe::{Airframe, AirframeFigures};
 pub use body_rate::BodyRateLoop;
+#[cfg(feature = "cascade")]
 pub use cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};

@@ -81,14 +81,17 @@ impl MotorLimited {
     }
 
     /// The same with thrust, attitude or yaw given up.
+    #[cfg(feature = "cascade")]
     pub(crate) const fn with_thrust(self) -> Self {
         Self { bits: self.bits | Self::THRUST }
     }
 
+    #[cfg(feature = "cascade")]
     pub(crate) const fn with_attitude(self) -> Self {
         Self { bits: self.bits | Self::ATTITUDE }
     }
 
+    #[cfg(feature = "cascade")]
     pub(crate) const fn with_yaw(self) -> Self {
         Self { bits: self.bits | Self::YAW }
     }

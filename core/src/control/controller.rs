@@ -9,6 +9,7 @@ use super::memory::Memory;
 use super::output::{MotorStep, Output, Step};
 use super::registers;
 use crate::actuation::Actuation;
+#[cfg(feature = "cascade")]
 use crate::cascade::{Cascade, CascadeInput};
 use crate::command::Limits;
 use crate::error::{StateError, StepError};
@@ -35,6 +36,7 @@ impl<'a> Controller<'a> {
         let law = law.into();
         let actuation = match &law {
             Law::ActuatorAware(law) => Some(law.actuation),
+            #[cfg(feature = "cascade")]
             Law::Cascade(law) => Some(law.actuation()),
             _ => None,
         };
@@ -45,7 +47,9 @@ impl<'a> Controller<'a> {
     #[inline]
     pub const fn with_actuation(self, actuation: &'a Actuation) -> Self {
         match self.law {
-            Law::ActuatorAware(_) | Law::Cascade(_) => self,
+            Law::ActuatorAware(_) => self,
+            #[cfg(feature = "cascade")]
+            Law::Cascade(_) => self,
             _ => Self { actuation: Some(actuation), ..self },
         }
     }
@@ -82,6 +86,7 @@ impl<'a> Controller<'a> {
                 let Some(reference) = target.motors else { return Err(StepError::NoForces) };
                 actuator_aware(law, memory, measured.state, body_rates_rad_s, reference)
             }
+            #[cfg(feature = "cascade")]
             Law::Cascade(law) => cascade(law, memory, measured, target),
         }
     }
@@ -181,6 +186,7 @@ fn actuator_aware(
     Err(refuse(Measured::new(state).with_body_rates(body_rates_rad_s)))
 }
 
+#[cfg(feature = "cascade")]
 #[inline(never)]
 fn cascade(
     law: &Cascade,

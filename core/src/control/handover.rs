@@ -38,6 +38,7 @@ impl Handover {
         if !old.integrates_like(new) {
             memory.clear_integral();
         }
+        #[cfg(feature = "cascade")]
         if new.follows_samples() && !old.follows_samples() {
             memory.cascade.begin_in_flight();
         }

@@ -2,8 +2,12 @@
 
 use nalgebra::Vector3;
 
+#[cfg(feature = "cascade")]
 use crate::command::Command;
-use crate::motor_reference::{FifthOrderSample, MotorReference};
+#[cfg(feature = "cascade")]
+use crate::motor_reference::FifthOrderSample;
+use crate::motor_reference::MotorReference;
+#[cfg(feature = "cascade")]
 use crate::quaternion::{Heading, Quaternion};
 use crate::reference::Reference;
 use crate::rigid_state::RigidState;
@@ -15,6 +19,7 @@ use crate::trajectory::Progress;
 pub struct Measured<'a> {
     pub(crate) state: &'a State,
     pub(crate) body_rates_rad_s: Option<&'a Vector3<f32>>,
+    #[cfg(feature = "cascade")]
     pub(crate) specific_force_m_s2: Option<&'a Vector3<f32>>,
 }
 
@@ -22,7 +27,12 @@ impl<'a> Measured<'a> {
     /// An estimated state; its quaternion may have either sign.
     #[inline]
     pub const fn new(state: &'a State) -> Self {
-        Self { state, body_rates_rad_s: None, specific_force_m_s2: None }
+        Self {
+            state,
+            body_rates_rad_s: None,
+            #[cfg(feature = "cascade")]
+            specific_force_m_s2: None,
+        }
     }
 
     /// With the gyroscope's body rates `p q r`, rad/s: what a law of motor forces takes, and who carries a command to them.
@@ -31,6 +41,7 @@ impl<'a> Measured<'a> {
         Self { body_rates_rad_s: Some(body_rates_rad_s), ..self }
     }
 
+    #[cfg(feature = "cascade")]
     /// With the accelerometer's specific force in the body frame, m/s^2: what the cascade learns the air from.
     #[inline]
     pub const fn with_specific_force(self, specific_force_m_s2: &'a Vector3<f32>) -> Self {
@@ -66,6 +77,7 @@ pub struct Target<'a> {
     pub(crate) reference: &'a Reference,
     pub(crate) motors: Option<&'a MotorReference>,
     pub(crate) progress: Option<Progress>,
+    #[cfg(feature = "cascade")]
     pub(crate) sample: Option<(&'a FifthOrderSample, Heading)>,
 }
 
@@ -73,15 +85,22 @@ impl<'a> Target<'a> {
     /// State, thrust and body rates.
     #[inline]
     pub const fn new(reference: &'a Reference) -> Self {
-        Self { reference, motors: None, progress: None, sample: None }
+        Self {
+            reference,
+            motors: None,
+            progress: None,
+            #[cfg(feature = "cascade")]
+            sample: None,
+        }
     }
 
     /// The same with the motor forces that fly it.
     #[inline]
     pub const fn with_forces(motors: &'a MotorReference) -> Self {
-        Self { reference: &motors.reference, motors: Some(motors), progress: None, sample: None }
+        Self { motors: Some(motors), ..Self::new(&motors.reference) }
     }
 
+    #[cfg(feature = "cascade")]
     /// The flat output itself, at a heading: the cascade makes a reference of its own, in the air that it knows. The sample's own
     /// angle of heading is not looked at, and no other law can follow this.
     #[inline]
@@ -96,6 +115,7 @@ impl<'a> Target<'a> {
     }
 }
 
+#[cfg(feature = "cascade")]
 /// Of targets without a reference.
 static NOWHERE: Reference = Reference {
     state: State {

@@ -1,5 +1,6 @@
 //! Any law with its gain, to be chosen at run time.
 
+#[cfg(feature = "cascade")]
 use crate::cascade::Cascade;
 use crate::law::{ActuatorAware, AlongTrajectory, Equilibrium, FlatOutput, IntegralAction};
 
@@ -20,6 +21,7 @@ pub enum Law<'a> {
     /// Straight to motor forces, with the motors' lag in the model.
     ActuatorAware(ActuatorAware<'a>),
     /// Straight to motor forces, in nested loops with limits, told of the air.
+    #[cfg(feature = "cascade")]
     Cascade(&'a Cascade),
 }
 
@@ -31,6 +33,7 @@ impl Law<'_> {
         matches!(self, Self::ActuatorAware(_))
     }
 
+    #[cfg(feature = "cascade")]
     /// Whether it takes a target made with [`super::Target::with_sample`], and measured body rates.
     #[inline]
     pub const fn follows_samples(&self) -> bool {
@@ -82,6 +85,7 @@ impl<'a> From<ActuatorAware<'a>> for Law<'a> {
     }
 }
 
+#[cfg(feature = "cascade")]
 impl<'a> From<&'a Cascade> for Law<'a> {
     fn from(law: &'a Cascade) -> Self {
         Self::Cascade(law)

@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::airframe::Airframe;
+#[cfg(feature = "cascade")]
 use crate::cascade::CascadeMemory;
 use crate::motor_lag::MotorForces;
 
@@ -19,6 +20,7 @@ pub struct Memory {
     /// Integral of the position error in the world frame, m s.
     pub(crate) integral_m_s: Vector3<f32>,
     /// Of the cascade.
+    #[cfg(feature = "cascade")]
     pub(crate) cascade: CascadeMemory,
 }
 
@@ -31,13 +33,23 @@ impl Memory {
 
     /// Motors that stand still: before a take-off, and for who has no motors.
     pub const fn at_rest() -> Self {
-        Self { forces_n: [0.0; 4], integral_m_s: Vector3::new(0.0, 0.0, 0.0), cascade: CascadeMemory::STANDING }
+        Self {
+            forces_n: [0.0; 4],
+            integral_m_s: Vector3::new(0.0, 0.0, 0.0),
+            #[cfg(feature = "cascade")]
+            cascade: CascadeMemory::STANDING,
+        }
     }
 
     /// A craft that hovers: for taking over in flight from somebody of whose motors nothing is known.
     pub const fn hovering(airframe: &Airframe) -> Self {
         let forces_n = [airframe.hover_force_n(); 4];
-        Self { forces_n, cascade: CascadeMemory::IN_FLIGHT, ..Self::at_rest() }
+        Self {
+            forces_n,
+            #[cfg(feature = "cascade")]
+            cascade: CascadeMemory::IN_FLIGHT,
+            ..Self::at_rest()
+        }
     }
 
     /// Takes the motors to be at the forces of hover, where nobody has kept what they were commanded in flight.
@@ -49,6 +61,7 @@ impl Memory {
     pub fn run_down(&mut self, share: f32) {
         let [a, b, c, d] = self.forces_n;
         self.forces_n = [a * share, b * share, c * share, d * share];
+        #[cfg(feature = "cascade")]
         self.cascade.motors_off();
     }
 
@@ -62,6 +75,7 @@ impl Memory {
         self.integral_m_s
     }
 
+    #[cfg(feature = "cascade")]
     /// What the cascade remembers.
     pub const fn cascade(&self) -> &CascadeMemory {
         &self.cascade

@@ -1,6 +1,7 @@
 //! Gain tables made offline: constants in the image, checked when it is compiled, and files, checked when they are
 //! loaded.
 
+#[cfg(feature = "cascade")]
 pub mod cascade;
 mod constant;
 pub mod paper;
