@@ -317,7 +317,8 @@ fn what_is_remembered_of_the_motors_is_as_told() {
 
 #[test]
 fn every_cut_is_told_apart() {
-    let readers: [(u16, fn(MotorLimited) -> bool); 4] =
+    type Reader = fn(MotorLimited) -> bool;
+    let readers: [(u16, Reader); 4] =
         [(1, MotorLimited::thrust), (2, MotorLimited::attitude), (4, MotorLimited::yaw), (8, MotorLimited::motors)];
     for bits in 0..=u16::MAX {
         let limited = MotorLimited::from(bits);
