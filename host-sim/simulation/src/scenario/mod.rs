@@ -8,6 +8,7 @@
 //!       flight       a plant, sensors and a law at 1 kHz
 //!         filtered   the estimate of a Kalman filter
 //!           sensors  noise and biases
+//!         recording  a flight with what was around it, as CSV
 //!         course     hover, ramp, and what is measured
 //!       laws         laws by name
 //!         object_law the Crazyflie controller as a law
@@ -26,9 +27,11 @@ pub mod filtered;
 pub mod flight;
 mod laws;
 mod object_law;
+mod recording;
 pub mod sensors;
 mod whole;
 
 pub use error::{ScenarioError, StartError};
 pub use laws::{Law, LawError, ToldFigures};
+pub use recording::{Around, Recording};
 pub use whole::{CourseChoice, FilterFigures, Scenario};
