@@ -1,6 +1,7 @@
 //! `quatrack fly`: a scenario; or a controller or a gain table, a trajectory and a rate in; the figures of one flight, and its
 //! log, out.
 
+mod picture;
 mod scenario;
 mod table;
 
@@ -53,7 +54,7 @@ pub(crate) struct Args {
     #[arg(long, value_enum, ignore_case = true, conflicts_with_all = ["gains", "scenario"])]
     controller: Option<Controller>,
     /// A gain table (.bin), or a design (.toml) whose table is made first. It is flown by the f32 core, at its own rate
-    /// and within its own limits.
+    /// and within its own limits; a table for motor forces on the vehicle that its design names, or --vehicle.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["mu", "scenario"])]
     gains: Option<PathBuf>,
     /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), or a plan

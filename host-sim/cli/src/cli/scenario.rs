@@ -184,10 +184,11 @@ fn from_here(path: &str) -> String {
 }
 
 impl ScenarioArgs {
-    /// Whether there is a file or a flag.
-    pub(super) fn any(&self) -> bool {
+    /// Whether there is a file or a flag other than --vehicle.
+    pub(super) fn any_but_vehicle(&self) -> bool {
         let mut file = ScenarioFile::default();
         self.put_over(&mut file);
+        file.vehicle.clear();
         self.scenario.is_some() || self.air.is_some() || file != ScenarioFile::default()
     }
 

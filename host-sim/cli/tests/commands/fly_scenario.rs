@@ -129,3 +129,51 @@ fn what_cannot_be_flown_is_refused_in_one_line() {
         assert!(refused.stdout.is_empty() && named.iter().all(|name| said.contains(name)), "{arguments:?}: {said}");
     }
 }
+
+#[test]
+fn a_picture_has_path_errors_tilt_motors_with_their_limits_and_wind() {
+    let (folder, path) = scenario("fly-plot", WINDY);
+    let picture = folder.join("flight.svg");
+    let flown = quatrack(&["fly", "--scenario", &path, "--plot", picture.to_str().unwrap()]);
+    assert!(flown.status.success(), "{}", String::from_utf8_lossy(&flown.stderr));
+    let svg = fs::read_to_string(picture).unwrap();
+    for text in
+        ["error (m)", "tilt (deg)", "thrust (N)", "wind (m/s)", "motor 4", "limits", "lee", "course", "time (s)"]
+    {
+        assert!(svg.contains(&format!(">{text}</text>")), "{text}");
+    }
+    let (lines, dashed) = (svg.matches("<polyline").count(), |line: &&str| line.contains("stroke-dasharray"));
+    // In space: the flight, its course and the course's shadow; then 3 errors, 1 tilt, 4 thrusts with 2 limits, 3 winds.
+    assert_eq!(lines, 3 + 3 + 1 + 4 + 2 + 3);
+    // Of these the course and the two limits are dashed.
+    assert_eq!(svg.lines().filter(|line| line.starts_with("<polyline")).filter(dashed).count(), 3);
+}
+
+#[test]
+fn gains_of_ones_own_fly_the_craft_that_their_design_names() {
+    let (folder, _) = scenario("fly-own-gains", "");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../gains");
+    let vehicle = fs::read_to_string(root.join("vehicles/crazyflie-2.1.toml")).unwrap();
+    let mass = vehicle.lines().find(|line| line.starts_with("mass_kg")).expect("a mass");
+    let name = vehicle.lines().find(|line| line.starts_with("name")).expect("a name");
+    let own = vehicle.replace(mass, "mass_kg = 0.030").replace(name, "name = \"own-craft\"");
+    fs::write(folder.join("own.toml"), &own).unwrap();
+    let design = fs::read_to_string(root.join("actuator-aware.toml")).unwrap();
+    let named = design.lines().find(|line| line.starts_with("vehicle")).expect("a vehicle");
+    let path = folder.join("mine.toml");
+    fs::write(&path, design.replace(named, "vehicle = \"own.toml\"")).unwrap();
+
+    let path = path.to_str().unwrap();
+    let flown = quatrack(&["fly", "--gains", path, "--trajectory", "mild"]);
+    let printed = String::from_utf8(flown.stdout).unwrap();
+    assert!(flown.status.success(), "{}", String::from_utf8_lossy(&flown.stderr));
+    assert!(printed.contains("of the motors, own-craft") && !printed.contains("lost"), "{printed}");
+    let own = folder.join("own.toml");
+    let same = quatrack(&["fly", "--gains", path, "--trajectory", "mild", "--vehicle", own.to_str().unwrap()]);
+    assert_eq!(String::from_utf8(same.stdout).unwrap(), printed);
+
+    let other = quatrack(&["fly", "--gains", path, "--trajectory", "mild", "--vehicle", "crazyflie-2.1"]);
+    let said = String::from_utf8(other.stderr).unwrap();
+    assert_eq!((other.status.code(), said.lines().count()), (Some(2), 1), "{said}");
+    assert!(said.contains("made for own-craft") && said.contains("crazyflie-2.1"), "{said}");
+}

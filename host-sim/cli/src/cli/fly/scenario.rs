@@ -3,7 +3,7 @@
 use quatrack_simulation::scenario::{Recording, Scenario};
 use serde::Serialize;
 
-use super::{Args, NOTHING, Precision, trajectory};
+use super::{Args, NOTHING, Precision, picture, trajectory};
 use crate::cli::{Failure, output};
 
 /// What the figures' file says that it is.
@@ -30,7 +30,9 @@ impl Args {
         if self.trajectory.is_empty() {
             return Err(Failure::input("--controller and --gains fly a trajectory: add --trajectory"));
         }
-        if self.plot.is_some() || self.scenario.any() {
+        // A gain table has a vehicle.
+        let vehicle_for_nothing = self.gains.is_none() && self.scenario.vehicle.is_some();
+        if self.plot.is_some() || self.scenario.any_but_vehicle() || vehicle_for_nothing {
             return Err(Failure::input(
                 "--controller and --gains fly the paper's model: leave out --plot and the flags of a scenario, or choose one of \
                  its laws by --law",
@@ -106,6 +108,13 @@ fn report(args: &Args, scenario: &Scenario, recording: &Recording) -> Result<(),
         let path = dir.join("flight.csv");
         output::write(&path, recording.to_csv().as_bytes())?;
         output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    if let Some(path) = &args.plot {
+        if flight.samples.len() > 1 {
+            picture::write(path, &scenario.to_string(), figures.law, recording)?;
+        } else {
+            output::print("no picture: the craft was lost before anything was measured\n")?;
+        }
     }
     if let Some(path) = &args.json {
         output::write_json(path, &figures)?;

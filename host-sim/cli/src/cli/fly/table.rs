@@ -3,16 +3,20 @@
 mod motors;
 
 use std::path::Path;
+use std::str::FromStr as _;
 
 use quatrack::gains::table::{AcceptError, GainTable, TableKind};
 use quatrack::{Limits, Rate, Settings, Trajectory};
+use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::reference::{Exact, Reference};
 use quatrack_simulation::gains::{Course, Design};
+use quatrack_simulation::vehicles;
 
 use super::{Args, Flown, Precision, fly_law, load};
 use crate::cli::limits::LimitsChoice;
+use crate::cli::vehicle::VehicleChoice;
 use crate::cli::{Failure, gains};
 
 /// Flies the table of a file at its own rate; another one that is asked for is refused.
@@ -20,11 +24,23 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Flown,
     if args.precision == Precision::F64 {
         return Err(Failure::input("--precision f64: a table is flown by the f32 core; leave --precision out"));
     }
-    let bytes = bytes(path)?;
+    let Source { bytes, vehicle } = source(path)?;
     let table = GainTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
     let (kind, head) = (table.kind(), *table.head());
+    let vehicle = match &args.scenario.vehicle {
+        Some(asked) => Some(VehicleChoice::from_str(asked).map_err(Failure::input)?.0),
+        None => vehicle,
+    };
+    if let Some(vehicle) = vehicle.as_ref().filter(|vehicle| vehicles::id(vehicle) != head.vehicle.id) {
+        let reason = format!(
+            "made for {}, not for the figures of {} that --vehicle gives; make its table anew for these",
+            head.vehicle,
+            vehicle.name()
+        );
+        return Err(refused(path, &reason));
+    }
     if kind == TableKind::ActuatorAware {
-        return motors::fly(args, path, &table, rate, &load(args)?);
+        return motors::fly(args, path, &table, vehicle, rate, &load(args)?);
     }
     let rate = rate.unwrap_or(head.rate);
     let accepted = table.accept_for(&head.vehicle, rate).map_err(|error| not_accepted(path, &error))?;
@@ -80,14 +96,22 @@ fn not_accepted(path: &Path, error: &AcceptError) -> Failure {
     }
 }
 
-/// A binary table, or the table of a design.
-fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
+/// A table, and the vehicle of the design that it was made of.
+struct Source {
+    bytes: Vec<u8>,
+    vehicle: Option<Vehicle>,
+}
+
+/// A binary table, which says of its vehicle no more than its name and figures' checksum; or the table of a design.
+fn source(path: &Path) -> Result<Source, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") {
-        let certified =
-            Design::from_file(path).and_then(|design| design.certify()).map_err(|error| gains::failed(path, &error))?;
-        return certified
+        let design = Design::from_file(path).map_err(|error| gains::failed(path, &error))?;
+        let certified = design.certify().map_err(|error| gains::failed(path, &error))?;
+        let bytes = certified
             .to_bytes()
-            .ok_or_else(|| refused(path, &"no law on board remembers its last commands; set delay_samples = 0"));
+            .ok_or_else(|| refused(path, &"no law on board remembers its last commands; set delay_samples = 0"))?;
+        return Ok(Source { bytes, vehicle: Some(design.vehicle) });
     }
-    std::fs::read(path).map_err(|error| refused(path, &format!("cannot be read ({error})")))
+    let bytes = std::fs::read(path).map_err(|error| refused(path, &format!("cannot be read ({error})")))?;
+    Ok(Source { bytes, vehicle: None })
 }
