@@ -2,7 +2,7 @@
 //! log, out.
 
 mod picture;
-mod scenario;
+pub(super) mod scenario;
 mod table;
 
 use std::fmt;
@@ -31,14 +31,14 @@ use super::limits::LimitsChoice;
 use super::scenario::ScenarioArgs;
 use super::{Failure, output};
 
-/// Flies a scenario with its law, or one trajectory with one controller of the paper or a gain table, and prints what came of
-/// it.
+/// Flies a scenario with its law, or one trajectory with one controller or gain table.
 ///
-/// With --scenario or --vehicle the law of a scenario flies on a rigid craft with motors, in air where it has some; every key of
-/// the file has a flag, which goes before the file. A lost craft gives exit code 3.
+/// With --scenario or --vehicle the law of a scenario flies on a rigid craft with motors, in
+/// air where it has some. Every key of the file has a flag, which goes before the file. A lost
+/// craft gives exit code 3.
 ///
-/// With --controller the paper's model flies, in vacuum, its state known exactly; so it does with --gains, but for the
-/// actuator-aware tables, which fly on the rigid craft of their vehicle.
+/// With --controller the paper's model flies, in vacuum, its state known exactly; so it does
+/// with --gains, but for tables for motor forces, which fly on a rigid craft.
 ///
 /// Examples:
 ///   quatrack fly --scenario my.toml --wind-m-s 1,0,0 --out out/windy --plot out/windy.png

@@ -11,7 +11,7 @@ use quatrack_simulation::scenario::{Law, Scenario};
 use super::Failure;
 
 /// A scenario by file and flags; a flag goes before the file.
-#[derive(clap::Args, Default)]
+#[derive(clap::Args)]
 #[command(next_help_heading = "Scenario")]
 pub(crate) struct ScenarioArgs {
     /// The scenario (TOML): a craft, its air, what is wrong with what is known of it, a course and a law.

@@ -177,3 +177,24 @@ fn gains_of_ones_own_fly_the_craft_that_their_design_names() {
     assert_eq!((other.status.code(), said.lines().count()), (Some(2), 1), "{said}");
     assert!(said.contains("made for own-craft") && said.contains("crazyflie-2.1"), "{said}");
 }
+
+#[test]
+fn robustness_and_crazyflie_fly_the_scenario_too() {
+    let text = "vehicle = \"crazyflie-2.1-brushless\"\ncourse = \"hover\"\nduration_s = 1.0\n[air]\nwind_m_s = [1.0, 0.0, 0.0]\n\
+                drag_per_s = [0.4, 0.4, 0.4]\n";
+    let (folder, path) = scenario("fly-others", text);
+    let file = |name: &str| folder.join(name);
+    let run = |arguments: &[&str], name: &str| {
+        let done = quatrack(&[arguments, &["--scenario", &path, "--json", file(name).to_str().unwrap()]].concat());
+        assert!(done.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&done.stderr));
+        json(&file(name))
+    };
+    let alone = run(&["fly"], "fly.json");
+    assert_eq!(run(&["crazyflie"], "crazyflie.json"), alone);
+    let table = run(&["robustness", "--law", "quatrack"], "robustness.json");
+    let rows = table["rows"].as_array().unwrap();
+    // Ten cases but for the fast eight, which a hover has not.
+    assert_eq!(rows.len(), 9);
+    assert_eq!((&rows[0]["case"], &rows[0]["iae_m_s"]), (&"nominal".into(), &alone["iae_m_s"]));
+    assert_ne!(rows[1]["iae_m_s"], alone["iae_m_s"]);
+}

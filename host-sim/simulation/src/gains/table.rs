@@ -48,7 +48,7 @@ impl Table {
             bytes: bytes.to_vec(),
             head: *table.head(),
             kind: table.kind(),
-            motor_lag_s: table.lag().map(|lag| lag.lag_s()),
+            motor_lag_s: table.lag().map(quatrack::MotorLag::lag_s),
             along,
             by_rows,
         })

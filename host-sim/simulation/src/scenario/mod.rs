@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! compare            laws beside each other
+//! varied             one more thing wrong at a time
 //!   checked, checks  a file -> a scenario whose every value has been looked at, or one line that says why not
 //!     whole          the scenario; its flights
 //!       flight       a plant, sensors and a law at 1 kHz
@@ -29,9 +30,11 @@ mod laws;
 mod object_law;
 mod recording;
 pub mod sensors;
+mod varied;
 mod whole;
 
 pub use error::{ScenarioError, StartError};
 pub use laws::{Law, LawError, ToldFigures};
 pub use recording::{Around, Recording};
+pub use sensors::SensorNoise;
 pub use whole::{CourseChoice, FilterFigures, Scenario};

@@ -29,7 +29,7 @@ fn committed_tables_are_those_that_the_flights_are_flown_with() {
         let table = GainTable::from_bytes(&bytes).expect("sound");
         assert_eq!((table.head().vehicle.id, table.head().rate.hz()), (vehicles::id(&vehicle), 500), "{design}");
         let lag_s = default_lag_s(&vehicle);
-        assert_eq!(table.lag().map(|lag| lag.lag_s()), Some(lag_s as f32), "{design}");
+        assert_eq!(table.lag().map(quatrack::MotorLag::lag_s), Some(lag_s as f32), "{design}");
         let weights = &ActuatorAwareWeights::STANDARD;
         let flown = AwareTable::new(&vehicle, lag_s, weights, &Region::of_any_crazyflie()).expect("designed");
         assert_eq!(table.gain(), Some(&ConstantGain::ActuatorAware(*flown.gain())), "{design}");

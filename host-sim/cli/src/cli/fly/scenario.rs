@@ -11,7 +11,7 @@ const SCHEMA: &str = "quatrack/fly/1";
 
 /// The figures of a flight.
 #[derive(Serialize)]
-struct Report {
+pub(in crate::cli) struct Report {
     schema: &'static str,
     law: &'static str,
     /// None for a flight that was lost.
@@ -22,6 +22,13 @@ struct Report {
     /// Along the mean wind, across it, upwards.
     gust_rms_m_s: Option<[f64; 3]>,
     lost: Option<String>,
+}
+
+impl Report {
+    /// Exit code 3 for a craft that was lost.
+    pub(in crate::cli) fn outcome(self) -> Result<(), Failure> {
+        self.lost.map_or(Ok(()), |lost| Err(Failure::lost(format!("{} was lost {lost}", self.law))))
+    }
 }
 
 impl Args {
@@ -67,17 +74,25 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     args.refuse_older()?;
     let scenario = args.scenario.checked()?;
-    let flown = scenario.flown(scenario.course.trajectory().map(trajectory).transpose()?);
-    let mut law = scenario.law.start(&scenario.vehicle, &scenario.told).map_err(Failure::input)?;
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
-    let recording = scenario.record(law.as_mut(), &flown).map_err(Failure::input)?;
-    report(args, &scenario, &recording)
+    let (figures, recording) = fly_and_print(&scenario)?;
+    write(args, &scenario, figures, &recording)
 }
 
-fn report(args: &Args, scenario: &Scenario, recording: &Recording) -> Result<(), Failure> {
+/// Flies a scenario with its law and prints the figures.
+pub(in crate::cli) fn fly_and_print(scenario: &Scenario) -> Result<(Report, Recording), Failure> {
+    let flown = scenario.flown(scenario.course.trajectory().map(trajectory).transpose()?);
+    let mut law = scenario.law.start(&scenario.vehicle, &scenario.told).map_err(Failure::input)?;
+    let recording = scenario.record(law.as_mut(), &flown).map_err(Failure::input)?;
+    let figures = figures(scenario, &recording);
+    output::print(&text(scenario, &figures))?;
+    Ok((figures, recording))
+}
+
+fn figures(scenario: &Scenario, recording: &Recording) -> Report {
     let flight = &recording.flight;
     let lost = flight.lost.as_ref().map(|lost| format!("at {:.2} s: {}", lost.time_s, lost.reason));
-    let figures = Report {
+    Report {
         schema: SCHEMA,
         law: scenario.law.name(),
         iae_m_s: flight.iae_m_s(),
@@ -85,13 +100,16 @@ fn report(args: &Args, scenario: &Scenario, recording: &Recording) -> Result<(),
         saturated_steps: flight.saturated_steps,
         gust_rms_m_s: recording.gust_rms_m_s.map(Into::into),
         lost,
-    };
+    }
+}
+
+fn text(scenario: &Scenario, figures: &Report) -> String {
     let iae = figures.iae_m_s.map_or_else(|| "none: the flight was lost".to_owned(), |iae| format!("{iae:.6} m s"));
     let gusts = figures.gust_rms_m_s.map_or_else(
         || "none".to_owned(),
         |[along, across, up]| format!("{along:.3}, {across:.3}, {up:.3} m/s along the wind, across, up"),
     );
-    output::print(&format!(
+    format!(
         "{} on {scenario}, seed {}\n\
          \x20 IAE over samples of 10 ms  {iae}\n\
          \x20 largest position error     {:.6} m\n\
@@ -103,14 +121,17 @@ fn report(args: &Args, scenario: &Scenario, recording: &Recording) -> Result<(),
         figures.max_error_m,
         figures.saturated_steps,
         figures.lost.as_deref().unwrap_or("no"),
-    ))?;
+    )
+}
+
+fn write(args: &Args, scenario: &Scenario, figures: Report, recording: &Recording) -> Result<(), Failure> {
     if let Some(dir) = &args.out {
         let path = dir.join("flight.csv");
         output::write(&path, recording.to_csv().as_bytes())?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     if let Some(path) = &args.plot {
-        if flight.samples.len() > 1 {
+        if recording.flight.samples.len() > 1 {
             picture::write(path, &scenario.to_string(), figures.law, recording)?;
         } else {
             output::print("no picture: the craft was lost before anything was measured\n")?;
@@ -120,5 +141,5 @@ fn report(args: &Args, scenario: &Scenario, recording: &Recording) -> Result<(),
         output::write_json(path, &figures)?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
-    figures.lost.map_or(Ok(()), |lost| Err(Failure::lost(format!("{} was lost {lost}", figures.law))))
+    figures.outcome()
 }
