@@ -54,8 +54,9 @@ pub(crate) struct Args {
     #[arg(long, value_enum, ignore_case = true, conflicts_with_all = ["gains", "scenario"])]
     controller: Option<Controller>,
     /// A gain table (.bin), or a design (.toml) whose table is made first. It is flown by the f32 core, at its own rate
-    /// and within its own limits; a table for motor forces on the vehicle that its design names, or --vehicle.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["mu", "scenario"])]
+    /// and within its own limits; a table for motor forces on the vehicle that its design names, or --vehicle. With
+    /// --scenario such a table is the scenario's law.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["mu", "law"])]
     gains: Option<PathBuf>,
     /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), or a plan
     /// (TOML, planned first).
@@ -161,7 +162,9 @@ struct Flown {
 const NOTHING: &str = "nothing to fly: give --scenario or --vehicle; or --controller or --gains, with --trajectory";
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    if args.gains.is_none() && args.controller.is_none() {
+    let on_trajectory = args.controller.is_some() || !args.trajectory.is_empty();
+    let of_table = args.gains.is_some() && !args.scenario.any_but_vehicle();
+    if args.gains.is_none() && args.controller.is_none() || args.gains.is_some() && !(on_trajectory && of_table) {
         return scenario::run(args);
     }
     args.refuse_scenario()?;

@@ -172,6 +172,16 @@ fn gains_of_ones_own_fly_the_craft_that_their_design_names() {
     let same = quatrack(&["fly", "--gains", path, "--trajectory", "mild", "--vehicle", own.to_str().unwrap()]);
     assert_eq!(String::from_utf8(same.stdout).unwrap(), printed);
 
+    // The same table is the law of a scenario: in vacuum, at hover, told the true mass, it has nothing to do.
+    let file = folder.join("hover.json");
+    let craft = own.to_str().unwrap();
+    let hover = ["fly", "--gains", path, "--vehicle", craft, "--course", "hover", "--json", file.to_str().unwrap()];
+    let hover = quatrack(&hover);
+    assert!(hover.status.success(), "{}", String::from_utf8_lossy(&hover.stderr));
+    let figures = json(&file);
+    // The f32 of the core leaves a newton's 1e-7, integrated by the law.
+    assert!(figures["law"] == "mine" && figures["max_error_m"].as_f64().unwrap() < 1e-4, "{figures}");
+
     let other = quatrack(&["fly", "--gains", path, "--trajectory", "mild", "--vehicle", "crazyflie-2.1"]);
     let said = String::from_utf8(other.stderr).unwrap();
     assert_eq!((other.status.code(), said.lines().count()), (Some(2), 1), "{said}");

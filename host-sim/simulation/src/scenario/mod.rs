@@ -13,6 +13,7 @@
 //!         course     hover, ramp, and what is measured
 //!       laws         laws by name
 //!         object_law the Crazyflie controller as a law
+//!       table_law    the controller of a table of gains as a law
 //!         core_law   the core's controller as a law
 //!   file             the keys in TOML
 //! ```
@@ -30,6 +31,7 @@ mod laws;
 mod object_law;
 mod recording;
 pub mod sensors;
+mod table_law;
 mod varied;
 mod whole;
 
@@ -37,4 +39,5 @@ pub use error::{ScenarioError, StartError};
 pub use laws::{Law, LawError, ToldFigures};
 pub use recording::{Around, Recording};
 pub use sensors::SensorNoise;
+pub use table_law::TableLaw;
 pub use whole::{CourseChoice, FilterFigures, Scenario};

@@ -1,9 +1,10 @@
 //! The flight of a scenario: its law on its craft; figures, the log as CSV and a picture out.
 
+use quatrack_simulation::control_law::ControlLaw;
 use quatrack_simulation::scenario::{Recording, Scenario};
 use serde::Serialize;
 
-use super::{Args, NOTHING, Precision, picture, trajectory};
+use super::{Args, NOTHING, Precision, picture, table, trajectory};
 use crate::cli::{Failure, output};
 
 /// What the figures' file says that it is.
@@ -13,7 +14,7 @@ const SCHEMA: &str = "quatrack/fly/1";
 #[derive(Serialize)]
 pub(in crate::cli) struct Report {
     schema: &'static str,
-    law: &'static str,
+    law: String,
     /// None for a flight that was lost.
     iae_m_s: Option<f64>,
     max_error_m: f64,
@@ -37,7 +38,7 @@ impl Args {
         if self.trajectory.is_empty() {
             return Err(Failure::input("--controller and --gains fly a trajectory: add --trajectory"));
         }
-        // A gain table has a vehicle.
+        // A table of gains has a vehicle.
         let vehicle_for_nothing = self.gains.is_none() && self.scenario.vehicle.is_some();
         if self.plot.is_some() || self.scenario.any_but_vehicle() || vehicle_for_nothing {
             return Err(Failure::input(
@@ -75,26 +76,33 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     args.refuse_older()?;
     let scenario = args.scenario.checked()?;
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
-    let (figures, recording) = fly_and_print(&scenario)?;
+    let (figures, recording) = match &args.gains {
+        Some(path) => table::in_scenario(path, &scenario, &|law, name| fly_law(&scenario, law, name))?,
+        None => fly_and_print(&scenario)?,
+    };
     write(args, &scenario, figures, &recording)
 }
 
 /// Flies a scenario with its law and prints the figures.
 pub(in crate::cli) fn fly_and_print(scenario: &Scenario) -> Result<(Report, Recording), Failure> {
-    let flown = scenario.flown(scenario.course.trajectory().map(trajectory).transpose()?);
     let mut law = scenario.law.start(&scenario.vehicle, &scenario.told).map_err(Failure::input)?;
-    let recording = scenario.record(law.as_mut(), &flown).map_err(Failure::input)?;
-    let figures = figures(scenario, &recording);
+    fly_law(scenario, law.as_mut(), scenario.law.name())
+}
+
+fn fly_law(scenario: &Scenario, law: &mut dyn ControlLaw, name: &str) -> Result<(Report, Recording), Failure> {
+    let flown = scenario.flown(scenario.course.trajectory().map(trajectory).transpose()?);
+    let recording = scenario.record(law, &flown).map_err(Failure::input)?;
+    let figures = figures(name, &recording);
     output::print(&text(scenario, &figures))?;
     Ok((figures, recording))
 }
 
-fn figures(scenario: &Scenario, recording: &Recording) -> Report {
+fn figures(law: &str, recording: &Recording) -> Report {
     let flight = &recording.flight;
     let lost = flight.lost.as_ref().map(|lost| format!("at {:.2} s: {}", lost.time_s, lost.reason));
     Report {
         schema: SCHEMA,
-        law: scenario.law.name(),
+        law: law.to_owned(),
         iae_m_s: flight.iae_m_s(),
         max_error_m: flight.max_error_m(),
         saturated_steps: flight.saturated_steps,
@@ -132,7 +140,7 @@ fn write(args: &Args, scenario: &Scenario, figures: Report, recording: &Recordin
     }
     if let Some(path) = &args.plot {
         if recording.flight.samples.len() > 1 {
-            picture::write(path, &scenario.to_string(), figures.law, recording)?;
+            picture::write(path, &scenario.to_string(), &figures.law, recording)?;
         } else {
             output::print("no picture: the craft was lost before anything was measured\n")?;
         }

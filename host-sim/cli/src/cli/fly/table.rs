@@ -10,8 +10,12 @@ use quatrack::{Limits, Rate, Settings, Trajectory};
 use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_simulation::control_law::ControlLaw;
+use quatrack_simulation::flight::motor_laws::CraftLaw;
+use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::reference::{Exact, Reference};
 use quatrack_simulation::gains::{Course, Design};
+use quatrack_simulation::scenario::{Scenario, TableLaw};
 use quatrack_simulation::vehicles;
 
 use super::{Args, Flown, Precision, fly_law, load};
@@ -94,6 +98,28 @@ fn not_accepted(path: &Path, error: &AcceptError) -> Failure {
         }
         other => refused(path, other),
     }
+}
+
+/// Flies a table for motor forces as the law of a scenario, on the vehicle that it was made for.
+pub(super) fn in_scenario<T>(
+    path: &Path,
+    scenario: &Scenario,
+    fly: &dyn Fn(&mut dyn ControlLaw, &str) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let bytes = source(path)?.bytes;
+    let table = GainTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
+    let (kind, head) = (table.kind(), *table.head());
+    if kind != TableKind::ActuatorAware {
+        return Err(refused(path, &format!("a table for {kind}; a scenario takes one for motor forces, or --law")));
+    }
+    if vehicles::id(&scenario.vehicle) != head.vehicle.id {
+        let reason = format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name());
+        return Err(refused(path, &reason));
+    }
+    let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| not_accepted(path, &error))?;
+    let law = CraftLaw::of_table(&scenario.vehicle, accepted).map_err(|error| refused(path, &error))?;
+    let flying = TableLaw::hovering(&law, scenario.vehicle.hover_thrust_n());
+    fly(&mut flying.ok_or_else(|| refused(path, &"becomes no controller"))?, head.name.as_str())
 }
 
 /// A table, and the vehicle of the design that it was made of.
