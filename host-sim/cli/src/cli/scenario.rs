@@ -1,14 +1,16 @@
 //! `--scenario` and a flag for each of its keys: a file, flags over it, or flags alone in; a scenario whose every value has been
 //! looked at out.
 
+mod values;
+
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use quatrack_simulation::scenario::file::{Air, Estimator, OwnAir, ScenarioFile};
 use quatrack_simulation::scenario::flight::Setpoints;
 use quatrack_simulation::scenario::{Law, Scenario};
 
 use super::Failure;
+use values::{List, estimator, from_here, over, over_list, setpoints};
 
 /// A scenario by file and flags; a flag goes before the file.
 #[derive(clap::Args)]
@@ -134,53 +136,6 @@ pub(crate) struct ScenarioArgs {
     /// Age of a position as the filter is given it, ms.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     filter_latency_ms: Option<f64>,
-}
-
-/// Numbers with commas in between.
-#[derive(Clone, Copy, Debug)]
-struct List<const N: usize>([f64; N]);
-
-impl<const N: usize> FromStr for List<N> {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-        let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
-        numbers.map(Self).ok_or_else(|| format!("must be {N} numbers with commas in between"))
-    }
-}
-
-fn setpoints(text: &str) -> Result<Setpoints, String> {
-    match text {
-        "100hz" => Ok(Setpoints::At100Hz),
-        "exact" => Ok(Setpoints::Exact),
-        _ => Err("must be 100hz or exact".to_owned()),
-    }
-}
-
-fn estimator(text: &str) -> Result<Estimator, String> {
-    match text {
-        "exact" => Ok(Estimator::Exact),
-        "kalman" => Ok(Estimator::Kalman),
-        _ => Err("must be exact or kalman".to_owned()),
-    }
-}
-
-/// Puts a flag's value, where there is one, over the file's.
-fn over<T: Clone>(file: &mut Option<T>, flag: &Option<T>) {
-    if flag.is_some() {
-        file.clone_from(flag);
-    }
-}
-
-/// Likewise a list.
-fn over_list<const N: usize>(file: &mut Option<[f64; N]>, flag: Option<List<N>>) {
-    over(file, &flag.map(|List(values)| values));
-}
-
-/// A path of the command line, whatever folder the file's begin at.
-fn from_here(path: &str) -> String {
-    std::path::absolute(path).map_or_else(|_| path.to_owned(), |path| path.display().to_string())
 }
 
 impl ScenarioArgs {

@@ -110,7 +110,7 @@ pub(super) fn in_scenario<T>(
     let table = GainTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
     let (kind, head) = (table.kind(), *table.head());
     if kind != TableKind::ActuatorAware {
-        return Err(refused(path, &format!("a table for {kind}; a scenario takes one for motor forces, or --law")));
+        return Err(refused(path, &format!("its kind is {kind}; a scenario takes a table for motor forces, or --law")));
     }
     if vehicles::id(&scenario.vehicle) != head.vehicle.id {
         let reason = format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name());
