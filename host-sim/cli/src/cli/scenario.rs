@@ -43,8 +43,8 @@ pub(crate) struct ScenarioArgs {
     /// exact, the truth with noise; or kalman, the core's filter behind noisy sensors.
     #[arg(long, value_name = "exact|kalman", value_parser = estimator)]
     estimator: Option<Estimator>,
-    /// Where noise and gusts begin.
-    #[arg(long, value_name = "N")]
+    /// Where noise and gusts begin: a whole number from 0.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     seed: Option<u64>,
     /// vehicle, what the vehicle's file says of its air; or vacuum.
     #[arg(long, value_name = "vehicle|vacuum", value_parser = ["vehicle", "vacuum"])]
