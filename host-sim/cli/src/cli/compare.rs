@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use nalgebra::Vector3;
 use quatrack_cli::figures::{Curve, TrackingFigure};
 use quatrack_simulation::flight::rigid_loop::RigidFlight;
+use quatrack_simulation::scenario::Law;
 use quatrack_simulation::scenario::compare::Table;
-use quatrack_simulation::scenario::{Law, Scenario};
 
+use super::scenario::ScenarioArgs;
 use super::{Failure, fly, output};
 
 /// Flies laws on one scenario, each from the same start with the same noise and gusts: ours, the paper's, and those of
@@ -20,15 +21,11 @@ use super::{Failure, fly, output};
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
-    /// The scenario (TOML).
-    #[arg(long, value_name = "FILE")]
-    scenario: PathBuf,
-    /// Which laws, by their names; by default all.
-    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    #[command(flatten)]
+    scenario: ScenarioArgs,
+    /// Which laws, by their names; by default --law, or else all.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',', conflicts_with = "law")]
     laws: Vec<Law>,
-    /// Where noise and gusts begin, instead of the scenario's.
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
     /// Write the table as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -38,17 +35,17 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let mut scenario = Scenario::from_file(&args.scenario).map_err(Failure::input)?;
-    scenario.seed = args.seed.unwrap_or(scenario.seed);
+    let scenario = args.scenario.checked()?;
     let trajectory = scenario.course.trajectory().map(fly::trajectory).transpose()?;
     let flown = scenario.flown(trajectory);
-    let laws = if args.laws.is_empty() { Law::ALL.to_vec() } else { args.laws.clone() };
+    let asked: Vec<Law> = args.scenario.law.into_iter().chain(args.laws.iter().copied()).collect();
+    let laws = if asked.is_empty() { Law::ALL.to_vec() } else { asked.clone() };
     let (mut flights, mut grounded) = (Vec::with_capacity(laws.len()), String::new());
     for law in laws {
         let mut flying = match law.start(&scenario.vehicle, &scenario.told) {
             Ok(flying) => flying,
             // Nobody has asked for this one.
-            Err(error) if args.laws.is_empty() => {
+            Err(error) if asked.is_empty() => {
                 grounded.push_str(&format!("\nnot flown: {error}"));
                 continue;
             }

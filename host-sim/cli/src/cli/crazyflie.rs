@@ -5,22 +5,26 @@ use std::path::PathBuf;
 use quatrack_cli::pil::crazyflie::count;
 use quatrack_cli::pil::image;
 use quatrack_simulation::crazyflie::CrazyflieReport;
+use quatrack_simulation::scenario::{Law, Scenario};
 use quatrack_simulation::vehicles;
 
-use super::{Failure, output};
+use super::scenario::ScenarioArgs;
+use super::{Failure, fly, output};
 
 /// Flies the Crazyflie controller through its C interface on the rigid plant, with the firmware's setpoints, rates and
 /// power distribution: position errors of every course and case.
 ///
 /// With --count, builds the object for the firmware inside a checkout, runs it on the emulated Cortex-M4, counts the
 /// instructions of every call and compares every bit of what it puts out with the host's.
+///
+/// With --scenario, or a flag of one other than --vehicle, flies the controller's default table on that scenario alone, as
+/// `fly` does with the law "quatrack". Otherwise the courses are flown in vacuum, by --vehicle or else crazyflie-2.1.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The craft: crazyflie-2.1, crazyflie-2.1-upgrade-kit or crazyflie-2.1-brushless.
-    #[arg(long, value_name = "NAME", default_value = "crazyflie-2.1")]
-    vehicle: String,
+    #[command(flatten)]
+    scenario: ScenarioArgs,
     /// Count instructions instead of flying.
-    #[arg(long, conflicts_with = "vehicle")]
+    #[arg(long, conflicts_with_all = ["vehicle", "scenario"])]
     count: bool,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
@@ -32,7 +36,22 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         let counts = image::checkout().and_then(|checkout| count(&checkout)).map_err(Failure::input)?;
         return report(args, &counts);
     }
-    let vehicle = vehicles::by_name(&args.vehicle).map_err(Failure::input)?;
+    if args.scenario.any_but_vehicle() {
+        if args.scenario.law.is_some_and(|law| law != Law::Crazyflie) {
+            return Err(Failure::input(
+                "--law: `crazyflie` flies the Crazyflie controller alone; take `fly` for other laws",
+            ));
+        }
+        let scenario = Scenario { law: Law::Crazyflie, ..args.scenario.checked()? };
+        let (figures, _) = fly::scenario::fly_and_print(&scenario)?;
+        if let Some(path) = &args.json {
+            output::write_json(path, &figures)?;
+            output::print(&format!("wrote {}\n", path.display()))?;
+        }
+        return figures.outcome();
+    }
+    let name = args.scenario.vehicle.as_deref().unwrap_or("crazyflie-2.1");
+    let vehicle = vehicles::by_name(name).map_err(Failure::input)?;
     report(args, &CrazyflieReport::of(&vehicle).map_err(Failure::input)?)
 }
 

@@ -1,5 +1,8 @@
-//! `quatrack fly`: a controller or a gain table, a trajectory and a rate in; the figures of one flight, and its log, out.
+//! `quatrack fly`: a scenario; or a controller or a gain table, a trajectory and a rate in; the figures of one flight, and its
+//! log, out.
 
+mod picture;
+pub(super) mod scenario;
 mod table;
 
 use std::fmt;
@@ -25,11 +28,21 @@ use quatrack_simulation::integrator::Method;
 use serde::Serialize;
 
 use super::limits::LimitsChoice;
+use super::scenario::ScenarioArgs;
 use super::{Failure, output};
 
-/// Flies one trajectory with one controller and prints what came of it.
+/// Flies a scenario with its law, or one trajectory with one controller or gain table.
+///
+/// With --scenario or --vehicle the law of a scenario flies on a rigid craft with motors, in
+/// air where it has some. Every key of the file has a flag, which goes before the file. A lost
+/// craft gives exit code 3.
+///
+/// With --controller the paper's model flies, in vacuum, its state known exactly; so it does
+/// with --gains, but for tables for motor forces, which fly on a rigid craft.
 ///
 /// Examples:
+///   quatrack fly --scenario my.toml --wind-m-s 1,0,0 --out out/windy --plot out/windy.png
+///   quatrack fly --vehicle crazyflie-2.1-brushless --air vehicle --law lee --speed-m-s 1.5
 ///   quatrack fly --controller lqr-e --trajectory mild
 ///   quatrack fly --controller lqr-e --trajectory my.csv --rate-hz 500 --feed-forward --limits crazyflie-2.1
 ///   quatrack fly --controller lyap-e --mu 1 --trajectory aggressive --precision f64 --out out/crash
@@ -38,15 +51,16 @@ use super::{Failure, output};
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
     /// Which law and design of the paper.
-    #[arg(long, value_enum, ignore_case = true, required_unless_present = "gains", conflicts_with = "gains")]
+    #[arg(long, value_enum, ignore_case = true, conflicts_with_all = ["gains", "scenario"])]
     controller: Option<Controller>,
     /// A gain table (.bin), or a design (.toml) whose table is made first. It is flown by the f32 core, at its own rate
-    /// and within its own limits.
-    #[arg(long, value_name = "FILE", conflicts_with = "mu")]
+    /// and within its own limits; a table for motor forces on the vehicle that its design names, or --vehicle. With
+    /// --scenario such a table is the scenario's law.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["mu", "law"])]
     gains: Option<PathBuf>,
     /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), or a plan
     /// (TOML, planned first).
-    #[arg(long, value_name = "mild|aggressive|FILE")]
+    #[arg(long, value_name = "mild|aggressive|FILE", default_value = "", hide_default_value = true)]
     trajectory: String,
     /// Control steps a second, 1 to 10000, commands held in between. Without it a table flies at its own, f32 at 500 Hz
     /// and f64 in continuous time.
@@ -75,6 +89,11 @@ pub(crate) struct Args {
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Of a scenario: write a picture of the flight, its errors, tilt, motor forces and wind, .svg or .png.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    scenario: ScenarioArgs,
 }
 
 /// The controllers of the paper.
@@ -139,12 +158,21 @@ struct DescribedFlight {
     flight: Flight,
 }
 
+/// Said where no law is asked for.
+const NOTHING: &str = "nothing to fly: give --scenario or --vehicle; or --controller or --gains, with --trajectory";
+
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let on_trajectory = args.controller.is_some() || !args.trajectory.is_empty();
+    let of_table = args.gains.is_some() && !args.scenario.any_but_vehicle();
+    if args.gains.is_none() && args.controller.is_none() || args.gains.is_some() && !(on_trajectory && of_table) {
+        return scenario::run(args);
+    }
+    args.refuse_scenario()?;
     let rate = args.rate_hz.map(checked_rate).transpose()?;
     let flown = match (&args.gains, args.controller) {
         (Some(path), _) => table::fly(args, path, rate)?,
         (None, Some(controller)) => fly_paper(args, controller, rate)?,
-        (None, None) => return Err(Failure::input("nothing to fly: give --controller or --gains")),
+        (None, None) => return Err(Failure::input(NOTHING)),
     };
     report(args, &flown)
 }

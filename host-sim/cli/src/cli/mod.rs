@@ -15,6 +15,7 @@ mod plan;
 mod refit;
 mod reproduce;
 mod robustness;
+mod scenario;
 mod vehicle;
 
 use std::process::ExitCode;
@@ -37,6 +38,11 @@ impl Failure {
     /// The question was answered with no: exit code 1.
     pub(crate) fn verdict(reason: impl std::fmt::Display) -> Self {
         Self { exit_code: 1, line: reason.to_string() }
+    }
+
+    /// The craft was lost: exit code 3.
+    pub(crate) fn lost(reason: impl std::fmt::Display) -> Self {
+        Self { exit_code: 3, line: reason.to_string() }
     }
 }
 

@@ -1,28 +1,38 @@
 //! `quatrack robustness`: a vehicle in; how every law certified for it flies on craft that are not quite it, out.
 
+mod scenario;
+
 use std::fmt::Write as _;
 use std::path::PathBuf;
+use std::str::FromStr as _;
 
 use quatrack_simulation::flight::robustness::{self, CASES, RobustnessReport, Row};
 
+use super::scenario::ScenarioArgs;
 use super::vehicle::VehicleChoice;
 use super::{Failure, output};
 
 /// Flies an eight at 2.1 m/s (and, as the case "fast", 3.1 m/s) with every law that is certified for the vehicle: as
 /// designed, with mass, lag or inertia off, with late commands, with noise. The f32 core runs at 500 Hz against a rigid
-/// body with lagging motors that saturate. Figures are the position error summed over samples of 10 ms, in m s.
+/// body with lagging motors that saturate, in vacuum. Figures are the position error summed over samples of 10 ms, in m s.
+///
+/// With --scenario, or a flag of one other than --vehicle, the laws of a scenario fly that: as it is, and with each of these
+/// things wrong on top of what it says.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A built-in vehicle, or a TOML file.
-    #[arg(long, value_name = "VEHICLE", default_value = "crazyflie-2.1")]
-    vehicle: VehicleChoice,
+    #[command(flatten)]
+    scenario: ScenarioArgs,
     /// Write the table as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let report = robustness::report(&args.vehicle.0).map_err(Failure::input)?;
+    if args.scenario.any_but_vehicle() {
+        return scenario::run(&args.scenario, args.json.as_deref());
+    }
+    let vehicle = VehicleChoice::from_str(args.scenario.vehicle.as_deref().unwrap_or("crazyflie-2.1"));
+    let report = robustness::report(&vehicle.map_err(Failure::input)?.0).map_err(Failure::input)?;
     output::print(&table(&report))?;
     if let Some(path) = &args.json {
         output::write_json(path, &report)?;

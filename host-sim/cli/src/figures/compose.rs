@@ -9,7 +9,7 @@ use super::style::{CAP_HEIGHT, Colour, LEGEND, Line, NOTE, Stroke, TITLE};
 use super::svg::{Anchor, Sheet};
 use super::{Curve, FigureError, TrackingFigure, panels, space};
 
-const WIDTH: f64 = 1200.0;
+pub(super) const WIDTH: f64 = 1200.0;
 const HEIGHT: f64 = 560.0;
 /// Free at the left and right of title, legend and notes.
 const MARGIN: f64 = 24.0;
@@ -22,7 +22,7 @@ const STRAY_SHARE: f64 = 0.5;
 /// Axes are at least this long, m: below, a figure would show rounding errors.
 const SHORTEST_M: f64 = 0.1;
 /// An edge of the 3D box is at least this share of its longest, so that a flat flight still has a box around it.
-const FLATTEST: f64 = 0.25;
+pub(super) const FLATTEST: f64 = 0.25;
 /// Free at either end of an axis, as a share of its extent.
 const PADDING: f64 = 0.06;
 
@@ -54,7 +54,7 @@ pub(super) fn document(figure: &TrackingFigure<'_>) -> Result<String, FigureErro
 
 /// Curves in the order of drawing: flights from wide to narrow, then the reference on top, so that all can be seen
 /// where they coincide.
-fn lines<'a>(figure: &TrackingFigure<'a>) -> Vec<Line<'a>> {
+pub(super) fn lines<'a>(figure: &TrackingFigure<'a>) -> Vec<Line<'a>> {
     const WIDTHS: [f64; 4] = [3.4, 1.9, 1.5, 1.2];
     let line = |curve: &Curve<'a>, stroke| Line {
         label: curve.label,
@@ -74,7 +74,7 @@ fn lines<'a>(figure: &TrackingFigure<'a>) -> Vec<Line<'a>> {
 const STRAY_FROM_REST_M: f64 = 1.0;
 
 /// One range per coordinate, m: the reference and what of the flights stays near it.
-fn axes(figure: &TrackingFigure<'_>) -> [Range; 3] {
+pub(super) fn axes(figure: &TrackingFigure<'_>) -> [Range; 3] {
     let range = |curve: &Curve<'_>, i: usize| Range::of(curve.position_m.iter().map(|p: &Vector3<f64>| p[i]));
     let reference: [Range; 3] =
         std::array::from_fn(|i| range(&figure.reference, i).unwrap_or(Range { low: 0.0, high: 0.0 }));
@@ -92,7 +92,7 @@ fn axes(figure: &TrackingFigure<'_>) -> [Range; 3] {
 }
 
 /// What a reader must know about a flight that the axes do not hold.
-fn note(flight: &Curve<'_>, axes: &[Range; 3]) -> Option<String> {
+pub(super) fn note(flight: &Curve<'_>, axes: &[Range; 3]) -> Option<String> {
     let samples = || flight.time_s.iter().zip(flight.position_m);
     let outside = |p: &Vector3<f64>| p.iter().zip(axes).any(|(v, axis)| *v < axis.low || *v > axis.high);
     let left = samples().find(|(_, p)| outside(p));
@@ -108,12 +108,12 @@ fn note(flight: &Curve<'_>, axes: &[Range; 3]) -> Option<String> {
 }
 
 /// `size`, or what is smaller and keeps the text on the sheet.
-fn fitting(content: &str, size: f64) -> Result<f64, FigureError> {
+pub(super) fn fitting(content: &str, size: f64) -> Result<f64, FigureError> {
     Ok(size.min((WIDTH - 2.0 * MARGIN) / width_em(content)?))
 }
 
 /// A row of samples with their labels, centred below the title; the reference first.
-fn legend(sheet: &mut Sheet, lines: &[Line<'_>]) -> Result<(), FigureError> {
+pub(super) fn legend(sheet: &mut Sheet, lines: &[Line<'_>]) -> Result<(), FigureError> {
     const SAMPLE: f64 = 36.0;
     const TO_LABEL: f64 = 8.0;
     const BETWEEN: f64 = 32.0;

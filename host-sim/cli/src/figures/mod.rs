@@ -1,10 +1,12 @@
-//! Figures in the manner of the paper's Figures 2 to 5: a reference and the flights that track it in, SVG or PNG out.
+//! Figures in the manner of the paper's Figures 2 to 5: a reference and the flights that track it, or one flight with what its
+//! motors and the air did, in; SVG or PNG out.
 //!
 //! To the left the flight in space, to the right x, y and z over time; the reference dashed, flights solid. Plain data
 //! in, bytes out, the same bytes for the same data: nothing here knows controllers or writes files.
 
 mod axis;
 mod compose;
+mod flight;
 mod panels;
 mod path;
 mod render;
@@ -13,6 +15,8 @@ mod style;
 mod svg;
 
 use nalgebra::Vector3;
+
+pub use flight::{FlightFigure, Quantity, Trace};
 
 /// Coordinates and times up to this size can be told apart on an axis and labelled.
 const LARGEST: f64 = 1e6;

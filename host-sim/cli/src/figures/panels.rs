@@ -16,8 +16,8 @@ pub(super) fn draw(sheet: &mut Sheet, frame: Frame, time_s: Range, axes: &[Range
     let height = (frame.bottom - frame.top - 2.0 * GAP) / 3.0;
     for (i, range) in axes.iter().enumerate() {
         let top = frame.top + i as f64 * (height + GAP);
-        let value_m = Scale::clear_of_ticks(*range, axis::step(range.extent(), 5.0));
-        let panel = Panel { frame: Frame { top, bottom: top + height, ..frame }, time_s, value_m };
+        let value = Scale::clear_of_ticks(*range, axis::step(range.extent(), 5.0));
+        let panel = Panel { frame: Frame { top, bottom: top + height, ..frame }, time_s, value };
         panel.draw_grid(sheet, i == 2);
         for curve in curves {
             panel.draw_curve(sheet, curve, i);
@@ -29,10 +29,11 @@ pub(super) fn draw(sheet: &mut Sheet, frame: Frame, time_s: Range, axes: &[Range
     sheet.text("time (s)", [middle, frame.bottom + 40.0], LABEL, Anchor::Middle);
 }
 
-struct Panel {
-    frame: Frame,
-    time_s: Scale,
-    value_m: Scale,
+/// One plot over time.
+pub(super) struct Panel {
+    pub(super) frame: Frame,
+    pub(super) time_s: Scale,
+    pub(super) value: Scale,
 }
 
 impl Panel {
@@ -40,11 +41,11 @@ impl Panel {
         self.frame.left + self.time_s.range.share(time_s) * (self.frame.right - self.frame.left)
     }
 
-    fn row(&self, value_m: f64) -> f64 {
-        self.frame.bottom - self.value_m.range.share(value_m) * (self.frame.bottom - self.frame.top)
+    fn row(&self, value: f64) -> f64 {
+        self.frame.bottom - self.value.range.share(value) * (self.frame.bottom - self.frame.top)
     }
 
-    fn draw_grid(&self, sheet: &mut Sheet, with_time_labels: bool) {
+    pub(super) fn draw_grid(&self, sheet: &mut Sheet, with_time_labels: bool) {
         let (grid, tick) = (Stroke::solid(Colour::GRID, 0.8), Stroke::solid(Colour::FRAME, 1.0));
         let Frame { left, top, right, bottom } = self.frame;
         for (value, label) in self.time_s.ticks() {
@@ -55,7 +56,7 @@ impl Panel {
                 sheet.text(&label, [x, bottom + 10.0 + CAP_HEIGHT * TICK], TICK, Anchor::Middle);
             }
         }
-        for (value, label) in self.value_m.ticks() {
+        for (value, label) in self.value.ticks() {
             let y = self.row(value);
             sheet.line([left, y], [right, y], grid);
             sheet.line([left - 5.0, y], [left, y], tick);
@@ -64,16 +65,24 @@ impl Panel {
     }
 
     fn draw_curve(&self, sheet: &mut Sheet, curve: &Line<'_>, coordinate: usize) {
-        let samples = curve.time_s.iter().zip(curve.position_m).map(|(t, p)| [*t, p[coordinate]]);
-        let (time_s, value_m) = (self.time_s.range, self.value_m.range);
-        let (low, high) = ([time_s.low, value_m.low], [time_s.high, value_m.high]);
+        self.draw_samples(
+            sheet,
+            curve.time_s.iter().zip(curve.position_m).map(|(t, p)| [*t, p[coordinate]]),
+            curve.stroke,
+        );
+    }
+
+    /// Draws a line through times and values.
+    pub(super) fn draw_samples(&self, sheet: &mut Sheet, samples: impl Iterator<Item = [f64; 2]>, stroke: Stroke) {
+        let (time_s, value) = (self.time_s.range, self.value.range);
+        let (low, high) = ([time_s.low, value.low], [time_s.high, value.high]);
         for stretch in path::clipped(samples, low, high) {
             let points: Vec<[f64; 2]> = stretch.iter().map(|[t, v]| [self.column(*t), self.row(*v)]).collect();
-            sheet.curve(&path::thinned(&points, CURVE_TOLERANCE), curve.stroke);
+            sheet.curve(&path::thinned(&points, CURVE_TOLERANCE), stroke);
         }
     }
 
-    fn draw_outline(&self, sheet: &mut Sheet) {
+    pub(super) fn draw_outline(&self, sheet: &mut Sheet) {
         let Frame { left, top, right, bottom } = self.frame;
         let frame = Stroke::solid(Colour::FRAME, 1.0);
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];

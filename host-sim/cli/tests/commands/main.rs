@@ -4,5 +4,6 @@ mod cli;
 mod compare;
 mod figures;
 mod figures_png;
+mod fly_scenario;
 mod gains;
 mod pil;

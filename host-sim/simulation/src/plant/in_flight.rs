@@ -195,6 +195,11 @@ impl Plant {
         }
     }
 
+    /// Least and most command that a motor takes, N; others are cut to them.
+    pub fn command_limits_n(&self) -> [f64; 2] {
+        self.converter.limits_n
+    }
+
     /// Least and most thrust that each motor can be commanded to now, N.
     pub fn thrust_limits_n(&self) -> [Vector4<f64>; 2] {
         self.converter.limits_n.map(|limit_n| self.goals_n(Some(self.converter.acting(&Vector4::repeat(limit_n)))))

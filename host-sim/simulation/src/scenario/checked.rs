@@ -114,16 +114,16 @@ const TURBULENCE_HEIGHT_M: f64 = 1.0;
 const VERTICAL_SHARE: f64 = 0.51;
 
 fn environment(file: &ScenarioFile, checks: &Checks<'_>, vehicle: &Vehicle) -> Result<Environment, ScenarioError> {
-    let own = match &file.air {
+    let (own, of_vehicle) = match &file.air {
         None => return Ok(Environment::VACUUM),
-        Some(Air::Own(own)) => own,
-        Some(Air::Vehicle) => {
+        Some(Air::Own(own)) => (own, plant::Air::VACUUM),
+        Some(Air::Vehicle(own)) => {
             let air = plant::Air::of(vehicle).ok_or_else(|| ScenarioError::Named {
                 origin: checks.origin.to_owned(),
                 key: "air",
                 reason: "\"vehicle\": the vehicle's file says nothing of its air; give [air] with figures".to_owned(),
             })?;
-            return Ok(Environment { air, ..Environment::VACUUM });
+            (own, air)
         }
     };
     let mean_m_s = Vector3::from(own.wind_m_s.unwrap_or([0.0; 3]));
@@ -132,9 +132,9 @@ fn environment(file: &ScenarioFile, checks: &Checks<'_>, vehicle: &Vehicle) -> R
         Dryden::at_low_altitude(rms_m_s, TURBULENCE_HEIGHT_M, mean_m_s.norm())
     });
     let air = plant::Air {
-        drag_per_s: own.drag_per_s.unwrap_or([0.0; 3]),
-        moment_n_m_per_m_s: own.moment_n_m_per_m_s.unwrap_or([0.0; 2]),
-        ..plant::Air::VACUUM
+        drag_per_s: own.drag_per_s.unwrap_or(of_vehicle.drag_per_s),
+        moment_n_m_per_m_s: own.moment_n_m_per_m_s.unwrap_or(of_vehicle.moment_n_m_per_m_s),
+        ..of_vehicle
     };
     Ok(Environment { air, wind: Wind { mean_m_s, gust: None, turbulence }, ..Environment::VACUUM })
 }

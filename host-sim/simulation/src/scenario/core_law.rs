@@ -38,7 +38,7 @@ pub(super) struct CoreLaw {
 
 /// Snap and crackle of setpoints that end with the jerk, by differences.
 #[derive(Clone, Copy, Default)]
-struct BeyondJerk {
+pub(super) struct BeyondJerk {
     newest: Option<Setpoint>,
     snap_m_s4: Option<Vector3<f64>>,
     crackle_m_s5: Vector3<f64>,
@@ -46,7 +46,7 @@ struct BeyondJerk {
 
 impl BeyondJerk {
     /// The setpoint with what its jerk says of its higher derivatives; unchanged where it has them.
-    fn filled(&mut self, setpoint: &Setpoint) -> Setpoint {
+    pub(super) fn filled(&mut self, setpoint: &Setpoint) -> Setpoint {
         if setpoint.snap_m_s4 != Vector3::zeros() || setpoint.crackle_m_s5 != Vector3::zeros() {
             return *setpoint;
         }

@@ -19,7 +19,7 @@ use super::flight::Setpoints;
 use super::laws::Law;
 
 /// The whole file. A key that is absent has its default.
-#[derive(Clone, Debug, Default, Deserialize)]
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct ScenarioFile {
     /// Name or path of the true craft's vehicle.
@@ -70,8 +70,8 @@ pub enum Estimator {
 /// `air = "vehicle"`, or a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Air {
-    /// What the vehicle's file says of its air.
-    Vehicle,
+    /// What the vehicle's file says of its air, but for the figures that are given.
+    Vehicle(OwnAir),
     /// Figures of one's own.
     Own(OwnAir),
 }
@@ -176,7 +176,7 @@ impl<'de> Deserialize<'de> for Air {
 
             fn visit_str<E: serde::de::Error>(self, text: &str) -> Result<Air, E> {
                 let other = || E::invalid_value(serde::de::Unexpected::Str(text), &self);
-                (text == "vehicle").then_some(Air::Vehicle).ok_or_else(other)
+                (text == "vehicle").then(|| Air::Vehicle(OwnAir::default())).ok_or_else(other)
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Air, A::Error> {

@@ -1,10 +1,11 @@
 //! The flight of a law: a craft, what is wrong with what is known of it, a course and a law in; where it went out.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use serde::Deserialize;
 
 use super::course::Flown;
 use super::filtered::Estimation;
+use super::recording::{Around, Recording};
 use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ, Setpoint};
 use crate::flight::closed_loop::Lost;
 use crate::flight::rigid_loop::{RigidFlight, RigidSample};
@@ -41,7 +42,13 @@ pub struct Bench<'a> {
 
 impl Bench<'_> {
     /// Flies a law from where a craft is; rows every 10 ms of what is measured.
-    pub fn fly(mut self, plant: &mut Plant, law: &mut dyn ControlLaw) -> RigidFlight {
+    pub fn fly(self, plant: &mut Plant, law: &mut dyn ControlLaw) -> RigidFlight {
+        self.record(plant, law).flight
+    }
+
+    /// The same, with what was around the craft and known of it at every row.
+    pub fn record(mut self, plant: &mut Plant, law: &mut dyn ControlLaw) -> Recording {
+        let (mut around, mut known) = (Vec::new(), truth(plant.state(), &Vector3::zeros()));
         let mut flight = RigidFlight { samples: Vec::new(), saturated_steps: 0, lost: None };
         let steps = (self.flown.course.duration_s() / STEP_S).round() as u32;
         let law_steps = STEPS_HZ / law.rate_hz().clamp(1, STEPS_HZ);
@@ -58,7 +65,8 @@ impl Bench<'_> {
             if step.is_multiple_of(SAMPLE_STEPS) || self.setpoints == Setpoints::Exact {
                 setpoint = self.setpoint(time_s);
             }
-            let estimate = match self.estimation.estimate(&state, &plant.motion().specific_force_m_s2) {
+            let measured = time_s > self.flown.measured_from_s - 0.5 * STEP_S;
+            known = match self.estimation.estimate(&state, &plant.motion().specific_force_m_s2) {
                 Ok(estimate) => estimate,
                 Err(error) => {
                     flight.lost = Some(Lost { time_s, reason: format!("no estimate: {error}") });
@@ -66,7 +74,7 @@ impl Bench<'_> {
                 }
             };
             if step.is_multiple_of(law_steps) {
-                match law.step(&Input { time_s, estimate, setpoint, battery_v: plant.voltage_v() }) {
+                match law.step(&Input { time_s, estimate: known, setpoint, battery_v: plant.voltage_v() }) {
                     Ok(asked_n) if asked_n.iter().all(|force| force.is_finite()) => commands_n = asked_n,
                     Ok(_) => flight.lost = Some(Lost { time_s, reason: "a force that is not finite".to_owned() }),
                     Err(reason) => flight.lost = Some(Lost { time_s, reason }),
@@ -74,8 +82,10 @@ impl Bench<'_> {
                 if flight.lost.is_some() {
                     break;
                 }
+                flight.saturated_steps += u64::from(measured && at_limit(&commands_n, plant.command_limits_n()));
             }
-            if step.is_multiple_of(SAMPLE_STEPS) && time_s > self.flown.measured_from_s - 0.5 * STEP_S {
+            if step.is_multiple_of(SAMPLE_STEPS) && measured {
+                around.push(Around::of(plant, known));
                 flight.samples.push(RigidSample { time_s, state, commands_n, target_m });
             }
             plant.advance(&commands_n, STEP_S);
@@ -84,10 +94,11 @@ impl Bench<'_> {
         if let Some(Lost { time_s, .. }) = flight.lost {
             let (state, target_m) = (*plant.state(), self.flown.course.at(time_s).position[0]);
             if state.is_finite() {
+                around.push(Around::of(plant, known));
                 flight.samples.push(RigidSample { time_s, state, commands_n, target_m });
             }
         }
-        flight
+        Recording { flight, around, gust_rms_m_s: plant.realised_gust_rms_m_s() }
     }
 
     fn setpoint(&self, time_s: f64) -> Setpoint {
@@ -97,6 +108,13 @@ impl Bench<'_> {
             Setpoints::Exact => Setpoint::exact(&point, time_s),
         }
     }
+}
+
+/// Whether a motor is commanded to one of its limits or beyond. Some laws cut their forces in f32 and put them out as 16-bit
+/// commands: a thousandth of the range forgives both.
+fn at_limit(commands_n: &Vector4<f64>, [least_n, most_n]: [f64; 2]) -> bool {
+    let slack_n = 1e-3 * (most_n - least_n);
+    commands_n.iter().any(|command_n| *command_n <= least_n + slack_n || *command_n >= most_n - slack_n)
 }
 
 /// An estimate that is the truth.

@@ -13,6 +13,7 @@ use super::file::Estimator as EstimateFrom;
 use super::filtered::{Estimation, Filtered};
 use super::flight::{Bench, Setpoints};
 use super::laws::{Law, ToldFigures};
+use super::recording::Recording;
 use super::sensors::{SensorNoise, Sensors};
 use crate::control_law::ControlLaw;
 use crate::flight::motor_loop;
@@ -94,6 +95,14 @@ impl Scenario {
     /// # Errors
     /// [`StartError`] where the course cannot be flown from its start, or figures that were changed since have no sense.
     pub fn fly(&self, law: &mut dyn ControlLaw, flown: &Flown) -> Result<RigidFlight, StartError> {
+        Ok(self.record(law, flown)?.flight)
+    }
+
+    /// The same, with what was around the craft and known of it.
+    ///
+    /// # Errors
+    /// As [`Self::fly`].
+    pub fn record(&self, law: &mut dyn ControlLaw, flown: &Flown) -> Result<Recording, StartError> {
         let point = flown.course.at(0.0);
         let moves = point.position[1..].iter().any(|derivative| derivative.norm() > 0.0) || point.heading != [0.0; 4];
         let start = if moves {
@@ -110,7 +119,7 @@ impl Scenario {
             }
         };
         let bench = Bench { flown, setpoints: self.setpoints, estimation };
-        Ok(bench.fly(&mut self.plant(&start)?, law))
+        Ok(bench.record(&mut self.plant(&start)?, law))
     }
 
     /// What is flown, with the part that is measured. A trajectory is not planned here; see [`CourseChoice::Trajectory`].
@@ -161,7 +170,7 @@ impl fmt::Display for Scenario {
             f.write_str(", in vacuum")?;
         } else {
             let ([x, y, z], [c_x, c_y]) = (air.drag_per_s, air.moment_n_m_per_m_s);
-            write!(f, ", drag {x}, {y}, {z} 1/s, moment {:.2}, {:.2} mN m a m/s", 1e3 * c_x, 1e3 * c_y)?;
+            write!(f, ", drag {x:.3}, {y:.3}, {z:.3} 1/s, moment {:.2}, {:.2} mN m a m/s", 1e3 * c_x, 1e3 * c_y)?;
         }
         if wind.mean_m_s != Vector3::zeros() {
             write!(f, ", wind {} m/s", wind.mean_m_s.norm())?;

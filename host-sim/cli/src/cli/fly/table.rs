@@ -3,16 +3,24 @@
 mod motors;
 
 use std::path::Path;
+use std::str::FromStr as _;
 
 use quatrack::gains::table::{AcceptError, GainTable, TableKind};
 use quatrack::{Limits, Rate, Settings, Trajectory};
+use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_simulation::control_law::ControlLaw;
+use quatrack_simulation::flight::motor_laws::CraftLaw;
+use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::reference::{Exact, Reference};
 use quatrack_simulation::gains::{Design, OnBoardTrajectory};
+use quatrack_simulation::scenario::{Scenario, TableLaw};
+use quatrack_simulation::vehicles;
 
 use super::{Args, DescribedFlight, Precision, fly_law, load};
 use crate::cli::limits::LimitsChoice;
+use crate::cli::vehicle::VehicleChoice;
 use crate::cli::{Failure, gains};
 
 /// Flies the table of a file at its own rate; another one that is asked for is refused.
@@ -20,11 +28,23 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Descri
     if args.precision == Precision::F64 {
         return Err(Failure::input("--precision f64: a table is flown by the f32 core; leave --precision out"));
     }
-    let bytes = bytes(path)?;
+    let Source { bytes, vehicle } = source(path)?;
     let table = GainTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
     let (kind, head) = (table.kind(), *table.head());
+    let vehicle = match &args.scenario.vehicle {
+        Some(asked) => Some(VehicleChoice::from_str(asked).map_err(Failure::input)?.0),
+        None => vehicle,
+    };
+    if let Some(vehicle) = vehicle.as_ref().filter(|vehicle| vehicles::id(vehicle) != head.vehicle.id) {
+        let reason = format!(
+            "made for {}, not for the figures of {} that --vehicle gives; make its table anew for these",
+            head.vehicle,
+            vehicle.name()
+        );
+        return Err(refused(path, &reason));
+    }
     if kind == TableKind::ActuatorAware {
-        return motors::fly(args, path, &table, rate, &load(args)?);
+        return motors::fly(args, path, &table, vehicle, rate, &load(args)?);
     }
     let rate = rate.unwrap_or(head.rate);
     let accepted = table.accept_for(&head.vehicle, rate).map_err(|error| not_accepted(path, &error))?;
@@ -80,14 +100,44 @@ fn not_accepted(path: &Path, error: &AcceptError) -> Failure {
     }
 }
 
-/// A binary table, or the table of a design.
-fn bytes(path: &Path) -> Result<Vec<u8>, Failure> {
-    if path.extension().is_some_and(|extension| extension == "toml") {
-        let certified =
-            Design::from_file(path).and_then(|design| design.certify()).map_err(|error| gains::failed(path, &error))?;
-        return certified
-            .to_bytes()
-            .ok_or_else(|| refused(path, &"no law on board remembers its last commands; set delay_samples = 0"));
+/// Flies a table for motor forces as the law of a scenario, on the vehicle that it was made for.
+pub(super) fn in_scenario<T>(
+    path: &Path,
+    scenario: &Scenario,
+    fly: &dyn Fn(&mut dyn ControlLaw, &str) -> Result<T, Failure>,
+) -> Result<T, Failure> {
+    let bytes = source(path)?.bytes;
+    let table = GainTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
+    let (kind, head) = (table.kind(), *table.head());
+    if kind != TableKind::ActuatorAware {
+        return Err(refused(path, &format!("its kind is {kind}; a scenario takes a table for motor forces, or --law")));
     }
-    std::fs::read(path).map_err(|error| refused(path, &format!("cannot be read ({error})")))
+    if vehicles::id(&scenario.vehicle) != head.vehicle.id {
+        let reason = format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name());
+        return Err(refused(path, &reason));
+    }
+    let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| not_accepted(path, &error))?;
+    let law = CraftLaw::of_table(&scenario.vehicle, accepted).map_err(|error| refused(path, &error))?;
+    let flying = TableLaw::hovering(&law, scenario.vehicle.hover_thrust_n());
+    fly(&mut flying.ok_or_else(|| refused(path, &"becomes no controller"))?, head.name.as_str())
+}
+
+/// A table, and the vehicle of the design that it was made of.
+struct Source {
+    bytes: Vec<u8>,
+    vehicle: Option<Vehicle>,
+}
+
+/// A binary table, which says of its vehicle no more than its name and figures' checksum; or the table of a design.
+fn source(path: &Path) -> Result<Source, Failure> {
+    if path.extension().is_some_and(|extension| extension == "toml") {
+        let design = Design::from_file(path).map_err(|error| gains::failed(path, &error))?;
+        let certified = design.certify().map_err(|error| gains::failed(path, &error))?;
+        let bytes = certified
+            .to_bytes()
+            .ok_or_else(|| refused(path, &"no law on board remembers its last commands; set delay_samples = 0"))?;
+        return Ok(Source { bytes, vehicle: Some(design.vehicle) });
+    }
+    let bytes = std::fs::read(path).map_err(|error| refused(path, &format!("cannot be read ({error})")))?;
+    Ok(Source { bytes, vehicle: None })
 }

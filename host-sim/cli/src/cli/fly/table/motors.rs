@@ -4,6 +4,7 @@ use std::path::Path;
 
 use quatrack::Rate;
 use quatrack::gains::table::{GainTable, TableKind};
+use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::trajectory::fifth_order::FlatTrajectory as _;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::motor_laws::{CraftLaw, fly as fly_motors};
@@ -21,6 +22,7 @@ pub(super) fn fly(
     args: &Args,
     path: &Path,
     table: &GainTable<'_>,
+    own: Option<Vehicle>,
     rate: Option<Rate>,
     trajectory: &PiecewisePolynomial,
 ) -> Result<DescribedFlight, Failure> {
@@ -31,11 +33,16 @@ pub(super) fn fly(
     if head.rate != RATE {
         return Err(refused(path, &format!("for {} Hz; the rigid plant is flown at {} Hz", head.rate.hz(), RATE.hz())));
     }
-    let vehicle = vehicles::names()
-        .iter()
-        .filter_map(|name| vehicles::by_name(name).ok())
-        .find(|vehicle| vehicles::id(vehicle) == head.vehicle.id)
-        .ok_or_else(|| refused(path, &format!("no built-in vehicle is its {}", head.vehicle)))?;
+    let built_in = || {
+        let all = vehicles::names().into_iter().filter_map(|name| vehicles::by_name(name).ok());
+        all.into_iter().find(|vehicle| vehicles::id(vehicle) == head.vehicle.id)
+    };
+    let vehicle = own.or_else(built_in).ok_or_else(|| {
+        refused(
+            path,
+            &format!("no built-in vehicle is its {}; give --vehicle FILE, or the design (.toml)", head.vehicle),
+        )
+    })?;
     let accepted =
         table.accept_for(&head.vehicle, rate.unwrap_or(head.rate)).map_err(|error| not_accepted(path, &error))?;
     let law = CraftLaw::of_table(&vehicle, accepted).map_err(|error| refused(path, &error))?;

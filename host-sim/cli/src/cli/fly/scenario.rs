@@ -1,0 +1,153 @@
+//! The flight of a scenario: its law on its craft; figures, the log as CSV and a picture out.
+
+use quatrack_simulation::control_law::ControlLaw;
+use quatrack_simulation::scenario::{Recording, Scenario};
+use serde::Serialize;
+
+use super::{Args, NOTHING, Precision, picture, table, trajectory};
+use crate::cli::{Failure, output};
+
+/// What the figures' file says that it is.
+const SCHEMA: &str = "quatrack/fly/1";
+
+/// The figures of a flight.
+#[derive(Serialize)]
+pub(in crate::cli) struct Report {
+    schema: &'static str,
+    law: String,
+    /// None for a flight that was lost.
+    iae_m_s: Option<f64>,
+    max_error_m: f64,
+    /// Control steps with a motor at its limit, while it was measured.
+    saturated_steps: u64,
+    /// Along the mean wind, across it, upwards.
+    gust_rms_m_s: Option<[f64; 3]>,
+    lost: Option<String>,
+}
+
+impl Report {
+    /// Exit code 3 for a craft that was lost.
+    pub(in crate::cli) fn outcome(self) -> Result<(), Failure> {
+        self.lost.map_or(Ok(()), |lost| Err(Failure::lost(format!("{} was lost {lost}", self.law))))
+    }
+}
+
+impl Args {
+    /// Flags of a scenario beside --controller or --gains, which have none.
+    pub(super) fn refuse_scenario(&self) -> Result<(), Failure> {
+        if self.trajectory.is_empty() {
+            return Err(Failure::input("--controller and --gains fly a trajectory: add --trajectory"));
+        }
+        // A table of gains has a vehicle.
+        let vehicle_for_nothing = self.gains.is_none() && self.scenario.vehicle.is_some();
+        if self.plot.is_some() || self.scenario.any_but_vehicle() || vehicle_for_nothing {
+            return Err(Failure::input(
+                "--controller and --gains fly the paper's model: leave out --plot and the flags of a scenario, or choose one of \
+                 its laws by --law",
+            ));
+        }
+        Ok(())
+    }
+
+    /// Flags that a scenario has under other names.
+    fn refuse_older(&self) -> Result<(), Failure> {
+        let given = [
+            ("--trajectory", !self.trajectory.is_empty(), "--course"),
+            ("--rate-hz", self.rate_hz.is_some(), "the rate of the law"),
+            ("--precision", self.precision != Precision::F32, "that of the law"),
+            ("--feed-forward", self.feed_forward, "a law that feeds forward"),
+            ("--error-form", self.error_form != super::Form::Heading, "that of the law"),
+            ("--mu", self.mu.is_some(), "lyap-e or lyap-f as published"),
+            ("--limits", self.limits.is_some(), "those of the vehicle's motors"),
+        ];
+        match given.into_iter().find(|(_, given, _)| *given) {
+            Some((flag, _, instead)) => {
+                Err(Failure::input(format!("{flag}: belongs to --controller and --gains; a scenario takes {instead}")))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    if args.scenario.scenario.is_none() && args.scenario.vehicle.is_none() {
+        return Err(Failure::input(NOTHING));
+    }
+    args.refuse_older()?;
+    let scenario = args.scenario.checked()?;
+    args.out.as_deref().map_or(Ok(()), output::create_dir)?;
+    let (figures, recording) = match &args.gains {
+        Some(path) => table::in_scenario(path, &scenario, &|law, name| fly_law(&scenario, law, name))?,
+        None => fly_and_print(&scenario)?,
+    };
+    write(args, &scenario, figures, &recording)
+}
+
+/// Flies a scenario with its law and prints the figures.
+pub(in crate::cli) fn fly_and_print(scenario: &Scenario) -> Result<(Report, Recording), Failure> {
+    let mut law = scenario.law.start(&scenario.vehicle, &scenario.told).map_err(Failure::input)?;
+    fly_law(scenario, law.as_mut(), scenario.law.name())
+}
+
+fn fly_law(scenario: &Scenario, law: &mut dyn ControlLaw, name: &str) -> Result<(Report, Recording), Failure> {
+    let flown = scenario.flown(scenario.course.trajectory().map(trajectory).transpose()?);
+    let recording = scenario.record(law, &flown).map_err(Failure::input)?;
+    let figures = figures(name, &recording);
+    output::print(&text(scenario, &figures))?;
+    Ok((figures, recording))
+}
+
+fn figures(law: &str, recording: &Recording) -> Report {
+    let flight = &recording.flight;
+    let lost = flight.lost.as_ref().map(|lost| format!("at {:.2} s: {}", lost.time_s, lost.reason));
+    Report {
+        schema: SCHEMA,
+        law: law.to_owned(),
+        iae_m_s: flight.iae_m_s(),
+        max_error_m: flight.max_error_m(),
+        saturated_steps: flight.saturated_steps,
+        gust_rms_m_s: recording.gust_rms_m_s.map(Into::into),
+        lost,
+    }
+}
+
+fn text(scenario: &Scenario, figures: &Report) -> String {
+    let iae = figures.iae_m_s.map_or_else(|| "none: the flight was lost".to_owned(), |iae| format!("{iae:.6} m s"));
+    let gusts = figures.gust_rms_m_s.map_or_else(
+        || "none".to_owned(),
+        |[along, across, up]| format!("{along:.3}, {across:.3}, {up:.3} m/s along the wind, across, up"),
+    );
+    format!(
+        "{} on {scenario}, seed {}\n\
+         \x20 IAE over samples of 10 ms  {iae}\n\
+         \x20 largest position error     {:.6} m\n\
+         \x20 saturated steps            {}\n\
+         \x20 realised gusts, RMS        {gusts}\n\
+         \x20 lost                       {}\n",
+        figures.law,
+        scenario.seed,
+        figures.max_error_m,
+        figures.saturated_steps,
+        figures.lost.as_deref().unwrap_or("no"),
+    )
+}
+
+fn write(args: &Args, scenario: &Scenario, figures: Report, recording: &Recording) -> Result<(), Failure> {
+    if let Some(dir) = &args.out {
+        let path = dir.join("flight.csv");
+        output::write(&path, recording.to_csv().as_bytes())?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    if let Some(path) = &args.plot {
+        if recording.flight.samples.len() > 1 {
+            picture::write(path, &scenario.to_string(), &figures.law, recording)?;
+        } else {
+            output::print("no picture: the craft was lost before anything was measured\n")?;
+        }
+    }
+    if let Some(path) = &args.json {
+        output::write_json(path, &figures)?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    figures.outcome()
+}

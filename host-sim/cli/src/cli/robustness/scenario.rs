@@ -1,0 +1,82 @@
+//! A scenario under every case of the robustness flights: laws in; the position error of each out.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use quatrack_simulation::flight::robustness::CASES;
+use quatrack_simulation::scenario::Law;
+use serde::Serialize;
+
+use crate::cli::scenario::ScenarioArgs;
+use crate::cli::{Failure, fly, output};
+
+/// What the figures' file says that it is.
+const SCHEMA: &str = "quatrack/robustness-scenario/1";
+
+#[derive(Serialize)]
+struct Report {
+    schema: &'static str,
+    rows: Vec<Row>,
+}
+
+#[derive(Serialize)]
+struct Row {
+    law: &'static str,
+    case: &'static str,
+    /// None for a flight that was lost.
+    iae_m_s: Option<f64>,
+    max_error_m: f64,
+    saturated_steps: u64,
+    lost: bool,
+}
+
+/// Flies --law, or else every law that takes the vehicle.
+pub(super) fn run(args: &ScenarioArgs, json: Option<&Path>) -> Result<(), Failure> {
+    let scenario = args.checked()?;
+    let trajectory = scenario.course.trajectory().map(fly::trajectory).transpose()?;
+    let start = |law: Law| law.start(&scenario.vehicle, &scenario.told);
+    let laws: Vec<Law> = match args.law {
+        Some(law) => vec![start(law).map(|_| law).map_err(Failure::input)?],
+        None => Law::ALL.into_iter().filter(|law| start(*law).is_ok()).collect(),
+    };
+    let mut report = Report { schema: SCHEMA, rows: Vec::new() };
+    for case in &CASES {
+        let Some(varied) = scenario.varied(case) else { continue };
+        let flown = varied.flown(trajectory.clone());
+        for law in &laws {
+            let mut flying = start(*law).map_err(Failure::input)?;
+            let flight = varied.fly(flying.as_mut(), &flown).map_err(Failure::input)?;
+            report.rows.push(Row {
+                law: law.name(),
+                case: case.name,
+                iae_m_s: flight.iae_m_s(),
+                max_error_m: flight.max_error_m(),
+                saturated_steps: flight.saturated_steps,
+                lost: flight.lost.is_some(),
+            });
+        }
+    }
+    output::print(&format!("{scenario}: position error, m s\n\n{}", table(&report, &laws)))?;
+    if let Some(path) = json {
+        output::write_json(path, &report)?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    Ok(())
+}
+
+fn table(report: &Report, laws: &[Law]) -> String {
+    let mut text = format!("{:<12}", "");
+    // Writing to a string does not fail.
+    for law in laws {
+        let _ = write!(text, "{:>16}", law.name());
+    }
+    for rows in report.rows.chunks(laws.len().max(1)) {
+        let _ = write!(text, "\n{:<12}", rows[0].case);
+        for row in rows {
+            let iae = row.iae_m_s.map_or_else(|| "lost".to_owned(), |iae| format!("{iae:.4}"));
+            let _ = write!(text, "{iae:>16}");
+        }
+    }
+    text.push('\n');
+    text
+}

@@ -1,0 +1,246 @@
+//! `--scenario` and a flag for each of its keys: a file, flags over it, or flags alone in; a scenario whose every value has been
+//! looked at out.
+
+mod values;
+
+use std::path::{Path, PathBuf};
+
+use quatrack_simulation::scenario::file::{Air, Estimator, OwnAir, ScenarioFile};
+use quatrack_simulation::scenario::flight::Setpoints;
+use quatrack_simulation::scenario::{Law, Scenario};
+
+use super::Failure;
+use values::{List, estimator, from_here, over, over_list, setpoints};
+
+/// A scenario by file and flags; a flag goes before the file.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Scenario")]
+pub(crate) struct ScenarioArgs {
+    /// The scenario (TOML): a craft, its air, what is wrong with what is known of it, a course and a law.
+    #[arg(long, value_name = "FILE")]
+    pub(super) scenario: Option<PathBuf>,
+    /// A built-in vehicle, or a TOML file.
+    #[arg(long, value_name = "VEHICLE")]
+    pub(super) vehicle: Option<String>,
+    /// quatrack, actuator-aware, lqr-e, lyap-e, lqr-f, lyap-f, mellinger, lee or pid.
+    #[arg(long, value_name = "NAME")]
+    pub(super) law: Option<Law>,
+    /// eight, hover, step, mild, aggressive, or a trajectory's file.
+    #[arg(long, value_name = "COURSE")]
+    course: Option<String>,
+    /// Highest speed on an eight, m/s.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    speed_m_s: Option<f64>,
+    /// Length of a step, m.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    step_m: Option<f64>,
+    /// How long is measured, s.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    duration_s: Option<f64>,
+    /// 100hz, to the jerk and held; or exact, at every step.
+    #[arg(long, value_name = "100hz|exact", value_parser = setpoints)]
+    setpoints: Option<Setpoints>,
+    /// exact, the truth with noise; or kalman, the core's filter behind noisy sensors.
+    #[arg(long, value_name = "exact|kalman", value_parser = estimator)]
+    estimator: Option<Estimator>,
+    /// Where noise and gusts begin: a whole number from 0.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    seed: Option<u64>,
+    /// vehicle, what the vehicle's file says of its air; or vacuum.
+    #[arg(long, value_name = "vehicle|vacuum", value_parser = ["vehicle", "vacuum"])]
+    air: Option<String>,
+    /// Drag over mass along body x, y and z, 1/s.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    drag_per_s: Option<List<3>>,
+    /// Moment of the airflow about body x and y, N m a m/s.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    moment_n_m_per_m_s: Option<List<2>>,
+    /// Steady wind, world frame, m/s.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    wind_m_s: Option<List<3>>,
+    /// Root mean square of each horizontal component of Dryden's turbulence, m/s.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    gust_rms_m_s: Option<f64>,
+    /// True mass over the vehicle's.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    mass_factor: Option<f64>,
+    /// True inertia over the vehicle's.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    inertia_factor: Option<f64>,
+    /// True lag of the motors, ms.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    lag_ms: Option<f64>,
+    /// The same while thrust grows, ms; with --lag-fall-ms.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "lag_ms")]
+    lag_rise_ms: Option<f64>,
+    /// The same while it falls, ms; with --lag-rise-ms.
+    #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "lag_ms")]
+    lag_fall_ms: Option<f64>,
+    /// How late commands act, ms.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    delay_ms: Option<f64>,
+    /// Thrust that comes of a command over what should.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    thrust_factor: Option<f64>,
+    /// The same at the end of the flight.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    thrust_factor_end: Option<f64>,
+    /// A torque that is always there, about body x and y, N m.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    torque_bias_n_m: Option<List<2>>,
+    /// Where the centre of mass is, body x and y, m.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    centre_of_mass_m: Option<List<2>>,
+    /// Bias of the gyroscope, rad/s.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    gyro_bias_rad_s: Option<List<3>>,
+    /// Bias of the accelerometer, m/s^2.
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    accelerometer_bias_m_s2: Option<List<3>>,
+    /// Mass that the law is told, kg.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    told_mass_kg: Option<f64>,
+    /// Lag that the law is told, ms.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    told_lag_ms: Option<f64>,
+    /// Drag over mass that the law is told, 1/s.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    told_drag_per_s: Option<f64>,
+    /// Moment of the airflow that the law is told, N m a m/s.
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    told_moment_n_m_per_m_s: Option<List<2>>,
+    /// Noise of the gyroscope, deviation of a sample, rad/s.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    noise_gyro_rad_s: Option<f64>,
+    /// Of the accelerometer, m/s^2.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    noise_accelerometer_m_s2: Option<f64>,
+    /// Of the position, m.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    noise_position_m: Option<f64>,
+    /// Of the velocity, m/s.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    noise_velocity_m_s: Option<f64>,
+    /// Of the attitude, rad.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    noise_attitude_rad: Option<f64>,
+    /// Predictions of the filter a second.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    filter_prediction_hz: Option<f64>,
+    /// Positions that the filter is given a second.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    filter_position_hz: Option<f64>,
+    /// Drag over mass that the filter reckons with, 1/s.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    filter_drag_per_s: Option<f64>,
+    /// Age of a position as the filter is given it, ms.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    filter_latency_ms: Option<f64>,
+}
+
+impl ScenarioArgs {
+    /// Whether there is a file or a flag other than --vehicle.
+    pub(super) fn any_but_vehicle(&self) -> bool {
+        let mut file = ScenarioFile::default();
+        self.put_over(&mut file);
+        file.vehicle.clear();
+        self.scenario.is_some() || self.air.is_some() || file != ScenarioFile::default()
+    }
+
+    /// The scenario.
+    ///
+    /// # Errors
+    /// What the file or a flag says without sense, in one line.
+    pub(super) fn checked(&self) -> Result<Scenario, Failure> {
+        let (mut file, name, folder) = match (&self.scenario, &self.vehicle) {
+            (Some(path), _) => {
+                let file = ScenarioFile::read(path).map_err(Failure::input)?;
+                (file, path.display().to_string(), path.parent().unwrap_or(Path::new("")))
+            }
+            (None, Some(_)) => (ScenarioFile::default(), String::new(), Path::new("")),
+            (None, None) => return Err(Failure::input("no craft to fly: give --scenario FILE or --vehicle VEHICLE")),
+        };
+        let before = file.clone();
+        self.put_over(&mut file);
+        let origin = match (name.is_empty(), file == before) {
+            (true, _) => "flags".to_owned(),
+            (false, true) => name,
+            (false, false) => format!("{name} with flags"),
+        };
+        Scenario::checked(&file, &origin, folder).map_err(Failure::input)
+    }
+
+    fn put_over(&self, file: &mut ScenarioFile) {
+        if let Some(vehicle) = &self.vehicle {
+            file.vehicle = if vehicle.ends_with(".toml") { from_here(vehicle) } else { vehicle.clone() };
+        }
+        if let Some(course) = &self.course {
+            let named = ["eight", "hover", "step", "mild", "aggressive"].contains(&course.as_str());
+            if file.course.as_deref().unwrap_or("eight") != course {
+                // They belong to the file's course.
+                (file.speed_m_s, file.step_m) = (None, None);
+            }
+            file.course = Some(if named { course.clone() } else { from_here(course) });
+        }
+        over(&mut file.speed_m_s, &self.speed_m_s);
+        over(&mut file.step_m, &self.step_m);
+        over(&mut file.duration_s, &self.duration_s);
+        over(&mut file.law, &self.law);
+        over(&mut file.setpoints, &self.setpoints);
+        over(&mut file.estimator, &self.estimator);
+        over(&mut file.seed, &self.seed);
+        self.put_over_air(&mut file.air);
+        self.put_over_errors(file);
+        over(&mut file.told.mass_kg, &self.told_mass_kg);
+        over(&mut file.told.lag_ms, &self.told_lag_ms);
+        over(&mut file.told.drag_per_s, &self.told_drag_per_s);
+        over_list(&mut file.told.moment_n_m_per_m_s, self.told_moment_n_m_per_m_s);
+        over(&mut file.noise.gyro_rad_s, &self.noise_gyro_rad_s);
+        over(&mut file.noise.accelerometer_m_s2, &self.noise_accelerometer_m_s2);
+        over(&mut file.noise.position_m, &self.noise_position_m);
+        over(&mut file.noise.velocity_m_s, &self.noise_velocity_m_s);
+        over(&mut file.noise.attitude_rad, &self.noise_attitude_rad);
+        over(&mut file.filter.prediction_hz, &self.filter_prediction_hz);
+        over(&mut file.filter.position_hz, &self.filter_position_hz);
+        over(&mut file.filter.drag_per_s, &self.filter_drag_per_s);
+        over(&mut file.filter.latency_ms, &self.filter_latency_ms);
+    }
+
+    fn put_over_air(&self, air: &mut Option<Air>) {
+        match self.air.as_deref() {
+            Some("vehicle") => *air = Some(Air::Vehicle(OwnAir::default())),
+            Some(_) => *air = None,
+            None => {}
+        }
+        let figures = self.drag_per_s.is_some() || self.moment_n_m_per_m_s.is_some();
+        if figures || self.wind_m_s.is_some() || self.gust_rms_m_s.is_some() {
+            let (Air::Own(own) | Air::Vehicle(own)) = air.get_or_insert_with(|| Air::Own(OwnAir::default()));
+            over_list(&mut own.drag_per_s, self.drag_per_s);
+            over_list(&mut own.moment_n_m_per_m_s, self.moment_n_m_per_m_s);
+            over_list(&mut own.wind_m_s, self.wind_m_s);
+            over(&mut own.gust_rms_m_s, &self.gust_rms_m_s);
+        }
+    }
+
+    fn put_over_errors(&self, file: &mut ScenarioFile) {
+        let errors = &mut file.errors;
+        if self.lag_ms.is_some() {
+            (errors.lag_rise_ms, errors.lag_fall_ms) = (None, None);
+        }
+        if self.lag_rise_ms.is_some() || self.lag_fall_ms.is_some() {
+            errors.lag_ms = None;
+        }
+        over(&mut errors.mass_factor, &self.mass_factor);
+        over(&mut errors.inertia_factor, &self.inertia_factor);
+        over(&mut errors.lag_ms, &self.lag_ms);
+        over(&mut errors.lag_rise_ms, &self.lag_rise_ms);
+        over(&mut errors.lag_fall_ms, &self.lag_fall_ms);
+        over(&mut errors.delay_ms, &self.delay_ms);
+        over(&mut errors.thrust_factor, &self.thrust_factor);
+        over(&mut errors.thrust_factor_end, &self.thrust_factor_end);
+        over_list(&mut errors.torque_bias_n_m, self.torque_bias_n_m);
+        over_list(&mut errors.centre_of_mass_m, self.centre_of_mass_m);
+        over_list(&mut errors.gyro_bias_rad_s, self.gyro_bias_rad_s);
+        over_list(&mut errors.accelerometer_bias_m_s2, self.accelerometer_bias_m_s2);
+    }
+}

@@ -1,0 +1,210 @@
+//! `quatrack fly` with a scenario, as its user meets it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn quatrack(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_quatrack")).args(arguments).output().expect("the command starts")
+}
+
+fn scenario(name: &str, text: &str) -> (PathBuf, String) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("scenario.toml");
+    fs::write(&path, text).unwrap();
+    (folder, path.to_str().unwrap().to_owned())
+}
+
+fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+const WINDY: &str = "vehicle = \"crazyflie-2.1-brushless\"\nspeed_m_s = 1.0\nduration_s = 1.0\nlaw = \"lee\"\nseed = 5\n\
+                     [air]\ndrag_per_s = [0.4, 0.4, 0.4]\nwind_m_s = [1.0, 0.0, 0.0]\ngust_rms_m_s = 0.5\n\
+                     [noise]\nposition_m = 0.001\n";
+
+#[test]
+fn fly_and_compare_give_the_same_figures_for_the_same_scenario() {
+    let (folder, path) = scenario("fly-as-compare", WINDY);
+    let [flown, table] = ["flown.json", "table.json"].map(|name| folder.join(name));
+    let fly = quatrack(&["fly", "--scenario", &path, "--json", flown.to_str().unwrap()]);
+    assert!(fly.status.success(), "{}", String::from_utf8_lossy(&fly.stderr));
+    let compare = quatrack(&["compare", "--scenario", &path, "--laws", "lee", "--json", table.to_str().unwrap()]);
+    assert!(compare.status.success(), "{}", String::from_utf8_lossy(&compare.stderr));
+    let (flown, row) = (json(&flown), &json(&table)["rows"][0]);
+    for key in ["law", "iae_m_s", "max_error_m"] {
+        assert_eq!(flown[key], row[key], "{key}");
+    }
+    assert!(flown["lost"].is_null() && row["lost"] == false);
+    // Six seconds of turbulence with a scale of metres: a few independent squares, so within a factor of two or so.
+    let gusts = flown["gust_rms_m_s"].as_array().unwrap();
+    assert!((0.15..1.0).contains(&gusts[0].as_f64().unwrap()), "{gusts:?}");
+}
+
+#[test]
+fn the_log_has_motors_their_limits_wind_and_estimate_and_the_same_bytes_for_the_same_seed() {
+    let (folder, path) = scenario("fly-log", WINDY);
+    let log = |name: &str, more: &[&str]| {
+        let out = folder.join(name);
+        let flown = quatrack(&[&["fly", "--scenario", &path, "--out", out.to_str().unwrap()], more].concat());
+        assert!(flown.status.success(), "{}", String::from_utf8_lossy(&flown.stderr));
+        fs::read_to_string(out.join("flight.csv")).unwrap()
+    };
+    let first = log("first", &[]);
+    assert!(first == log("again", &[]), "the same seed");
+    assert!(first == log("said", &["--seed", "5", "--speed-m-s", "1"]), "flags that say what the file says");
+    assert!(first != log("other", &["--seed", "6"]), "another seed");
+
+    let mut rows = first.lines();
+    let names: Vec<&str> = rows.next().unwrap().split(',').collect();
+    let column = |name: &str| names.iter().position(|known| *known == name).expect("a column");
+    let rows: Vec<Vec<f64>> = rows.map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect();
+    // A row every 10 ms of the second that is measured, both ends included.
+    assert_eq!((rows.len(), rows[0].len()), (101, names.len()));
+    let mut squares = 0.0;
+    for row in &rows {
+        for motor in 1..=4 {
+            let of = |what: &str| row[column(&format!("{what}_{motor}_n"))];
+            assert!(of("thrust_min") <= of("thrust") && of("thrust") <= of("thrust_max"), "{row:?}");
+        }
+        squares += (row[column("est_x_m")] - row[column("x_m")]).powi(2);
+        // The mean wind with five deviations of the gusts.
+        assert!((row[column("wind_x_m_s")] - 1.0).abs() < 2.5, "{row:?}");
+    }
+    // A deviation of 1 mm over 101 samples: four deviations of their RMS are 4 / sqrt(202) = 28 %.
+    let rms_m = (squares / rows.len() as f64).sqrt();
+    assert!((rms_m - 0.001).abs() < 0.00028, "{rms_m}");
+}
+
+#[test]
+fn a_flag_goes_before_the_file_and_stands_for_one() {
+    let (folder, path) =
+        scenario("fly-flags", "vehicle = \"crazyflie-2.1-brushless\"\ncourse = \"step\"\nstep_m = 0.2\n");
+    let figures = |name: &str, arguments: &[&str]| {
+        let file = folder.join(name);
+        let flown = quatrack(&[&["fly", "--json", file.to_str().unwrap()], arguments].concat());
+        assert!(flown.status.success(), "{}", String::from_utf8_lossy(&flown.stderr));
+        json(&file)
+    };
+    let with_flags = ["--scenario", &path, "--course", "hover", "--law", "mellinger", "--duration-s", "2"];
+    let by_file = figures("file.json", &[&with_flags[..], &["--mass-factor", "1.05"]].concat());
+    let alone =
+        ["--vehicle", "crazyflie-2.1-brushless", "--course", "hover", "--law", "mellinger", "--duration-s", "2"];
+    let by_flags = figures("flags.json", &[&alone[..], &["--mass-factor", "1.05"]].concat());
+    assert_eq!(by_file, by_flags);
+    // Vacuum, and the mass that the law believes: nothing moves the craft but rounding.
+    let as_designed = figures("exact.json", &alone);
+    assert!(as_designed["max_error_m"].as_f64().unwrap() < 1e-6, "{as_designed}");
+    assert!(by_flags["max_error_m"].as_f64().unwrap() > 1e-3, "{by_flags}");
+}
+
+#[test]
+fn a_lost_craft_is_said_with_exit_code_3() {
+    // Half as strong as it believes, the craft cannot carry itself.
+    let (_, path) = scenario("fly-lost", "vehicle = \"crazyflie-2.1\"\ncourse = \"hover\"\nlaw = \"lee\"\n");
+    let flown = quatrack(&["fly", "--scenario", &path, "--mass-factor", "2", "--thrust-factor", "0.5"]);
+    let (printed, said) = (String::from_utf8(flown.stdout).unwrap(), String::from_utf8(flown.stderr).unwrap());
+    assert_eq!((flown.status.code(), said.lines().count()), (Some(3), 1), "{said}");
+    assert!(printed.contains("none: the flight was lost") && said.contains("lee was lost at"), "{printed}{said}");
+}
+
+#[test]
+fn what_cannot_be_flown_is_refused_in_one_line() {
+    let (_, path) = scenario("fly-refuses", "vehicle = \"crazyflie-2.1\"\n");
+    for (arguments, named) in [
+        (&["--scenario", &path, "--mass-factor", "9"][..], &["scenario.toml with flags", "errors.mass_factor = 9"][..]),
+        (&["--vehicle", "crazyflie-2.1", "--lag-ms", "0.2"], &["flags: errors.lag_ms = 0.2", "1 to 1000"]),
+        (&["--vehicle", "crazyflie-2.1", "--wind-m-s", "1,0"], &["--wind-m-s", "3 numbers"]),
+        (&["--scenario", &path, "--trajectory", "mild"], &["--trajectory", "--course"]),
+        (&["--scenario", &path, "--controller", "lqr-e"], &["--scenario", "--controller"]),
+        (&["--controller", "lqr-e", "--trajectory", "mild", "--wind-m-s", "1,0,0"], &["--law"]),
+        (&["--controller", "lqr-e"], &["--trajectory"]),
+        (&["--wind-m-s", "1,0,0"], &["--scenario", "--vehicle"]),
+    ] {
+        let refused = quatrack(&[&["fly"], arguments].concat());
+        let said = String::from_utf8(refused.stderr).unwrap();
+        assert_eq!((refused.status.code(), said.lines().count()), (Some(2), 1), "{arguments:?}: {said}");
+        assert!(refused.stdout.is_empty() && named.iter().all(|name| said.contains(name)), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn a_picture_has_path_errors_tilt_motors_with_their_limits_and_wind() {
+    let (folder, path) = scenario("fly-plot", WINDY);
+    let picture = folder.join("flight.svg");
+    let flown = quatrack(&["fly", "--scenario", &path, "--plot", picture.to_str().unwrap()]);
+    assert!(flown.status.success(), "{}", String::from_utf8_lossy(&flown.stderr));
+    let svg = fs::read_to_string(picture).unwrap();
+    for text in
+        ["error (m)", "tilt (deg)", "thrust (N)", "wind (m/s)", "motor 4", "limits", "lee", "course", "time (s)"]
+    {
+        assert!(svg.contains(&format!(">{text}</text>")), "{text}");
+    }
+    let (lines, dashed) = (svg.matches("<polyline").count(), |line: &&str| line.contains("stroke-dasharray"));
+    // In space: the flight, its course and the course's shadow; then 3 errors, 1 tilt, 4 thrusts with 2 limits, 3 winds.
+    assert_eq!(lines, 3 + 3 + 1 + 4 + 2 + 3);
+    // Of these the course and the two limits are dashed.
+    assert_eq!(svg.lines().filter(|line| line.starts_with("<polyline")).filter(dashed).count(), 3);
+}
+
+#[test]
+fn gains_of_ones_own_fly_the_craft_that_their_design_names() {
+    let (folder, _) = scenario("fly-own-gains", "");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../gains");
+    let vehicle = fs::read_to_string(root.join("vehicles/crazyflie-2.1.toml")).unwrap();
+    let mass = vehicle.lines().find(|line| line.starts_with("mass_kg")).expect("a mass");
+    let name = vehicle.lines().find(|line| line.starts_with("name")).expect("a name");
+    let own = vehicle.replace(mass, "mass_kg = 0.030").replace(name, "name = \"own-craft\"");
+    fs::write(folder.join("own.toml"), &own).unwrap();
+    let design = fs::read_to_string(root.join("actuator-aware.toml")).unwrap();
+    let named = design.lines().find(|line| line.starts_with("vehicle")).expect("a vehicle");
+    let path = folder.join("mine.toml");
+    fs::write(&path, design.replace(named, "vehicle = \"own.toml\"")).unwrap();
+
+    let path = path.to_str().unwrap();
+    let flown = quatrack(&["fly", "--gains", path, "--trajectory", "mild"]);
+    let printed = String::from_utf8(flown.stdout).unwrap();
+    assert!(flown.status.success(), "{}", String::from_utf8_lossy(&flown.stderr));
+    assert!(printed.contains("of the motors, own-craft") && !printed.contains("lost"), "{printed}");
+    let own = folder.join("own.toml");
+    let same = quatrack(&["fly", "--gains", path, "--trajectory", "mild", "--vehicle", own.to_str().unwrap()]);
+    assert_eq!(String::from_utf8(same.stdout).unwrap(), printed);
+
+    // The same table is the law of a scenario: in vacuum, at hover, told the true mass, it has nothing to do.
+    let file = folder.join("hover.json");
+    let craft = own.to_str().unwrap();
+    let hover = ["fly", "--gains", path, "--vehicle", craft, "--course", "hover", "--json", file.to_str().unwrap()];
+    let hover = quatrack(&hover);
+    assert!(hover.status.success(), "{}", String::from_utf8_lossy(&hover.stderr));
+    let figures = json(&file);
+    // The f32 of the core leaves a newton's 1e-7, integrated by the law.
+    assert!(figures["law"] == "mine" && figures["max_error_m"].as_f64().unwrap() < 1e-4, "{figures}");
+
+    let other = quatrack(&["fly", "--gains", path, "--trajectory", "mild", "--vehicle", "crazyflie-2.1"]);
+    let said = String::from_utf8(other.stderr).unwrap();
+    assert_eq!((other.status.code(), said.lines().count()), (Some(2), 1), "{said}");
+    assert!(said.contains("made for own-craft") && said.contains("crazyflie-2.1"), "{said}");
+}
+
+#[test]
+fn robustness_and_crazyflie_fly_the_scenario_too() {
+    let text = "vehicle = \"crazyflie-2.1-brushless\"\ncourse = \"hover\"\nduration_s = 1.0\n[air]\nwind_m_s = [1.0, 0.0, 0.0]\n\
+                drag_per_s = [0.4, 0.4, 0.4]\n";
+    let (folder, path) = scenario("fly-others", text);
+    let file = |name: &str| folder.join(name);
+    let run = |arguments: &[&str], name: &str| {
+        let done = quatrack(&[arguments, &["--scenario", &path, "--json", file(name).to_str().unwrap()]].concat());
+        assert!(done.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&done.stderr));
+        json(&file(name))
+    };
+    let alone = run(&["fly"], "fly.json");
+    assert_eq!(run(&["crazyflie"], "crazyflie.json"), alone);
+    let table = run(&["robustness", "--law", "quatrack"], "robustness.json");
+    let rows = table["rows"].as_array().unwrap();
+    // Ten cases but for the fast eight, which a hover has not.
+    assert_eq!(rows.len(), 9);
+    assert_eq!((&rows[0]["case"], &rows[0]["iae_m_s"]), (&"nominal".into(), &alone["iae_m_s"]));
+    assert_ne!(rows[1]["iae_m_s"], alone["iae_m_s"]);
+}
