@@ -200,7 +200,8 @@ fn robustness_and_crazyflie_fly_the_scenario_too() {
         json(&file(name))
     };
     let alone = run(&["fly"], "fly.json");
-    assert_eq!(run(&["crazyflie"], "crazyflie.json"), alone);
+    let object = run(&["fly", "--law", "crazyflie"], "object.json");
+    assert_eq!(run(&["crazyflie"], "crazyflie.json"), object);
     let table = run(&["robustness", "--law", "quatrack"], "robustness.json");
     let rows = table["rows"].as_array().unwrap();
     // Ten cases but for the fast eight, which a hover has not.
