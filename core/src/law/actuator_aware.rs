@@ -50,6 +50,8 @@ struct Chains {
 
 /// The law: a gain on a craft's motors. What it remembers is the caller's: predicted motor forces and the
 /// integral of the position error ([`crate::Memory`]).
+///
+/// It is flown from a table: [`crate::gains::table`] has an example.
 #[derive(Clone, Copy, Debug)]
 pub struct ActuatorAware<'a> {
     pub(crate) gain: &'a ActuatorAwareGain,

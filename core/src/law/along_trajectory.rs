@@ -145,6 +145,8 @@ fn product(knot: &Knot, error: &[f32; 9]) -> [f32; 4] {
 }
 
 /// The time-varying law.
+///
+/// It is flown from a table: [`crate::gains::table`] has an example.
 #[derive(Clone, Copy, Debug)]
 pub struct AlongTrajectory<'a> {
     schedule: GainSchedule<'a>,

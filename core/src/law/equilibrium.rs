@@ -113,6 +113,20 @@ pub enum ErrorForm {
 }
 
 /// The equilibrium law.
+///
+/// ```
+/// use quatrack::nalgebra::Vector3;
+/// use quatrack::{Controller, Equilibrium, Limits, Measured, Memory, Reference, State, Target, gains::paper};
+///
+/// // 10 cm behind its place, LQR-E asks for a pitch rate of 31.6 1/(m s) times 0.1 m, nose down.
+/// let controller = Controller::new(Equilibrium::new(&paper::LQR_E), Limits::NONE);
+/// let state = State::at_rest(Vector3::new(-0.1, 0.0, 1.0));
+/// let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0)?;
+/// let output = controller.step(&mut Memory::at_rest(), Measured::new(&state), Target::new(&reference))?;
+/// let command = output.command().ok_or("no command")?.command;
+/// assert!((command.body_rates_rad_s.y - 3.1622776).abs() < 1e-6);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Equilibrium<'a> {
     /// The gain, designed at heading 0.

@@ -98,6 +98,20 @@ impl Chains {
 }
 
 /// The flat output law.
+///
+/// ```
+/// use quatrack::nalgebra::Vector3;
+/// use quatrack::{Controller, FlatOutput, Limits, Measured, Memory, Reference, State, Target, gains::paper};
+///
+/// // 10 cm too low: 44.7 1/s^2 times 0.1 m on top of gravity. Sideways it asks for no attitude: that is what F lacks.
+/// let controller = Controller::new(FlatOutput::new(&paper::LQR_F), Limits::NONE);
+/// let state = State::at_rest(Vector3::new(0.0, 0.0, 0.9));
+/// let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0)?;
+/// let output = controller.step(&mut Memory::at_rest(), Measured::new(&state), Target::new(&reference))?;
+/// let command = output.command().ok_or("no command")?.command;
+/// assert!((command.thrust_m_s2 - (9.81 + 4.472136)).abs() < 1e-5);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct FlatOutput<'a> {
     /// The gain, designed at heading 0.

@@ -79,6 +79,29 @@ const fn joined(row: [f32; 9], negated: [f32; 3]) -> [f32; 12] {
 }
 
 /// The LQI law. Errors are those of [`ErrorForm::HeadingFrame`].
+///
+/// ```
+/// use quatrack::law::IntegralGain;
+/// use quatrack::nalgebra::Vector3;
+/// use quatrack::{Controller, FeedForward, IntegralAction, Limits, Measured, Memory, Rate, Reference, State, Target};
+///
+/// let mut rows = [[0.0; 12]; 4];
+/// for (row, gains) in rows.iter_mut().zip(quatrack::gains::paper::LQR_E.gain().rows()) {
+///     row[..9].copy_from_slice(gains);
+/// }
+/// (rows[0][11], rows[1][10], rows[2][9]) = (50.9, -20.7, 20.7);
+/// let gain = IntegralGain::new(rows).map_err(|error| error.to_string())?;
+/// let law = IntegralAction::new(&gain, Rate::from_hz(500).ok_or("no rate")?, FeedForward::With);
+/// let (controller, mut memory) = (Controller::new(law, Limits::NONE), Memory::at_rest());
+/// let state = State::at_rest(Vector3::new(0.0, 0.0, 0.9));
+/// let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0).map_err(|error| error.to_string())?;
+/// for _ in 0..500 {
+///     controller.step(&mut memory, Measured::new(&state), Target::new(&reference)).map_err(|error| error.to_string())?;
+/// }
+/// // A second of -0.1 m.
+/// assert!((memory.integral_m_s().z + 0.1).abs() < 1e-5);
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct IntegralAction<'a> {
     gain: &'a IntegralGain,

@@ -60,6 +60,17 @@ impl FifthOrderSample {
 
 /// A flyable reference with the motor forces that fly it: finite, with thrust, upright enough for the flat map. Only this
 /// module makes one. The forces may be beyond what the motors can do.
+///
+/// ```
+/// use quatrack::nalgebra::Vector3;
+/// use quatrack::{Airframe, MotorReference};
+///
+/// let airframe = Airframe::CRAZYFLIE_2_1;
+/// let hover = MotorReference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0, &airframe)?;
+/// // A quarter of the weight of 29 g each.
+/// assert!(hover.forces_n().iter().all(|force| (force - 0.25 * 0.029 * 9.81).abs() < 1e-6));
+/// # Ok::<(), quatrack::ReferenceError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorReference {
     pub(crate) reference: Reference,

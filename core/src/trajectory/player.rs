@@ -13,6 +13,26 @@ use crate::reference::{FlatSample, Reference};
 ///
 /// Ticks may be skipped or run backwards; a step forward within a piece or to the next one is the cheap case. After the
 /// end the trajectory rests at its last position and heading.
+///
+/// ```
+/// use quatrack::{Piece, Player, Rate, Trajectory};
+///
+/// // One metre along x in two seconds, `10 s^3 - 15 s^4 + 6 s^5` with `s = t / 2 s`.
+/// let pieces = [Piece {
+///     duration_ns: 2_000_000_000,
+///     x: [0.0, 0.0, 0.0, 1.25, -0.9375, 0.1875, 0.0, 0.0],
+///     y: [0.0; 8],
+///     z: [0.0; 8],
+///     heading: [0.0; 8],
+/// }];
+/// let mut player = Player::new(Trajectory::new(&pieces)?, Rate::from_hz(500).ok_or("no rate")?);
+/// assert_eq!(player.end_tick(), 1000);
+/// let halfway = player.reference(500)?;
+/// assert!((halfway.state().position_m.x - 0.5).abs() < 1e-6);
+/// // 30/16 of the mean speed, where it is fastest.
+/// assert!((halfway.state().velocity_m_s.x - 0.9375).abs() < 1e-6);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Player<'a> {
     trajectory: Trajectory<'a>,
