@@ -1,5 +1,8 @@
-//! What no package can test alone: the f32 core against the f64 model and the rigid plant, and the layers of every crate.
+//! What no package can test alone: the f32 core against the f64 model, the rigid plant and
+//! real flights, and the layers of every crate.
 
+mod cascade;
+mod estimator;
 mod headings;
 mod layers;
 mod motors;

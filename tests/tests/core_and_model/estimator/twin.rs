@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use quatrack::estimator::{Estimate, Estimator, EstimatorConfig, Imu, ImuAverager};
 use quatrack::{Quaternion, State};
 
-use crate::simulation::{Flight, POSITION_M, told_the_truth};
+use crate::estimator::simulation::{Flight, POSITION_M, told_the_truth};
 
 type Matrix9 = SMatrix<f64, 9, 9>;
 type Vector9 = SVector<f64, 9>;

@@ -9,7 +9,7 @@ use quatrack_design::design::cascade::{CascadeWeights, cascade};
 use quatrack_design::vehicle::Vehicle;
 use quatrack_simulation::vehicles;
 
-use crate::crafts::{BRUSHED_63, BRUSHLESS_50};
+use crate::cascade::crafts::{BRUSHED_63, BRUSHLESS_50};
 
 const H: f64 = 0.002;
 
@@ -79,7 +79,7 @@ fn flown_by_the_core(
     let core = Cascade::new(&gains, &airframe, Rate::from_hz(500).unwrap(), &CascadeLimits::STANDARD, air).unwrap();
     let (mut memory, mut forces_n) = (CascadeMemory::IN_FLIGHT, [airframe.hover_force_n(); 4]);
     let hover = f64::from(airframe.hover_force_n());
-    let craft = crate::plant::Craft {
+    let craft = crate::cascade::plant::Craft {
         mass_kg: vehicle.mass_kg(),
         inertia: [0, 1, 2].map(|i| inertia[(i, i)]),
         lever_m: motors.half_arm_m(),
@@ -92,7 +92,7 @@ fn flown_by_the_core(
         motors: [1.0; 4],
         torque_bias: [0.0; 3],
     };
-    let mut plant = crate::plant::Plant::at(craft, offset(chain), true);
+    let mut plant = crate::cascade::plant::Plant::at(craft, offset(chain), true);
     plant.forces = [hover; 4];
     let sample = FifthOrderSample::at_rest(Vector3::new(0.0_f32, 0.0, 0.0), 0.0);
     let mut trace = Vec::new();

@@ -4,7 +4,7 @@ use quatrack::airframe::AirframeFigures;
 use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeLimits};
 use quatrack::{Airframe, Rate};
 
-use crate::plant::Craft;
+use crate::cascade::plant::Craft;
 
 /// Brushless at 50 ms.
 pub(crate) const BRUSHLESS_50: CascadeGains = CascadeGains::table([

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use quatrack::estimator::{Estimate, Estimator, EstimatorConfig, EstimatorError, Gate, Imu};
 use quatrack::{Quaternion, State};
 
-use crate::simulation::told_the_truth;
+use crate::estimator::simulation::told_the_truth;
 
 /// Sound numbers, huge ones, tiny ones, none.
 fn number() -> impl Strategy<Value = f32> {

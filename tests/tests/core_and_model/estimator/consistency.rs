@@ -9,7 +9,7 @@ use nalgebra::{SMatrix, SVector, UnitQuaternion, Vector3};
 use quatrack::estimator::{Estimate, Estimator, EstimatorConfig, ImuAverager};
 use quatrack::{Quaternion, State};
 
-use crate::simulation::{Flight, POSITION_M, STEP_S, Truth, told_the_truth};
+use crate::estimator::simulation::{Flight, POSITION_M, STEP_S, Truth, told_the_truth};
 
 const RUNS: u64 = 200;
 /// Positions at 100 Hz.

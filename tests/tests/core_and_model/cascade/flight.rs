@@ -7,10 +7,10 @@ use quatrack::{
     State, Target,
 };
 
-use crate::course::Course;
-use crate::filter::Filter;
-use crate::noise::Random;
-use crate::plant::{Craft, GRAVITY, Plant, STEP_S};
+use crate::cascade::course::Course;
+use crate::cascade::filter::Filter;
+use crate::cascade::noise::Random;
+use crate::cascade::plant::{Craft, GRAVITY, Plant, STEP_S};
 
 /// Where estimates come from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -219,7 +219,7 @@ fn commands_of(commands: &mut [f64; 4], forces: &[f32; 4]) {
 fn exact(course: &Course, t: f64) -> FifthOrderSample {
     let h = 1e-3;
     let [before, (now, turn), after] = [t - h, t, t + h].map(|t| course.at(t));
-    let jerk = |motion: &crate::course::Motion| motion.0[3];
+    let jerk = |motion: &crate::cascade::course::Motion| motion.0[3];
     let (a, b) = (jerk(&before), jerk(&after));
     let flat = FlatSample {
         position_m: now[0].cast(),
@@ -252,7 +252,7 @@ impl Stream {
         Self { newest, at_s: 0.0, fit: JerkFit::NONE, begun: false }
     }
 
-    fn accept(&mut self, motion: &crate::course::Motion, t: f64) {
+    fn accept(&mut self, motion: &crate::cascade::course::Motion, t: f64) {
         let ([p, v, a, j], [heading, rate, acceleration]) = *motion;
         let flat = FlatSample {
             position_m: p.cast(),

@@ -32,7 +32,7 @@ mod aggressive {
     #![allow(unreachable_pub, reason = "written for the crates that fly it")]
     use quatrack::Piece;
 
-    include!("../../../plans/aggressive.rs");
+    include!("../../../../plans/aggressive.rs");
 }
 
 use self::aggressive::AGGRESSIVE;

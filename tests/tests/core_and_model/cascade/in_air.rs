@@ -6,10 +6,10 @@
 use nalgebra::Vector3;
 use quatrack::cascade::{Air, Cascade, CascadeMemory};
 
-use crate::course::Course;
-use crate::crafts::{BRUSHED, BRUSHLESS, brushed, brushless};
-use crate::flight::{EXACT, Estimates, Figures, Flight, NOISE};
-use crate::plant::Craft;
+use crate::cascade::course::Course;
+use crate::cascade::crafts::{BRUSHED, BRUSHLESS, brushed, brushless};
+use crate::cascade::flight::{EXACT, Estimates, Figures, Flight, NOISE};
+use crate::cascade::plant::Craft;
 
 const SLOW: Course = Course::Eight { w: 0.601, turn: 0.0 };
 const EIGHT: Course = Course::Eight { w: 1.485, turn: 0.0 };

@@ -5,7 +5,7 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 
-use crate::plant::GRAVITY;
+use crate::cascade::plant::GRAVITY;
 
 const PERIOD_S: f64 = 0.01;
 

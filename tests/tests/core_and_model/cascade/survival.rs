@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 use quatrack::cascade::Air;
 
-use crate::course::Course;
-use crate::crafts::{BRUSHED, BRUSHLESS, brushed, brushless};
-use crate::flight::{Estimates, Flight, NOISE, Start};
-use crate::plant::{Craft, Plant};
+use crate::cascade::course::Course;
+use crate::cascade::crafts::{BRUSHED, BRUSHLESS, brushed, brushless};
+use crate::cascade::flight::{Estimates, Flight, NOISE, Start};
+use crate::cascade::plant::{Craft, Plant};
 
 fn goal(x: f64, z: f64, yaw_deg: f64) -> Course {
     Course::Step { to: Vector3::new(x, 0.0, z), yaw: yaw_deg.to_radians(), at_s: 2.0 }
