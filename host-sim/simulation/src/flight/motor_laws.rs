@@ -78,7 +78,7 @@ pub fn default_lag_s(vehicle: &Vehicle) -> f64 {
     longest_s.max(DEFAULT_LAG_MIN_S)
 }
 
-/// The bandwidth that the core's body-rate loop has behind motors of a lag, rad/s: that of [`BodyRateLoop::behind_lag`]
+/// The bandwidth that the core's body-rate loop has behind motors of a lag, rad/s: that of [`quatrack::BodyRateLoop::behind_lag`]
 /// below its bound.
 pub fn body_rate_bandwidth_rad_s(lag_s: f64) -> f64 {
     0.5 / lag_s

@@ -1,7 +1,7 @@
 //! Certificates of the cascade, with everything in the loop: observers, the accelerometer's share, delay, motors of another lag that
 //! give less than told, another mass and inertia, air that is not the told one and air that is believed.
 //!
-//! At hover the loop is four chains. Each is a linear map over a control period ([`chains`]); the accelerometer is looked at every fifth
+//! At hover the loop is four chains. Each is a linear map over a control period (`chains`); the accelerometer is looked at every fifth
 //! one, so that its spectral radius is that of five periods. Between the points of a region nothing is promised.
 
 mod chains;
