@@ -53,8 +53,10 @@ impl Memory {
     }
 
     /// Takes the motors to be at the forces of hover, where nobody has kept what they were commanded in flight.
-    pub const fn assume_hovering(&mut self, airframe: &Airframe) {
+    pub fn assume_hovering(&mut self, airframe: &Airframe) {
         self.forces_n = [airframe.hover_force_n(); 4];
+        #[cfg(feature = "cascade")]
+        self.cascade.begin_in_flight();
     }
 
     /// Motors that are switched off run down: this share of their forces is left.
