@@ -208,6 +208,7 @@ fn every_table_is_stable_over_its_region_in_air() {
         };
         let bounds = [0.9988, 0.9988, 0.9980, 0.9995];
         for (found, bound) in region.certify(&craft).unwrap().iter().zip(bounds) {
+            println!("{name}, {lag_s} s, {:?}: radius {:.5}", found.chain, found.spectral_radius);
             assert!(found.spectral_radius < bound, "{name} {lag_s}: {found:?}");
         }
         for found in region.before_its_motors_are_seen().certify(&craft).unwrap() {
@@ -231,6 +232,10 @@ fn every_table_has_margins_in_air() {
             let margins = chain.margins(&craft, &at).unwrap();
             let gain = margins.disk.gain_max.unwrap_or(f64::INFINITY);
             let phase_deg = margins.disk.phase_rad.to_degrees();
+            let delay_ms = 1e3 * margins.delay_s;
+            println!(
+                "{name}, {lag_s} s, {chain:?}: gain {gain:.2}, phase {phase_deg:.1} degrees, delay {delay_ms:.1} ms"
+            );
             let least = if matches!(chain, CascadeChain::X | CascadeChain::Y) { 1.8 } else { 2.0 };
             assert!(gain > least && phase_deg > 32.0 && margins.delay_s >= 0.02, "{name} {chain:?}: {margins:?}");
         }
