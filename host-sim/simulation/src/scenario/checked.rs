@@ -30,8 +30,15 @@ impl Scenario {
     /// # Errors
     /// [`ScenarioError::Value`] and [`ScenarioError::Named`] with `origin` for the file's name.
     pub fn checked(file: &ScenarioFile, origin: &str, folder: &Path) -> Result<Self, ScenarioError> {
+        Self::on(vehicle(&file.vehicle, origin, folder)?, file, origin, folder)
+    }
+
+    /// The same on a vehicle that is at hand; the file's is not looked at.
+    ///
+    /// # Errors
+    /// As [`Self::checked`].
+    pub fn on(vehicle: Vehicle, file: &ScenarioFile, origin: &str, folder: &Path) -> Result<Self, ScenarioError> {
         let checks = Checks { origin };
-        let vehicle = vehicle(&file.vehicle, origin, folder)?;
         let (course, default_s) = course(file, &checks, folder)?;
         let duration_s = match (file.duration_s, default_s) {
             (None, default) => default,

@@ -37,7 +37,7 @@ mod varied;
 mod whole;
 
 pub use error::{ScenarioError, StartError};
-pub use laws::{Law, LawError, ToldFigures};
+pub use laws::{Law, LawError, ToldFigures, start_table};
 pub use recording::{Around, Recording};
 pub use sensors::SensorNoise;
 pub use table_law::TableLaw;

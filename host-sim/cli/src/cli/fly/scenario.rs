@@ -70,14 +70,17 @@ impl Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    if args.scenario.scenario.is_none() && args.scenario.vehicle.is_none() {
+    let named = args.scenario.scenario.is_some() || args.scenario.vehicle.is_some();
+    if !named && args.gains.is_none() {
         return Err(Failure::input(NOTHING));
     }
     args.refuse_older()?;
-    let scenario = args.scenario.checked()?;
+    let table = args.gains.as_deref().map(|path| Ok((path, table::source(path)?))).transpose()?;
+    let own = table.as_ref().filter(|_| !named).map(|(path, table)| table.own_vehicle(path)).transpose()?;
+    let scenario = args.scenario.checked_for(own.as_ref())?;
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
-    let (figures, recording) = match &args.gains {
-        Some(path) => table::in_scenario(path, &scenario, &|law, name| fly_law(&scenario, law, name))?,
+    let (figures, recording) = match &table {
+        Some((path, table)) => table::in_scenario(path, table, &scenario, &|law, name| fly_law(&scenario, law, name))?,
         None => fly_and_print(&scenario)?,
     };
     write(args, &scenario, figures, &recording)
