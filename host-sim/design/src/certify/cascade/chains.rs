@@ -1,8 +1,8 @@
-//! The closed loop of the cascade, chain by chain, at hover: what the core's step computes where nothing is limited, in f64, on a
-//! plant that differs from what it is told.
+//! The closed loop of the cascade, chain by chain, at hover: the core's step where nothing is limited, in f64, on a
+//! plant that differs from the told one.
 //!
-//! A chain is a linear map of its states over a control period; its matrix is found by sending unit vectors through it. The states
-//! are the plant's, the commands that wait, and what the controller remembers.
+//! A chain is a linear map of its states over a control period; its matrix is found by sending unit vectors through it.
+//! The states are the plant's, the commands that wait, and the controller's memory.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -136,7 +136,7 @@ impl Chain for TiltChain {
             - t;
         let next_force = u + (force - u) * self.decay;
 
-        // What follows it.
+        // The observers.
         let expected =
             v_seen + h * (GRAVITY_M_S2 * 0.5 * (tilt_before + tilt) - self.drag * 0.5 * (v_before + v_held) + d);
         let e = v_held - expected;

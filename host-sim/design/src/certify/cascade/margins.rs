@@ -9,7 +9,7 @@ use crate::certify::CertifyError;
 use crate::certify::margins::{Disk, DiskMargin, sampled_grid};
 use crate::certify::sweep::peak;
 
-/// What a chain tolerates at the plant's input.
+/// The margins of a chain at the plant's input.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ChainMargins {
     /// The balanced disk.
@@ -19,8 +19,8 @@ pub struct ChainMargins {
 }
 
 impl CascadeChain {
-    /// Margins at a point. The disk is that of a loop that looks at the accelerometer at every step, with a filter of the same time
-    /// constant.
+    /// Margins at a point. The disk is that of a loop that looks at the accelerometer at every step, with a filter of
+    /// the same time constant.
     ///
     /// # Errors
     /// [`CertifyError`] where eigenvalues are not found.
