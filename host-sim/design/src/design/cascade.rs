@@ -41,7 +41,7 @@ impl CascadeWeights {
     };
 
     /// Diagonal of Q, in the order of the states.
-    fn state(&self) -> Vec<f64> {
+    pub fn state(&self) -> Vec<f64> {
         let Self { position, velocity, rotation, body_rates, .. } = self;
         [position, velocity, rotation, body_rates].into_iter().flatten().copied().chain([0.0; 4]).collect()
     }

@@ -9,8 +9,8 @@ use quatrack::gains::table::AcceptedTable;
 use quatrack::law::ActuatorAwareGain;
 use quatrack::motor_lag::MotorLagError;
 use quatrack::{
-    Actuation, ActuatorAware, Airframe, Controller as CoreController, ControllerError, Equilibrium, ErrorForm,
-    FeedForward, Limits, ReferenceError, Settings,
+    Actuation, ActuatorAware, Airframe, Controller as CoreController, ControllerError, Equilibrium, Limits,
+    ReferenceError, Settings,
 };
 use quatrack_design::certify::{
     CertifyError, Controller, Plant, Region, RegionCertificate, Timing, certify, certify_region,
@@ -178,11 +178,8 @@ impl<'a> CraftLaw<'a> {
                 Ok(CoreController::new(*law, *limits).with_actuation(&self.actuation))
             }
             ControllerSource::Table(table) => table.controller(&Settings {
-                limits: Limits::NONE,
                 actuation: Some(&self.actuation),
-                feed_forward: FeedForward::Without,
-                error_form: ErrorForm::HeadingFrame,
-                player_rate: motor_loop::RATE,
+                ..Settings::new(Limits::NONE, motor_loop::RATE)
             }),
         }
     }

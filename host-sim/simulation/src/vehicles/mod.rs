@@ -19,7 +19,7 @@ const BUILT_IN: [(&str, &str, &str); 4] = [
     ("crazyflie-2.1", "crazyflie-2.1", include_str!("../../../../gains/vehicles/crazyflie-2.1.toml")),
     (
         "crazyflie-2.1-upgrade-kit",
-        "crazyflie-2.1-upgrade",
+        "crazyflie-2.1-upgrade-kit",
         include_str!("../../../../gains/vehicles/crazyflie-2.1-upgrade-kit.toml"),
     ),
     (
