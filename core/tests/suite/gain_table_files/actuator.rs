@@ -26,7 +26,7 @@ fn written(motor_lag_s: f32, rows: [[f32; 19]; 4]) -> Result<GainTable<'static>,
     GainTable::new(head("motors"), &Rows::ActuatorAware { motor_lag_s, rows })
 }
 
-/// What the table is refused for after some of its bytes have been replaced, checksum made anew.
+/// The error of the table after some of its bytes have been replaced, checksum made anew.
 fn refusal(offset: usize, replacement: &[u8]) -> TableError {
     let mut bytes = actuator_bytes();
     bytes[offset..offset + replacement.len()].copy_from_slice(replacement);

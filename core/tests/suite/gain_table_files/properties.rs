@@ -1,4 +1,4 @@
-//! Any bytes: the loader never panics, and what it takes is a table that writes the same bytes again.
+//! Any bytes: the loader never panics, and a table that it takes writes the same bytes again.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -6,7 +6,7 @@ use quatrack::gains::table::{ENTRY_MAX, GainTable, Hash};
 
 use super::fixture::{bytes_of, sealed, table, tables};
 
-/// What holds for every table that comes out of any bytes.
+/// The properties of every table that comes out of any bytes.
 fn holds_for_a_table(bytes: &[u8]) -> Result<bool, TestCaseError> {
     let Ok(table) = GainTable::from_bytes(bytes) else { return Ok(false) };
     prop_assert_eq!(&bytes_of(&table)[..], bytes, "one table has one encoding");

@@ -19,7 +19,7 @@ use super::fixture::{
     TRAJECTORY, VEHICLE, bytes_of, gains_over_time, head, rate, schedule_bytes, sealed, table, tables,
 };
 
-/// What a table of four knots is refused for after some of its bytes have been replaced, checksum made anew.
+/// The error of a table of four knots after some of its bytes have been replaced, checksum made anew.
 fn refusal(offset: usize, replacement: &[u8]) -> TableError {
     let mut bytes = schedule_bytes(&gains_over_time(4));
     bytes[offset..offset + replacement.len()].copy_from_slice(replacement);
@@ -184,14 +184,14 @@ fn an_uploaded_table_is_put_to_use_as_a_whole_and_gone_back_from() {
     assert_eq!(store.active().map(|table| table.kind()), Some(TableKind::Equilibrium));
 }
 
-/// What tells two tables in a store apart: the thrust of their last gain.
+/// The difference between two tables in a store: the thrust of their last gain.
 fn last_thrust(table: &quatrack::gains::table::AcceptedTable<'_>) -> u32 {
     let settings = Settings::new(Limits::NONE, rate());
     let controller = Controller::new(table.law(&settings).unwrap(), Limits::NONE);
     command(&controller, u32::MAX).command.thrust_m_s2.to_bits()
 }
 
-/// What holds for every table that comes out of any bytes.
+/// The properties of every table that comes out of any bytes.
 fn holds_for_a_table(bytes: &[u8]) -> Result<bool, TestCaseError> {
     let Ok(read) = GainTable::from_bytes(bytes) else { return Ok(false) };
     let Some(schedule) = read.schedule() else { return Ok(false) };

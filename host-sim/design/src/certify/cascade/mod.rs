@@ -1,8 +1,9 @@
-//! Certificates of the cascade, with everything in the loop: observers, the accelerometer's share, delay, motors of another lag that
-//! give less than told, another mass and inertia, air that is not the told one and air that is believed.
+//! Certificates of the cascade, with everything in the loop: observers, the accelerometer's share, delay, motors of
+//! another lag that give less than told, another mass and inertia, air that is not the told one and air that is believed.
 //!
-//! At hover the loop is four chains. Each is a linear map over a control period (`chains`); the accelerometer is looked at every fifth
-//! one, so that its spectral radius is that of five periods. Between the points of a region nothing is promised.
+//! At hover the loop is four chains. Each is a linear map over a control period (`chains`); the accelerometer is looked
+//! at every fifth one, so that its spectral radius is that of five periods. Between the points of a region nothing is
+//! promised.
 
 mod chains;
 mod held;
@@ -45,7 +46,7 @@ pub struct CascadeCraft {
     pub lag_s: f64,
     /// Control period, s.
     pub period_s: f64,
-    /// Moment of the air about x and y that is identified, N s: what the region's factors are of.
+    /// Moment of the air about x and y that is identified, N s: the region's factors multiply it.
     pub moment_n_s: [f64; 2],
     /// Drag and moment that are told, 1/s and N s.
     pub told_drag_per_s: f64,
