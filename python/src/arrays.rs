@@ -13,11 +13,12 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Rows of W numbers: of one craft, or of as many as there are rows.
-pub(crate) struct Rows<const W: usize> {
-    /// How long the leading axis is, where there is one.
+/// Rows of W numbers: one for each craft, or one for all. Kept flat, so that a contiguous array is copied as it is.
+#[derive(Clone)]
+pub(crate) struct Quantity<const W: usize> {
+    /// How long the leading axis of the argument was, where it had one.
     pub(crate) crafts: Option<usize>,
-    pub(crate) rows: Vec<[f64; W]>,
+    numbers: Vec<f64>,
 }
 
 /// An array of numbers of either precision.
@@ -57,40 +58,36 @@ fn shape_text(shape: &[usize]) -> String {
     }
 }
 
-/// Rows of a view whose last axis is the quantity; W is 1 for a quantity without one.
-fn rows_of<const W: usize, T: Element + Copy + Into<f64>>(view: &ArrayViewD<'_, T>) -> Vec<[f64; W]> {
-    let mut rows = vec![[0.0; W]; view.len() / W];
-    let numbers = rows.as_flattened_mut().iter_mut();
+fn flat<T: Element + Copy + Into<f64>>(view: &ArrayViewD<'_, T>) -> Vec<f64> {
     match view.as_slice() {
-        Some(contiguous) => numbers.zip(contiguous).for_each(|(to, from)| *to = (*from).into()),
-        None => numbers.zip(view.iter()).for_each(|(to, from)| *to = (*from).into()),
+        Some(contiguous) => contiguous.iter().map(|number| (*number).into()).collect(),
+        None => view.iter().map(|number| (*number).into()).collect(),
     }
-    rows
 }
 
-impl<const W: usize> Rows<W> {
+impl<const W: usize> Quantity<W> {
     /// From an argument of shape (W,) or (N, W); of () or (N,) for a quantity of one number.
     pub(crate) fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
         let array = read(name, value)?;
         let shape = match &array {
-            Read::Double(array) => array.shape().to_vec(),
-            Read::Single(array) => array.shape().to_vec(),
+            Read::Double(array) => array.shape(),
+            Read::Single(array) => array.shape(),
         };
-        let crafts = match (W, shape.as_slice()) {
+        let crafts = match (W, shape) {
             (1, []) => None,
             (1, [crafts]) => Some(*crafts),
             (_, [width]) if *width == W => None,
             (_, [crafts, width]) if *width == W => Some(*crafts),
             _ => {
                 let want = if W == 1 { "() or (N,)".to_owned() } else { format!("({W},) or (N, {W})") };
-                return Err(PyValueError::new_err(format!("{name}: shape {}; give {want}", shape_text(&shape))));
+                return Err(PyValueError::new_err(format!("{name}: shape {}; give {want}", shape_text(shape))));
             }
         };
-        let rows = match &array {
-            Read::Double(array) => rows_of(&array.try_readonly()?.as_array()),
-            Read::Single(array) => rows_of(&array.try_readonly()?.as_array()),
+        let numbers = match &array {
+            Read::Double(array) => flat(&array.try_readonly()?.as_array()),
+            Read::Single(array) => flat(&array.try_readonly()?.as_array()),
         };
-        Ok(Self { crafts, rows })
+        Ok(Self { crafts, numbers })
     }
 
     /// The same of an argument that may be absent.
@@ -100,7 +97,43 @@ impl<const W: usize> Rows<W> {
 
     /// The same row for everybody.
     pub(crate) fn of(row: [f64; W]) -> Self {
-        Self { crafts: None, rows: vec![row] }
+        Self { crafts: None, numbers: row.to_vec() }
+    }
+
+    /// Rows of crafts, or of one.
+    pub(crate) fn of_rows(crafts: Option<usize>, rows: impl Iterator<Item = [f64; W]>) -> Self {
+        Self { crafts, numbers: rows.flatten().collect() }
+    }
+
+    /// A craft's row.
+    #[inline]
+    pub(crate) fn row(&self, craft: usize) -> [f64; W] {
+        let from = if self.crafts.is_some() { craft * W } else { 0 };
+        let row = &self.numbers[from..from + W];
+        std::array::from_fn(|i| row[i])
+    }
+
+    /// How many rows there are.
+    pub(crate) fn len(&self) -> usize {
+        self.crafts.unwrap_or(1)
+    }
+
+    /// All of them.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = [f64; W]> + '_ {
+        (0..self.len()).map(|row| self.row(row))
+    }
+
+    /// As an array for so many crafts.
+    pub(crate) fn array<'py>(&self, py: Python<'py>, crafts: Option<usize>) -> PyResult<Bound<'py, PyAny>> {
+        let numbers = match (crafts, self.crafts) {
+            (Some(crafts), None) => self.numbers.repeat(crafts),
+            _ => self.numbers.clone(),
+        };
+        let mut shape: Vec<usize> = crafts.into_iter().collect();
+        if W > 1 {
+            shape.push(W);
+        }
+        shaped(py, &shape, numbers)
     }
 }
 
@@ -112,7 +145,7 @@ pub(crate) struct Together {
 
 impl Together {
     /// Notes a quantity.
-    pub(crate) fn note<const W: usize>(&mut self, name: &'static str, rows: Option<&Rows<W>>) -> PyResult<()> {
+    pub(crate) fn note<const W: usize>(&mut self, name: &'static str, rows: Option<&Quantity<W>>) -> PyResult<()> {
         let Some(crafts) = rows.and_then(|rows| rows.crafts) else { return Ok(()) };
         match self.crafts {
             Some((other, of)) if other != crafts => {
@@ -129,27 +162,19 @@ impl Together {
     pub(crate) fn crafts(&self) -> Option<usize> {
         self.crafts.map(|(crafts, _)| crafts)
     }
-
-    /// As many rows of a quantity as there are crafts.
-    pub(crate) fn spread<const W: usize>(&self, rows: Rows<W>) -> Vec<[f64; W]> {
-        match (self.crafts(), rows.crafts) {
-            (Some(crafts), None) => vec![rows.rows.first().copied().unwrap_or([0.0; W]); crafts],
-            _ => rows.rows,
-        }
-    }
 }
 
 /// Rows as an array of shape (W,) or (N, W), of () or (N,) for a quantity of one number.
 pub(crate) fn array<'py, T: Element + Copy, const W: usize>(
     py: Python<'py>,
     crafts: Option<usize>,
-    rows: &[[T; W]],
+    rows: Vec<[T; W]>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let mut shape: Vec<usize> = crafts.into_iter().collect();
     if W > 1 {
         shape.push(W);
     }
-    shaped(py, &shape, rows.as_flattened().to_vec())
+    shaped(py, &shape, rows.into_flattened())
 }
 
 /// Numbers, by rows, as an array of a shape.

@@ -9,6 +9,7 @@ use quatrack::{
     Target,
 };
 
+use crate::arrays::Quantity;
 use crate::reference::Reference;
 use crate::state::{State, single};
 
@@ -78,9 +79,8 @@ impl Craft {
     /// Its step, down to the motors where the controller knows them.
     fn step(&mut self, controller: &Controller<'_>, inputs: Inputs<'_>, row: usize) -> Result<Given, String> {
         let Inputs { state, reference, rate } = inputs;
-        let reference_row = if reference.len() == 1 { 0 } else { row };
         let estimate = state.core(row);
-        let vector = |rows: &Option<Vec<[f64; 3]>>| rows.as_ref().map(|rows| Vector3::from(single(&rows[row])));
+        let vector = |rows: &Option<Quantity<3>>| rows.as_ref().map(|rows| Vector3::from(single(rows.row(row))));
         let (rates, felt) = (vector(&state.body_rates), vector(&state.specific_force));
         let mut measured = Measured::new(&estimate);
         if let Some(rates) = &rates {
@@ -91,17 +91,17 @@ impl Craft {
         }
         let law = controller.law();
         if law.follows_samples() {
-            let sample = self.sample(reference, reference_row, rate);
+            let sample = self.sample(reference, row, rate);
             let heading = Heading::from_angle(sample.flat.heading_rad);
             return carried(controller, &mut self.memory, measured, Target::with_sample(&sample, heading));
         }
         if let (true, Some(actuation)) = (law.follows_forces(), controller.actuation()) {
-            let sample = self.sample(reference, reference_row, rate);
+            let sample = self.sample(reference, row, rate);
             let motors = MotorReference::from_flat(&sample, actuation.airframe()).map_err(|error| error.to_string())?;
             return carried(controller, &mut self.memory, measured, Target::with_forces(&motors));
         }
-        let mapped = CoreReference::from_flat(&reference.flat(reference_row)).map_err(|error| error.to_string())?;
-        let progress = reference.progress.as_ref().map(|rows| rows[reference_row]);
+        let mapped = CoreReference::from_flat(&reference.flat(row)).map_err(|error| error.to_string())?;
+        let progress = reference.progress;
         carried(controller, &mut self.memory, measured, Target::new(&mapped).at(progress))
     }
 }

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use quatrack::{ErrorForm, FeedForward};
 
 use crate::arrays::array;
-use crate::batch::{self, Craft, Inputs};
+use crate::batch::{self, Craft, Given, Inputs};
 use crate::error::refused_of;
 use crate::law::{Options, OwnedLaw};
 use crate::reference::Reference;
@@ -116,12 +116,7 @@ impl Controller {
         if let (true, Some((row, reason))) = (raises, fault) {
             return Err(refused_of(state.crafts.map(|_| row), reason));
         }
-        Ok(Step {
-            crafts: state.crafts,
-            forces: given.iter().map(|row| row.forces).collect(),
-            commands: given.iter().map(|row| row.command).collect(),
-            limited: given.iter().map(|row| [row.limited]).collect(),
-        })
+        Ok(Step { crafts: state.crafts, given })
     }
 
     /// Forgets the flight so far: of all crafts, or of those where a mask of shape (N,) is true.
@@ -164,7 +159,7 @@ impl Controller {
     fn motor_forces<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let Some((leading, crafts)) = &self.crafts else { return Ok(None) };
         let forces: Vec<[f32; 4]> = crafts.iter().map(|craft| craft.memory.forces_n()).collect();
-        array(py, *leading, &forces).map(Some)
+        array(py, *leading, forces).map(Some)
     }
 
     /// Drag over mass (1/s) and the air's moment c_x, c_y (N s) that the cascade flies with, told and learned; shape (3,) or (N, 3).
@@ -176,7 +171,7 @@ impl Controller {
             [drag, c_x, c_y]
         };
         let rows: Vec<[f32; 3]> = crafts.iter().map(air).collect();
-        array(py, *leading, &rows).map(Some)
+        array(py, *leading, rows).map(Some)
     }
 
     fn __repr__(&self) -> String {
@@ -192,9 +187,18 @@ fn said(crafts: Option<usize>) -> String {
 #[pyclass(frozen, module = "quatrack")]
 pub(crate) struct Step {
     crafts: Option<usize>,
-    forces: Vec<[f32; 4]>,
-    commands: Vec<[f32; 4]>,
-    limited: Vec<[u16; 1]>,
+    given: Vec<Given>,
+}
+
+impl Step {
+    fn column<'py, T: numpy::Element + Copy, const W: usize>(
+        &self,
+        py: Python<'py>,
+        of: impl Fn(&Given) -> [T; W],
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let rows: Vec<[T; W]> = self.given.iter().map(of).collect();
+        array(py, self.crafts, rows)
+    }
 }
 
 #[pymethods]
@@ -202,26 +206,24 @@ impl Step {
     /// Commanded forces of M1 to M4, N; shape (4,) or (N, 4). NaN where the law ends with thrust and body rates.
     #[getter]
     fn motor_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, self.crafts, &self.forces)
+        self.column(py, |given| given.forces)
     }
 
     /// Commanded thrust over mass, m/s^2; shape () or (N,). NaN where the law gives motor forces at once.
     #[getter]
     fn thrust<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let thrust: Vec<[f32; 1]> = self.commands.iter().map(|[thrust, ..]| [*thrust]).collect();
-        array(py, self.crafts, &thrust)
+        self.column(py, |given| [given.command[0]])
     }
 
     /// Commanded body rates p, q, r, rad/s; shape (3,) or (N, 3). NaN likewise.
     #[getter]
     fn body_rates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let rates: Vec<[f32; 3]> = self.commands.iter().map(|[_, p, q, r]| [*p, *q, *r]).collect();
-        array(py, self.crafts, &rates)
+        self.column(py, |Given { command: [_, p, q, r], .. }| [*p, *q, *r])
     }
 
     /// What was given up to stay within the limits, as bits; 0 is nothing. Shape () or (N,).
     #[getter]
     fn limited<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, self.crafts, &self.limited)
+        self.column(py, |given| [given.limited])
     }
 }

@@ -9,7 +9,7 @@ use quatrack::estimator::{
 };
 use quatrack::nalgebra::Vector3;
 
-use crate::arrays::{Rows, array, shaped};
+use crate::arrays::{Quantity, array, shaped};
 use crate::error::refused;
 use crate::state::{State, single};
 
@@ -33,10 +33,10 @@ pub(crate) struct Estimator {
 
 /// One row of an argument.
 fn row<const W: usize>(name: &str, value: &Bound<'_, PyAny>) -> PyResult<[f32; W]> {
-    let rows = Rows::<W>::read(name, value)?;
-    match (rows.crafts, rows.rows.as_slice()) {
-        (None, [row]) => Ok(single(row)),
-        _ => Err(PyValueError::new_err(format!("{name}: more than one row; an estimator is of one craft"))),
+    let given = Quantity::<W>::read(name, value)?;
+    match given.crafts {
+        None => Ok(single(given.row(0))),
+        Some(_) => Err(PyValueError::new_err(format!("{name}: many rows; an estimator is of one craft"))),
     }
 }
 
@@ -50,8 +50,8 @@ fn three(name: &str, value: Option<&Bound<'_, PyAny>>, default: [f32; 3]) -> PyR
 
 fn said<'py, const N: usize>(py: Python<'py>, innovation: &Innovation<N>) -> PyResult<Bound<'py, PyDict>> {
     let dictionary = PyDict::new(py);
-    dictionary.set_item("difference", array(py, None, &[innovation.difference])?)?;
-    dictionary.set_item("variance", array(py, None, &[innovation.variance])?)?;
+    dictionary.set_item("difference", array(py, None, vec![innovation.difference])?)?;
+    dictionary.set_item("variance", array(py, None, vec![innovation.variance])?)?;
     dictionary.set_item("normalised_squared", innovation.normalised_squared)?;
     dictionary.set_item("is_taken", innovation.is_taken)?;
     Ok(dictionary)
@@ -181,14 +181,8 @@ impl Estimator {
     fn state(&self) -> State {
         let state = self.estimate.state();
         let q = state.attitude;
-        State {
-            crafts: None,
-            position: vec![state.position_m.map(f64::from).into()],
-            attitude: vec![[q.w, q.x, q.y, q.z].map(f64::from)],
-            velocity: vec![state.velocity_m_s.map(f64::from).into()],
-            body_rates: None,
-            specific_force: None,
-        }
+        let attitude = [q.w, q.x, q.y, q.z].map(f64::from);
+        State::of_one(state.position_m.map(f64::from).into(), attitude, state.velocity_m_s.map(f64::from).into())
     }
 
     /// Covariance of the errors of position (m), velocity (m/s) and rotation in the body frame (rad); shape (9, 9).

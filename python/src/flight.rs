@@ -203,7 +203,7 @@ impl Flight {
         of: impl Fn(&RigidSample) -> [f64; W],
     ) -> PyResult<Bound<'py, PyAny>> {
         let rows = self.rows(of);
-        array(py, Some(rows.len()), &rows)
+        array(py, Some(rows.len()), rows)
     }
 }
 
@@ -267,34 +267,21 @@ impl Flight {
     #[getter]
     fn state(&self) -> State {
         let samples = &self.recording.flight.samples;
-        State::of_rigid(Some(samples.len()), samples.iter().map(|sample| (&sample.state, None)))
+        State::of_rigid(Some(samples.len()), samples.iter().map(|sample| &sample.state))
     }
 
     /// What its law took that for.
     #[getter]
     fn estimate(&self) -> State {
         let around = &self.recording.around;
-        let estimates = || around.iter().map(|around| &around.estimate);
-        State {
-            crafts: Some(around.len()),
-            position: estimates().map(|estimate| estimate.position_m.into()).collect(),
-            attitude: estimates()
-                .map(|estimate| {
-                    let q = estimate.attitude.quaternion();
-                    [q.w, q.i, q.j, q.k]
-                })
-                .collect(),
-            velocity: estimates().map(|estimate| estimate.velocity_m_s.into()).collect(),
-            body_rates: Some(estimates().map(|estimate| estimate.body_rates_rad_s.into()).collect()),
-            specific_force: Some(estimates().map(|estimate| estimate.specific_force_m_s2.into()).collect()),
-        }
+        State::of_estimates(Some(around.len()), around.iter().map(|around| &around.estimate))
     }
 
     /// Velocity of the air, m/s; shape (rows, 3).
     #[getter]
     fn wind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let rows: Vec<[f64; 3]> = self.recording.around.iter().map(|around| around.wind_m_s.into()).collect();
-        array(py, Some(rows.len()), &rows)
+        array(py, Some(rows.len()), rows)
     }
 
     /// As the text of the CSV file that `quatrack fly --out` writes.

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use quatrack_plan::trajectory::fifth_order::FifthOrder;
 use quatrack_simulation::control_law::{ControlLaw, Input, STEPS_HZ};
 
-use crate::arrays::Rows;
+use crate::arrays::Quantity;
 use crate::error::refused;
 use crate::long_call::Cancelled;
 use crate::reference::Reference;
@@ -39,16 +39,7 @@ impl LawInput {
     /// Where the craft is, as far as anybody on board knows, with gyroscope and accelerometer.
     #[getter]
     fn state(&self) -> State {
-        let estimate = &self.0.estimate;
-        let q = estimate.attitude.quaternion();
-        State {
-            crafts: None,
-            position: vec![estimate.position_m.into()],
-            attitude: vec![[q.w, q.i, q.j, q.k]],
-            velocity: vec![estimate.velocity_m_s.into()],
-            body_rates: Some(vec![estimate.body_rates_rad_s.into()]),
-            specific_force: Some(vec![estimate.specific_force_m_s2.into()]),
-        }
+        State::of_estimates(None, std::iter::once(&self.0.estimate))
     }
 
     /// The setpoint as it was sent.
@@ -114,11 +105,15 @@ impl ControlLaw for OwnLaw {
         let forces = Python::attach(|py| -> PyResult<Vector4<f64>> {
             py.check_signals()?;
             let given = self.callable.bind(py).call1((LawInput(*input),))?;
-            let forces = Rows::<4>::read("motor forces of the law", &given)?;
-            match (forces.crafts, forces.rows.as_slice()) {
-                (None, [row]) if row.iter().all(|force| force.is_finite()) => Ok(Vector4::from(*row)),
-                (None, [row]) => Err(refused(format!("motor forces of the law: {row:?}; must be finite"))),
-                _ => Err(PyValueError::new_err("motor forces of the law: more than one row; give shape (4,)")),
+            let forces = Quantity::<4>::read("motor forces of the law", &given)?;
+            if forces.crafts.is_some() {
+                return Err(PyValueError::new_err("motor forces of the law: many rows; give shape (4,)"));
+            }
+            let row = forces.row(0);
+            if row.iter().all(|force| force.is_finite()) {
+                Ok(Vector4::from(row))
+            } else {
+                Err(refused(format!("motor forces of the law: {row:?}; must be finite")))
             }
         });
         forces.map_err(|error| {

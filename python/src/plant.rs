@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use quatrack_simulation::plant::{Plant as SimPlant, RigidState};
 use quatrack_simulation::scenario::Scenario;
 
-use crate::arrays::{Rows, array};
+use crate::arrays::{Quantity, array};
 use crate::error::refused_of;
 use crate::scenario;
 use crate::state::State;
@@ -35,22 +35,22 @@ const CRAFTS_A_THREAD: usize = 32;
 fn start(state: &State, row: usize, thrusts_n: Vector4<f64>) -> Result<RigidState, String> {
     // The core's check of what is a state.
     state.core(row).validated().map_err(|error| error.to_string())?;
-    let [w, x, y, z] = state.attitude[row];
+    let [w, x, y, z] = state.attitude.row(row);
     Ok(RigidState {
-        position_m: Vector3::from(state.position[row]),
-        velocity_m_s: Vector3::from(state.velocity[row]),
+        position_m: Vector3::from(state.position.row(row)),
+        velocity_m_s: Vector3::from(state.velocity.row(row)),
         attitude: UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)),
-        body_rates_rad_s: state.body_rates.as_ref().map_or_else(Vector3::zeros, |rates| Vector3::from(rates[row])),
+        body_rates_rad_s: state.body_rates.as_ref().map_or_else(Vector3::zeros, |rates| Vector3::from(rates.row(row))),
         thrusts_n,
     })
 }
 
 impl Plant {
-    fn one(&self, state: &State, row: usize, forces: Option<&Rows<4>>, seed: u64) -> PyResult<SimPlant> {
+    fn one(&self, state: &State, row: usize, forces: Option<&Quantity<4>>, seed: u64) -> PyResult<SimPlant> {
         let of = self.crafts.map(|_| row);
         let scenario = &self.scenario;
         let thrusts_n = match forces {
-            Some(rows) => Vector4::from(rows.rows[if rows.crafts.is_some() { row } else { 0 }]),
+            Some(rows) => Vector4::from(rows.row(row)),
             None => Vector4::repeat(0.25 * scenario.truth.mass_kg * quatrack_design::model::GRAVITY_M_S2),
         };
         let start = start(state, row, thrusts_n).map_err(|error| refused_of(of, error))?;
@@ -87,7 +87,7 @@ impl Plant {
             plants: Vec::new(),
             threads: threads.unwrap_or_else(there_are).max(1),
         };
-        let forces = Rows::<4>::read_or_none("motor_forces", motor_forces)?;
+        let forces = Quantity::<4>::read_or_none("motor_forces", motor_forces)?;
         if let Some(rows) = forces.as_ref().and_then(|forces| forces.crafts).filter(|rows| *rows != state.len()) {
             return Err(PyValueError::new_err(format!("motor_forces: {rows} rows for {} crafts", state.len())));
         }
@@ -101,22 +101,23 @@ impl Plant {
 
     /// Gives commanded motor forces, N, of shape (4,) or (N, 4), and flies on for a time, s.
     fn advance(&mut self, py: Python<'_>, commands: &Bound<'_, PyAny>, duration: f64) -> PyResult<()> {
-        let commands = Rows::<4>::read("commands", commands)?;
+        let commands = Quantity::<4>::read("commands", commands)?;
         if let Some(rows) = commands.crafts.filter(|rows| *rows != self.plants.len()) {
             return Err(PyValueError::new_err(format!("commands: {rows} rows for {} crafts", self.plants.len())));
         }
         if !(duration > 0.0 && duration <= 10.0) {
             return Err(PyValueError::new_err(format!("duration: {duration}; must be above 0 and at most 10 s")));
         }
-        let bad = commands.rows.iter().position(|row| row.iter().any(|force| !force.is_finite()));
-        if let Some(row) = bad {
+        if let Some((row, forces)) =
+            (0..).zip(commands.rows()).find(|(_, row)| row.iter().any(|force| !force.is_finite()))
+        {
             let of = commands.crafts.map(|_| row);
-            return Err(refused_of(of, format!("commands: {:?}; must be finite", commands.rows[row])));
+            return Err(refused_of(of, format!("commands: {forces:?}; must be finite")));
         }
-        let (of_all, rows) = (commands.crafts.is_none(), &commands.rows);
+        let commands = &commands;
         let run = |from: usize, plants: &mut [SimPlant]| {
             for (row, plant) in (from..).zip(plants) {
-                plant.advance(&Vector4::from(rows[if of_all { 0 } else { row }]), duration);
+                plant.advance(&Vector4::from(commands.row(row)), duration);
             }
         };
         let parts = self.threads.min(self.plants.len().div_ceil(CRAFTS_A_THREAD)).max(1);
@@ -138,31 +139,30 @@ impl Plant {
     /// Where the crafts are, with what gyroscope and accelerometer feel without noise.
     #[getter]
     fn state(&mut self) -> State {
-        let felt: Vec<[f64; 3]> =
-            self.plants.iter_mut().map(|plant| plant.motion().specific_force_m_s2.into()).collect();
-        let states = self.plants.iter().zip(felt).map(|(plant, felt)| (plant.state(), Some(felt)));
-        State::of_rigid(self.crafts, states)
+        let felt = self.plants.iter_mut().map(|plant| plant.motion().specific_force_m_s2.into());
+        let specific_force = Some(Quantity::of_rows(self.crafts, felt));
+        State { specific_force, ..State::of_rigid(self.crafts, self.plants.iter().map(SimPlant::state)) }
     }
 
     /// Forces of the motors, N; shape (4,) or (N, 4).
     #[getter]
     fn motor_forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let rows: Vec<[f64; 4]> = self.plants.iter().map(|plant| plant.state().thrusts_n.into()).collect();
-        array(py, self.crafts, &rows)
+        array(py, self.crafts, rows)
     }
 
     /// Velocity of the air at the crafts, m/s; shape (3,) or (N, 3).
     #[getter]
     fn wind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let rows: Vec<[f64; 3]> = self.plants.iter().map(|plant| (*plant.wind_m_s()).into()).collect();
-        array(py, self.crafts, &rows)
+        array(py, self.crafts, rows)
     }
 
     /// Time since each started, s; shape () or (N,).
     #[getter]
     fn time<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let rows: Vec<[f64; 1]> = self.plants.iter().map(|plant| [plant.time_s()]).collect();
-        array(py, self.crafts, &rows)
+        array(py, self.crafts, rows)
     }
 
     /// Starts crafts anew where a mask of shape (N,) is true: from their rows of a state, with their seeds.

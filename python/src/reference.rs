@@ -5,7 +5,7 @@ use quatrack::nalgebra::Vector3;
 use quatrack::{FifthOrderSample, FlatSample, Progress};
 use quatrack_plan::trajectory::fifth_order::FifthOrder;
 
-use crate::arrays::{Rows, Together, array};
+use crate::arrays::{Quantity, Together, array};
 use crate::error::refused_of;
 use crate::state::{State, single};
 
@@ -21,26 +21,33 @@ use crate::state::{State, single};
 pub(crate) struct Reference {
     pub(crate) crafts: Option<usize>,
     /// Position to jerk.
-    pub(crate) position: [Vec<[f64; 3]>; 4],
+    pub(crate) position: [Quantity<3>; 4],
     /// Snap and crackle, where they are known.
-    pub(crate) beyond: Option<[Vec<[f64; 3]>; 2]>,
+    pub(crate) beyond: Option<[Quantity<3>; 2]>,
     /// To the third derivative.
-    pub(crate) heading: Vec<[f64; 4]>,
-    pub(crate) progress: Option<Vec<Progress>>,
+    pub(crate) heading: [Quantity<1>; 4],
+    /// Where on which trajectory that is; of a player, which is of one craft.
+    pub(crate) progress: Option<Progress>,
 }
 
 impl Reference {
     /// How many rows there are.
     pub(crate) fn len(&self) -> usize {
-        self.heading.len()
+        self.crafts.unwrap_or(1)
+    }
+
+    /// Heading and its derivatives of a row.
+    #[inline]
+    fn turn(&self, craft: usize) -> [[f32; 1]; 4] {
+        self.heading.each_ref().map(|rows| single(rows.row(craft)))
     }
 
     /// One row, to the jerk, as the core takes it.
     #[inline]
     pub(crate) fn flat(&self, craft: usize) -> FlatSample {
         let [position, velocity, acceleration, jerk] = &self.position;
-        let of = |rows: &Vec<[f64; 3]>| Vector3::from(single(&rows[craft]));
-        let [heading_rad, heading_rate_rad_s, ..] = single(&self.heading[craft]);
+        let of = |rows: &Quantity<3>| Vector3::from(single(rows.row(craft)));
+        let [[heading_rad], [heading_rate_rad_s], ..] = self.turn(craft);
         FlatSample {
             position_m: of(position),
             velocity_m_s: of(velocity),
@@ -54,9 +61,9 @@ impl Reference {
     /// One row with all that is known of it.
     #[inline]
     pub(crate) fn sample(&self, craft: usize) -> FifthOrderSample {
-        let [.., heading_acceleration_rad_s2, heading_jerk_rad_s3] = single(&self.heading[craft]);
+        let [.., [heading_acceleration_rad_s2], [heading_jerk_rad_s3]] = self.turn(craft);
         let [snap, crackle] = match &self.beyond {
-            Some(beyond) => beyond.each_ref().map(|rows| single(&rows[craft])),
+            Some(beyond) => beyond.each_ref().map(|rows| single(rows.row(craft))),
             None => [[0.0; 3]; 2],
         };
         FifthOrderSample {
@@ -70,12 +77,13 @@ impl Reference {
 
     /// Of points of a course.
     pub(crate) fn of_points(crafts: Option<usize>, points: &[FifthOrder]) -> Self {
-        let order = |k: usize| points.iter().map(|point| point.position[k].into()).collect::<Vec<[f64; 3]>>();
+        let order = |k: usize| Quantity::of_rows(crafts, points.iter().map(|point| point.position[k].into()));
+        let turn = |k: usize| Quantity::of_rows(crafts, points.iter().map(|point| [point.heading[k]]));
         Self {
             crafts,
             position: [0, 1, 2, 3].map(order),
             beyond: Some([4, 5].map(order)),
-            heading: points.iter().map(|point| point.heading).collect(),
+            heading: [0, 1, 2, 3].map(turn),
             progress: None,
         }
     }
@@ -110,8 +118,8 @@ impl Reference {
         heading_jerk: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut together = Together::default();
-        let mut vector = |name, value: Option<&Bound<'_, PyAny>>| -> PyResult<Option<Rows<3>>> {
-            let rows = Rows::<3>::read_or_none(name, value)?;
+        let mut vector = |name, value: Option<&Bound<'_, PyAny>>| -> PyResult<Option<Quantity<3>>> {
+            let rows = Quantity::<3>::read_or_none(name, value)?;
             together.note(name, rows.as_ref())?;
             Ok(rows)
         };
@@ -121,25 +129,23 @@ impl Reference {
         let jerk = vector("jerk", jerk)?;
         let snap = vector("snap", snap)?;
         let crackle = vector("crackle", crackle)?;
-        let mut number = |name, value: Option<&Bound<'_, PyAny>>| -> PyResult<Rows<1>> {
-            let rows = Rows::<1>::read_or_none(name, value)?;
+        let mut number = |name, value: Option<&Bound<'_, PyAny>>| -> PyResult<Quantity<1>> {
+            let rows = Quantity::<1>::read_or_none(name, value)?;
             together.note(name, rows.as_ref())?;
-            Ok(rows.unwrap_or(Rows::of([0.0])))
+            Ok(rows.unwrap_or(Quantity::of([0.0])))
         };
-        let turn = [
+        let heading = [
             number("heading", heading)?,
             number("heading_rate", heading_rate)?,
             number("heading_acceleration", heading_acceleration)?,
             number("heading_jerk", heading_jerk)?,
         ];
-        let spread = |rows: Option<Rows<3>>| together.spread(rows.unwrap_or(Rows::of([0.0; 3])));
-        let [psi, rate, second, third] = turn.map(|rows| together.spread(rows));
-        let numbers = psi.iter().zip(rate).zip(second).zip(third);
+        let known = |rows: Option<Quantity<3>>| rows.unwrap_or(Quantity::of([0.0; 3]));
         Ok(Self {
             crafts: together.crafts(),
-            beyond: (snap.is_some() || crackle.is_some()).then(|| [snap, crackle].map(spread)),
-            position: [position, velocity, acceleration, jerk].map(spread),
-            heading: numbers.map(|((([a], [b]), [c]), [d])| [*a, b, c, d]).collect(),
+            beyond: (snap.is_some() || crackle.is_some()).then(|| [snap, crackle].map(known)),
+            position: [position, velocity, acceleration, jerk].map(known),
+            heading,
             progress: None,
         })
     }
@@ -152,44 +158,42 @@ impl Reference {
 
     #[getter]
     fn position<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, self.crafts, &self.position[0])
+        self.position[0].array(py, self.crafts)
     }
 
     #[getter]
     fn velocity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, self.crafts, &self.position[1])
+        self.position[1].array(py, self.crafts)
     }
 
     #[getter]
     fn acceleration<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, self.crafts, &self.position[2])
+        self.position[2].array(py, self.crafts)
     }
 
     #[getter]
     fn jerk<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, self.crafts, &self.position[3])
+        self.position[3].array(py, self.crafts)
     }
 
     #[getter]
     fn snap<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        self.beyond.as_ref().map(|[snap, _]| array(py, self.crafts, snap)).transpose()
+        self.beyond.as_ref().map(|[snap, _]| snap.array(py, self.crafts)).transpose()
     }
 
     #[getter]
     fn crackle<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
-        self.beyond.as_ref().map(|[_, crackle]| array(py, self.crafts, crackle)).transpose()
+        self.beyond.as_ref().map(|[_, crackle]| crackle.array(py, self.crafts)).transpose()
     }
 
     #[getter]
     fn heading<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let heading: Vec<[f64; 1]> = self.heading.iter().map(|[psi, ..]| [*psi]).collect();
-        array(py, self.crafts, &heading)
+        self.heading[0].array(py, self.crafts)
     }
 
     #[getter]
     fn heading_rate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let rate: Vec<[f64; 1]> = self.heading.iter().map(|[_, rate, ..]| [*rate]).collect();
-        array(py, self.crafts, &rate)
+        self.heading[1].array(py, self.crafts)
     }
 
     /// The state that flies it, by the core's flat map.
@@ -204,8 +208,11 @@ impl Reference {
             crafts: self.crafts,
             position: self.position[0].clone(),
             velocity: self.position[1].clone(),
-            attitude: mapped.iter().map(attitude).collect(),
-            body_rates: Some(mapped.iter().map(|r| r.input().body_rates_rad_s.map(f64::from).into()).collect()),
+            attitude: Quantity::of_rows(self.crafts, mapped.iter().map(attitude)),
+            body_rates: Some(Quantity::of_rows(
+                self.crafts,
+                mapped.iter().map(|reference| reference.input().body_rates_rad_s.map(f64::from).into()),
+            )),
             specific_force: None,
         })
     }
@@ -214,12 +221,14 @@ impl Reference {
     #[getter]
     fn thrust<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let thrust: Vec<[f64; 1]> = self.mapped()?.iter().map(|r| [f64::from(r.input().thrust_m_s2)]).collect();
-        array(py, self.crafts, &thrust)
+        array(py, self.crafts, thrust)
     }
 
     fn __repr__(&self) -> String {
         match self.crafts {
-            None => format!("Reference(position={:?}, velocity={:?})", self.position[0][0], self.position[1][0]),
+            None => {
+                format!("Reference(position={:?}, velocity={:?})", self.position[0].row(0), self.position[1].row(0))
+            }
             Some(crafts) => format!("Reference of {crafts} rows"),
         }
     }

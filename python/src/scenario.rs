@@ -7,7 +7,7 @@ use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::scenario::Scenario as SimScenario;
 use quatrack_simulation::scenario::file::ScenarioFile;
 
-use crate::arrays::Rows;
+use crate::arrays::Quantity;
 use crate::error::refused;
 use crate::long_call::long_call;
 use crate::reference::Reference;
@@ -52,9 +52,9 @@ pub(crate) struct Course {
 impl Course {
     /// The reference at a time or at many, s since the start of the flight.
     fn at(&self, time: &Bound<'_, PyAny>) -> PyResult<Reference> {
-        let times = Rows::<1>::read("time", time)?;
+        let times = Quantity::<1>::read("time", time)?;
         let flown = self.scenario.flown(self.trajectory.clone());
-        let points: Vec<_> = times.rows.iter().map(|[t_s]| flown.course.at(*t_s)).collect();
+        let points: Vec<_> = times.rows().map(|[t_s]| flown.course.at(t_s)).collect();
         Ok(Reference::of_points(times.crafts, &points))
     }
 

@@ -17,7 +17,7 @@ use quatrack_plan::trajectory::polynomial::{Piece, PiecewisePolynomial, csv};
 use quatrack_plan::trajectory::refit::refit;
 use quatrack_simulation::gains::OnBoardTrajectory;
 
-use crate::arrays::{Rows, array, matrix, shaped};
+use crate::arrays::{Quantity, array, matrix, shaped};
 use crate::error::refused;
 use crate::long_call::long_call;
 use crate::reference::Reference;
@@ -80,18 +80,18 @@ pub(crate) fn plan(py: Python<'_>, problem: &Bound<'_, PyAny>) -> PyResult<Traje
 impl Trajectory {
     #[new]
     fn new(durations: &Bound<'_, PyAny>, coefficients: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let durations = Rows::<1>::read("durations", durations)?;
+        let durations = Quantity::<1>::read("durations", durations)?;
         let flat = coefficients.py().import("numpy")?.call_method1("reshape", (coefficients, (-1, 4 * POWERS)))?;
         let coefficients = matrix("coefficients", &flat)?;
-        if coefficients.nrows() != durations.rows.len() {
+        if coefficients.nrows() != durations.len() {
             return Err(PyValueError::new_err(format!(
                 "coefficients: {} pieces, but durations has {}; give as many of both, coefficients of shape (pieces, 4, 8)",
                 coefficients.nrows(),
-                durations.rows.len()
+                durations.len()
             )));
         }
         let piece = |i: usize| Piece {
-            duration_s: durations.rows[i][0],
+            duration_s: durations.row(i)[0],
             coefficients: std::array::from_fn(|c| std::array::from_fn(|k| coefficients[(i, c * POWERS + k)])),
         };
         let pieces = (0..coefficients.nrows()).map(piece).collect();
@@ -144,7 +144,7 @@ impl Trajectory {
     #[getter]
     fn durations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let durations: Vec<[f64; 1]> = self.0.pieces().iter().map(|piece| [piece.duration_s]).collect();
-        array(py, Some(durations.len()), &durations)
+        array(py, Some(durations.len()), durations)
     }
 
     /// Coefficients of x, y, z and heading, ascending powers; shape (pieces, 4, 8).
@@ -156,8 +156,8 @@ impl Trajectory {
 
     /// The flat output at a time or at many, s.
     fn at(&self, time: &Bound<'_, PyAny>) -> PyResult<Reference> {
-        let times = Rows::<1>::read("time", time)?;
-        let points: Vec<FifthOrder> = times.rows.iter().map(|[t_s]| FlatTrajectory::at(&self.0, *t_s)).collect();
+        let times = Quantity::<1>::read("time", time)?;
+        let points: Vec<FifthOrder> = times.rows().map(|[t_s]| FlatTrajectory::at(&self.0, t_s)).collect();
         Ok(Reference::of_points(times.crafts, &points))
     }
 
@@ -211,15 +211,15 @@ impl Player {
         let sample = player.at_fifth_order(tick);
         self.bookmark = player.bookmark();
         let flat = &sample.flat;
-        let of = |v: &Vector3<f32>| vec![v.map(f64::from).into()];
+        let of = |v: &Vector3<f32>| Quantity::of(v.map(f64::from).into());
         let heading =
             [flat.heading_rad, flat.heading_rate_rad_s, sample.heading_acceleration_rad_s2, sample.heading_jerk_rad_s3];
         Ok(Reference {
             crafts: None,
             position: [of(&flat.position_m), of(&flat.velocity_m_s), of(&flat.acceleration_m_s2), of(&flat.jerk_m_s3)],
             beyond: Some([of(&sample.snap_m_s4), of(&sample.crackle_m_s5)]),
-            heading: vec![heading.map(f64::from)],
-            progress: Some(vec![Progress { trajectory: self.checksum, tick }]),
+            heading: heading.map(|value| Quantity::of([f64::from(value)])),
+            progress: Some(Progress { trajectory: self.checksum, tick }),
         })
     }
 

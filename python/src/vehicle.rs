@@ -89,7 +89,7 @@ impl Vehicle {
     /// Least and most force of a motor, N; shape (2,).
     #[getter]
     fn motor_force_n<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        array(py, None, &[[self.0.motors().thrust_min_n, self.0.motors().thrust_max_n]])
+        array(py, None, vec![[self.0.motors().thrust_min_n, self.0.motors().thrust_max_n]])
     }
 
     /// Time constant from command to thrust that tables are designed for, s.
