@@ -22,7 +22,7 @@ impl std::ops::AddAssign for Wrench {
 }
 
 /// Something that pushes.
-pub trait Load {
+pub trait Load: Send + Sync {
     /// Force in the world frame and torque in the body frame.
     fn wrench(&self, time_s: f64, state: &RigidState) -> Wrench;
 }

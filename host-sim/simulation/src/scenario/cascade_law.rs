@@ -27,15 +27,11 @@ pub(super) struct CascadeLaw {
 }
 
 impl CascadeLaw {
-    /// Designed with the standard weights for the lag that is told, or for the one that the vehicle is flown with where none is.
+    /// Of [`cascade_of`], at a hover.
     pub(super) fn new(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, FlightError> {
-        let lag_s = told.lag_s.unwrap_or_else(|| untold_lag_s(vehicle));
-        let design = cascade(vehicle, lag_s, &CascadeWeights::STANDARD, PERIOD_S)?;
-        let gains = CascadeGains::from_numbers(design.numbers().map(|gain| gain as f32))?;
-        let figures = *motor_loop::airframe(vehicle, lag_s)?.figures();
-        let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?;
-        let cascade = Cascade::new(&gains, &airframe, RATE, &CascadeLimits::STANDARD, &air(vehicle, told)?)?;
-        Ok(Self { cascade, memory: Memory::hovering(&airframe), fit: JerkFit::NONE, newest: None })
+        let cascade = cascade_of(vehicle, told)?;
+        let memory = Memory::hovering(cascade.airframe());
+        Ok(Self { cascade, memory, fit: JerkFit::NONE, newest: None })
     }
 
     /// Of a table, with its lag, and with its air where none is told.
@@ -63,6 +59,20 @@ impl CascadeLaw {
         let [snap_m_s4, crackle_m_s5] = self.fit.snap_and_crackle().map(Vector3::cast);
         Setpoint { snap_m_s4, crackle_m_s5, ..*setpoint }
     }
+}
+
+/// The cascade of a vehicle at 500 Hz, designed with the standard weights for the lag that is told, or for the one that the vehicle
+/// is flown with where none is.
+///
+/// # Errors
+/// [`FlightError`] where there is no design, or the core refuses a figure.
+pub fn cascade_of(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, FlightError> {
+    let lag_s = told.lag_s.unwrap_or_else(|| untold_lag_s(vehicle));
+    let design = cascade(vehicle, lag_s, &CascadeWeights::STANDARD, PERIOD_S)?;
+    let gains = CascadeGains::from_numbers(design.numbers().map(|gain| gain as f32))?;
+    let figures = *motor_loop::airframe(vehicle, lag_s)?.figures();
+    let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?;
+    Ok(Cascade::new(&gains, &airframe, RATE, &CascadeLimits::STANDARD, &air(vehicle, told)?)?)
 }
 
 impl ControlLaw for CascadeLaw {

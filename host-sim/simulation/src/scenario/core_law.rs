@@ -6,7 +6,7 @@ use quatrack::airframe::AirframeFigures;
 use quatrack::law::{ActuatorAwareGain, EquilibriumGain, FlatOutputGain};
 use quatrack::{
     Actuation, ActuatorAware, Airframe, Controller, Equilibrium, FeedForward, FlatOutput, Limits, Memory,
-    MotorReference, State,
+    MotorReference, Rate, State,
 };
 use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use quatrack_design::vehicle::Vehicle;
@@ -72,25 +72,43 @@ impl CoreLaw {
     /// The actuator-aware law by its standard weights, as the Crazyflie flies it: designed for the lag that is told, or for
     /// that of the default table behind motors of the longest published lag.
     pub(super) fn actuator_aware(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, FlightError> {
-        let [_, longest_s] = vehicle.motors().published_lag_s;
-        let lag_s = told.lag_s.unwrap_or(longest_s);
-        let design_lag_s = told.lag_s.unwrap_or_else(|| default_lag_s(vehicle));
-        let design = actuator_aware(vehicle, design_lag_s, &ActuatorAwareWeights::STANDARD, PERIOD_S)?;
-        let rows = std::array::from_fn(|i| std::array::from_fn(|j| design.gain[(i, j)] as f32));
-        Self::new(vehicle, told, lag_s, Gain::ActuatorAware(Box::new(ActuatorAwareGain::new(rows)?)))
+        let (gain, lag_s) = actuator_aware_of(vehicle, told)?;
+        Self::new(vehicle, told, lag_s, Gain::ActuatorAware(Box::new(gain)))
     }
 
     fn new(vehicle: &Vehicle, told: &ToldFigures, lag_s: f64, gain: Gain) -> Result<Self, FlightError> {
-        let figures = *motor_loop::airframe(vehicle, lag_s)?.figures();
-        let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?.commanded_at(RATE);
+        let actuation = actuation_of(vehicle, told, lag_s, RATE)?;
         Ok(Self {
             gain,
-            actuation: Actuation::new(&airframe, RATE)?,
             limits: vehicles::limits(vehicle)?,
-            memory: Memory::hovering(&airframe),
+            memory: Memory::hovering(actuation.airframe()),
+            actuation,
             beyond_jerk: BeyondJerk::default(),
         })
     }
+}
+
+/// A vehicle's way to its motors at a control rate, told its mass, with motors of a lag, s.
+///
+/// # Errors
+/// [`FlightError`] where the core refuses a figure.
+pub fn actuation_of(vehicle: &Vehicle, told: &ToldFigures, lag_s: f64, rate: Rate) -> Result<Actuation, FlightError> {
+    let figures = *motor_loop::airframe(vehicle, lag_s)?.figures();
+    let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?.commanded_at(rate);
+    Ok(Actuation::new(&airframe, rate)?)
+}
+
+/// The actuator-aware gain by its standard weights, for the lag that is told or that of the default table, and the lag of the
+/// motors that it is flown with, s.
+///
+/// # Errors
+/// [`FlightError`] where there is no design, or the core refuses it.
+pub fn actuator_aware_of(vehicle: &Vehicle, told: &ToldFigures) -> Result<(ActuatorAwareGain, f64), FlightError> {
+    let [_, longest_s] = vehicle.motors().published_lag_s;
+    let design_lag_s = told.lag_s.unwrap_or_else(|| default_lag_s(vehicle));
+    let design = actuator_aware(vehicle, design_lag_s, &ActuatorAwareWeights::STANDARD, PERIOD_S)?;
+    let rows = std::array::from_fn(|i| std::array::from_fn(|j| design.gain[(i, j)] as f32));
+    Ok((ActuatorAwareGain::new(rows)?, told.lag_s.unwrap_or(longest_s)))
 }
 
 impl ControlLaw for CoreLaw {

@@ -36,6 +36,8 @@ mod table_law;
 mod varied;
 mod whole;
 
+pub use cascade_law::cascade_of;
+pub use core_law::{actuation_of, actuator_aware_of};
 pub use error::{ScenarioError, StartError};
 pub use laws::{Law, LawError, ToldFigures, start_table};
 pub use recording::{Around, Recording};

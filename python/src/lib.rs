@@ -1,0 +1,74 @@
+//! The quatrack crates as a Python package. Nothing is computed here: arguments are read and checked, the crates called, their
+//! answers written.
+//!
+//! ```text
+//! flight            scenarios flown by name, by table or by a law of one's own
+//!   own_law         a callable as a law
+//!   plant           the plant of a scenario, for many crafts
+//!     scenario
+//! controller        the core's controller, for many crafts
+//!   batch           one step of all of them
+//!     law           a law with what it borrows
+//! estimator
+//! gains, trajectory, design
+//!   state, reference, vehicle
+//!     long_call     without the interpreter's lock, ended by Ctrl-C
+//!     values        dictionaries
+//!     arrays        NumPy
+//!       error
+//! ```
+#![expect(clippy::needless_pass_by_value, reason = "arguments of Python come by value")]
+
+mod arrays;
+mod batch;
+mod controller;
+mod design;
+mod error;
+mod estimator;
+mod flight;
+mod gains;
+mod law;
+mod long_call;
+mod own_law;
+mod plant;
+mod reference;
+mod scenario;
+mod state;
+mod trajectory;
+mod values;
+mod vehicle;
+
+/// What Python imports; the package `quatrack` names it.
+#[pyo3::pymodule]
+mod _quatrack {
+    #[pymodule_export]
+    use crate::controller::{Controller, Step};
+    #[pymodule_export]
+    use crate::design::{Feedback, care, certify, dare, dlqr, hover_model, lqr, lyapunov, stein};
+    #[pymodule_export]
+    use crate::error::QuatrackError;
+    #[pymodule_export]
+    use crate::estimator::Estimator;
+    #[pymodule_export]
+    use crate::flight::{Comparison, Flight, compare, fly};
+    #[pymodule_export]
+    use crate::gains::GainTable;
+    #[pymodule_export]
+    use crate::own_law::LawInput;
+    #[pymodule_export]
+    use crate::plant::Plant;
+    #[pymodule_export]
+    use crate::reference::Reference;
+    #[pymodule_export]
+    use crate::scenario::{Course, Scenario};
+    #[pymodule_export]
+    use crate::state::State;
+    #[pymodule_export]
+    use crate::trajectory::{Player, Trajectory, plan};
+    #[pymodule_export]
+    use crate::vehicle::Vehicle;
+
+    /// Version of the workspace.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+}
