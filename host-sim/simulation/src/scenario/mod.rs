@@ -43,4 +43,4 @@ pub use laws::{Law, LawError, ToldFigures, start_table};
 pub use recording::{Around, Recording};
 pub use sensors::SensorNoise;
 pub use table_law::TableLaw;
-pub use whole::{CourseChoice, FilterFigures, Scenario};
+pub use whole::{CourseChoice, FilterFigures, Scenario, StartOffset};
