@@ -43,6 +43,26 @@ pub const BRUSHLESS_20_MS: CascadeGains = CascadeGains::table([
     0.05982313,
 ]);
 
+/// Crazyflie 2.1 Brushless, 100 ms.
+pub const BRUSHLESS_100_MS: CascadeGains = CascadeGains::table([
+    0.31289828,
+    0.15767089,
+    1.0528648,
+    -0.2157969,
+    -0.10963845,
+    0.22030026,
+    0.022460125,
+    3.4927988,
+    0.21606135,
+    0.110440195,
+    0.22390665,
+    0.02316119,
+    3.3745265,
+    0.011147281,
+    0.0087938,
+    0.2956891,
+]);
+
 /// Crazyflie 2.1, 100 ms: where no lag is stated.
 pub const CRAZYFLIE_2_1_100_MS: CascadeGains = CascadeGains::table([
     0.31222016,

@@ -5,7 +5,6 @@
 //! |---|---|
 //! | `gains/generated/*` | `gains/*.toml` |
 //! | `core/src/gains/paper.rs` | the paper's weights |
-//! | `crazyflie/src/builtin/motor_gains.rs` | `gains/actuator-*.toml` |
 //! | `crazyflie/src/builtin/paper_limits.rs` | `gains/lyap-*.toml`, `gains/lqr-*.toml` |
 //! | `plans/*.rs` | `plans/*.toml` |
 
@@ -17,7 +16,7 @@ use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::{PiecewisePolynomial, PolynomialError};
 use thiserror::Error;
 
-use crate::crazyflie::{CodegenError, motor_gains, paper_limits};
+use crate::crazyflie::{CodegenError, paper_limits};
 use crate::gains::{Checked, Comparison, Failed, check_folder};
 
 /// A solver's last digits differ between machines, and with them those of the coefficients: by at most this share of a
@@ -70,7 +69,6 @@ fn sources(root: &Path) -> Result<Vec<Checked>, GenerateError> {
     };
     Ok(vec![
         exact("core/src/gains/paper.rs", codegen::paper_tables()?),
-        exact("crazyflie/src/builtin/motor_gains.rs", motor_gains()?),
         exact("crazyflie/src/builtin/paper_limits.rs", paper_limits()?),
         planned("plans/mild.rs", "MILD", paper::mild()?)?,
         planned("plans/aggressive.rs", "AGGRESSIVE", paper::aggressive()?)?,

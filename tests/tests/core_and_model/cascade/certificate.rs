@@ -1,7 +1,7 @@
 //! The design's gains against another solver's, and the certificate's loop against the core's own step.
 
 use nalgebra::{DMatrix, Vector3};
-use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
+use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory, Followed};
 use quatrack::gains::cascade as tables;
 use quatrack::{FifthOrderSample, Heading, Quaternion, Rate, State};
 use quatrack_design::certify::cascade::{CascadeChain, CascadeCraft, CascadeRegion, CascadeVariation};
@@ -38,6 +38,7 @@ fn the_gains_are_those_of_another_solver() {
 fn the_tables_in_the_core_are_the_designs() {
     for (name, lag_s, table) in [
         ("crazyflie-2.1-brushless", 0.05, tables::BRUSHLESS_50_MS),
+        ("crazyflie-2.1-brushless", 0.1, tables::BRUSHLESS_100_MS),
         ("crazyflie-2.1-brushless", 0.02, tables::BRUSHLESS_20_MS),
         ("crazyflie-2.1", 0.1, tables::CRAZYFLIE_2_1_100_MS),
         ("crazyflie-2.1", 0.0635, tables::CRAZYFLIE_2_1_63_MS),
@@ -110,7 +111,13 @@ fn flown_by_the_core(
             velocity_m_s: plant.v.cast(),
         };
         let rates = plant.w.cast();
-        let input = CascadeInput { state: &state, body_rates_rad_s: &rates, sample: &sample, heading: Heading::ZERO };
+        let input = CascadeInput {
+            state: &state,
+            body_rates_rad_s: &rates,
+            sample: &sample,
+            heading: Heading::ZERO,
+            followed: Followed::ALL,
+        };
         let felt = plant.felt.cast();
         let (forces, _) = core.step(&mut memory, &mut forces_n, &input, Some(&felt)).unwrap();
         for _ in 0..4 {

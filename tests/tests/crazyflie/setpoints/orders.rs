@@ -134,7 +134,7 @@ fn the_high_level_commander_takes_over_after_a_few_null_setpoints() {
 
 #[test]
 fn a_turn_in_place_is_followed() {
-    for (duration_s, bound_deg) in [(1.0_f32, 2.0), (2.0, 0.5)] {
+    for (duration_s, bound_deg) in [(1.0_f32, 4.0), (2.0, 1.6)] {
         let mut flight = Flight::of("crazyflie-2.1", 0, 0.0);
         flight.hold(&hover([0.0, 0.0], 0.0, 1.0), 500);
         let from = Planned::at([0.0, 0.0, 1.0], 0.0);
