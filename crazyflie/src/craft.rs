@@ -1,6 +1,7 @@
 //! The crafts that there are tables for: the figures that the firmware was built with in, the craft out.
 
-use quatrack::gains::table::{Name, Vehicle};
+use quatrack::gains::cascade as tables;
+use quatrack::gains::table::{BuiltInCascade, Vehicle};
 use quatrack::{Actuation, Air, Airframe, AirframeFigures, BodyRateLoop, Rate};
 
 /// Control steps a second: every other one of the firmware's.
@@ -66,13 +67,13 @@ pub struct Known {
 
 /// The crafts that the controller knows.
 pub const KNOWN: [Known; 3] = [
-    known("crazyflie-2.1", 0x8983_3c06, Airframe::CRAZYFLIE_2_1, Air::BRUSHED),
-    known("crazyflie-2.1-upgrade", 0x16e2_9a50, Airframe::CRAZYFLIE_2_1_UPGRADE_KIT, Air::BRUSHED),
-    known("crazyflie-2.1-brushless", 0x9d0c_0d9b, Airframe::CRAZYFLIE_2_1_BRUSHLESS, Air::BRUSHLESS),
+    known(tables::CRAZYFLIE_2_1_DEFAULT, Airframe::CRAZYFLIE_2_1),
+    known(tables::UPGRADE_KIT_DEFAULT, Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
+    known(tables::BRUSHLESS_DEFAULT, Airframe::CRAZYFLIE_2_1_BRUSHLESS),
 ];
 
-const fn known(name: &str, id: u32, airframe: Airframe, air: Air) -> Known {
-    Known { airframe, vehicle: Vehicle { name: Name::literal(name), id }, air }
+const fn known(table: BuiltInCascade, airframe: Airframe) -> Known {
+    Known { airframe, vehicle: table.vehicle, air: table.table.air }
 }
 
 /// Largest relative difference of a figure from the one that the tables were made for: what is left out of it in rounding.

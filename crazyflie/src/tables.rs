@@ -1,7 +1,7 @@
 //! Tables to fly: those in the image and an uploaded one in; gains as flown, scaled within what their certificate allows,
 //! out.
 
-use quatrack::gains::table::{AcceptError, GainTable, margin_behind};
+use quatrack::gains::table::{AcceptError, CascadeTable, GainTable, margin_behind};
 use quatrack::gains::{ConstantGain, Decoupled, Scales, paper};
 use quatrack::{
     Actuation, Air, Cascade, CascadeGains, CascadeLimits, Controller, ControllerError, FeedForward, Law, Limits,
@@ -148,9 +148,8 @@ impl Table {
     /// [`Refusal::Unknown`] where there is none.
     #[inline(never)]
     pub fn for_published_lags(craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
-        let (cascades, unstated) = builtin::CASCADES.get(craft.index).ok_or(Refusal::Unknown)?;
-        let found = cascades.get(*unstated).ok_or(Refusal::Unknown)?;
-        Self::of_cascade(&found.gains, found.lag_s, craft, tuning)
+        let (_, unstated) = builtin::CASCADES.get(craft.index).ok_or(Refusal::Unknown)?;
+        Self::of_cascade(&unstated.gains, unstated.lag_s, craft, tuning)
     }
 
     /// Gains of a cascade on a craft whose motors are taken to have a lag.
@@ -186,10 +185,23 @@ impl Table {
     #[inline(never)]
     fn uploaded(table: &GainTable<'static>, craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
         let accepted = table.accept_for(&craft.vehicle, RATE)?;
+        if let Some(cascade) = accepted.cascade() {
+            return Self::sent_cascade(cascade, craft, tuning);
+        }
         let gain = table.gain().ok_or(Refusal::Law)?;
         let margin = accepted.margin_behind(craft.motor_lag_s)?;
         let actuation = accepted.actuation(&craft.actuation);
         Ok(Self::constant(TableId::Uploaded, gain, actuation, margin, accepted.limits(), tuning))
+    }
+
+    /// A cascade that was sent, with its own air where the owner has not stated another than the craft's.
+    fn sent_cascade(table: &CascadeTable, craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
+        if !table.certified.holds_lag(craft.motor_lag_s) {
+            return Err(Refusal::MotorLag);
+        }
+        let air = if tuning.air == craft.air { table.air } else { tuning.air };
+        let found = Self::of_cascade(&table.gains, table.motor_lag_s, craft, &Tuning { air, ..*tuning })?;
+        Ok(Self { id: TableId::Uploaded, ..found })
     }
 
     /// Of a gain whose feedback is scaled as far as its margin allows.

@@ -262,11 +262,10 @@ impl Laws {
     fn controller_of(&self, choice: &LawChoice) -> Option<Controller<'_>> {
         let Table::Loaded(slot) = choice.table else { return self.built_in(choice) };
         let settings = Settings {
-            limits: self.limits,
             actuation: self.actuations.of(choice.table),
             feed_forward: choice.feed_forward,
             error_form: choice.error_form,
-            player_rate: TICK_RATE,
+            ..Settings::new(self.limits, TICK_RATE)
         };
         loaded(&self.store.table(slot)?, &settings)
     }

@@ -3,7 +3,8 @@
 mod paper_limits;
 
 use quatrack::CascadeGains;
-use quatrack::gains::cascade as gains;
+use quatrack::gains::cascade as tables;
+use quatrack::gains::table::BuiltInCascade;
 
 pub(crate) use paper_limits::{LQR_E, LQR_F, LYAP_E, LYAP_F};
 
@@ -28,35 +29,28 @@ pub(crate) struct Cascade {
 /// Shortest lag of the motors, s, that an owner may state.
 pub(crate) const STATED_FROM_S: f32 = 0.004;
 
-/// For each of [`crate::craft::KNOWN`]: the gains for stated lags, the shortest first, and the place of those that are flown where
-/// none is stated.
-pub(crate) static CASCADES: [([Cascade; 3], usize); 3] = [
+/// For each of [`crate::craft::KNOWN`]: the gains for stated lags, the shortest first, and those that are flown where none is
+/// stated.
+pub(crate) static CASCADES: [([Cascade; 3], Cascade); 3] = [
+    (by_lag(&tables::CRAZYFLIE_2_1, [0.036, 0.08, 0.126]), unstated(&tables::CRAZYFLIE_2_1_DEFAULT)),
+    (by_lag(&tables::UPGRADE_KIT, [0.036, 0.08, 0.126]), unstated(&tables::UPGRADE_KIT_DEFAULT)),
     (
-        [
-            cascade(gains::CRAZYFLIE_2_1_20_MS, 0.02, 0.036),
-            cascade(gains::CRAZYFLIE_2_1_63_MS, 0.0635, 0.08),
-            cascade(gains::CRAZYFLIE_2_1_100_MS, 0.1, 0.126),
-        ],
-        2,
-    ),
-    (
-        [
-            cascade(gains::UPGRADE_KIT_20_MS, 0.02, 0.036),
-            cascade(gains::UPGRADE_KIT_63_MS, 0.0635, 0.08),
-            cascade(gains::UPGRADE_KIT_100_MS, 0.1, 0.126),
-        ],
-        2,
-    ),
-    (
-        [
-            cascade(gains::BRUSHLESS_20_MS, 0.02, 0.032),
-            cascade(gains::BRUSHLESS_50_MS, 0.05, 0.07),
-            Cascade { as_stated: false, ..cascade(gains::BRUSHLESS_100_MS, 0.1, 0.126) },
-        ],
-        1,
+        {
+            let [short, known, long] = by_lag(&tables::BRUSHLESS, [0.032, 0.07, 0.126]);
+            [short, known, Cascade { as_stated: false, ..long }]
+        },
+        unstated(&tables::BRUSHLESS_DEFAULT),
     ),
 ];
 
-const fn cascade(gains: CascadeGains, lag_s: f32, stated_to_s: f32) -> Cascade {
-    Cascade { gains, lag_s, stated_to_s, as_stated: true }
+const fn by_lag([a, b, c]: &[BuiltInCascade; 3], [to_a_s, to_b_s, to_c_s]: [f32; 3]) -> [Cascade; 3] {
+    [cascade(a, to_a_s), cascade(b, to_b_s), cascade(c, to_c_s)]
+}
+
+const fn unstated(table: &BuiltInCascade) -> Cascade {
+    cascade(table, table.table.motor_lag_s)
+}
+
+const fn cascade(BuiltInCascade { table, .. }: &BuiltInCascade, stated_to_s: f32) -> Cascade {
+    Cascade { gains: table.gains, lag_s: table.motor_lag_s, stated_to_s, as_stated: true }
 }

@@ -55,7 +55,7 @@ fn a_stated_lag_is_flown_as_closely_on_every_craft() {
             (0.020, bars),
             (0.0635, bars),
             (
-                if name.ends_with("brushless") { 0.1 } else { 0.126 },
+                if name.ends_with("brushless") { 0.07 } else { 0.126 },
                 [0.003, 0.0235, 0.024, 0.065, 0.045, 0.005, 0.0102, 0.048, 0.008],
             ),
         ] {
@@ -84,7 +84,7 @@ fn at_the_corners_of_its_certificate_it_still_flies_the_figure() {
     for name in ["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"] {
         let craft = vehicle(name);
         for stated_s in
-            [0.004, 0.020, 0.036, 0.0361, 0.080, 0.0801, if name.ends_with("brushless") { 0.1 } else { 0.126 }]
+            [0.004, 0.020, 0.036, 0.0361, 0.080, 0.0801, if name.ends_with("brushless") { 0.07 } else { 0.126 }]
         {
             for (lag_factor, mass_factor, inertia_factor) in [(1.25, 0.8, 1.3), (1.25, 1.2, 1.3), (0.75, 0.8, 0.7)] {
                 let off = Case { mass_factor, inertia_factor, late_steps: 10, ..case(lag_factor * stated_s) };

@@ -41,12 +41,20 @@ fn flown(table: &Table) -> (f32, CascadeGains) {
 fn stated() -> [[(f32, CascadeGains); 3]; 3] {
     [
         [
-            (0.036, tables::CRAZYFLIE_2_1_20_MS),
-            (0.08, tables::CRAZYFLIE_2_1_63_MS),
-            (0.126, tables::CRAZYFLIE_2_1_100_MS),
+            (0.036, tables::CRAZYFLIE_2_1_20_MS.table.gains),
+            (0.08, tables::CRAZYFLIE_2_1_63_MS.table.gains),
+            (0.126, tables::CRAZYFLIE_2_1_100_MS.table.gains),
         ],
-        [(0.036, tables::UPGRADE_KIT_20_MS), (0.08, tables::UPGRADE_KIT_63_MS), (0.126, tables::UPGRADE_KIT_100_MS)],
-        [(0.032, tables::BRUSHLESS_20_MS), (0.07, tables::BRUSHLESS_50_MS), (0.126, tables::BRUSHLESS_100_MS)],
+        [
+            (0.036, tables::UPGRADE_KIT_20_MS.table.gains),
+            (0.08, tables::UPGRADE_KIT_63_MS.table.gains),
+            (0.126, tables::UPGRADE_KIT_100_MS.table.gains),
+        ],
+        [
+            (0.032, tables::BRUSHLESS_20_MS.table.gains),
+            (0.07, tables::BRUSHLESS_50_MS.table.gains),
+            (0.126, tables::BRUSHLESS_110_MS.table.gains),
+        ],
     ]
 }
 
@@ -61,7 +69,7 @@ fn a_stated_lag_is_flown_with_the_gains_that_are_certified_for_it() {
         for (longest_s, gains) in of_craft {
             for lag_s in [shortest_s, longest_s] {
                 // Brushless motors as slow as that are flown with a table for 50 to 126 ms, as it is.
-                let flown_s = if gains == tables::BRUSHLESS_100_MS { 0.1 } else { lag_s };
+                let flown_s = if gains == tables::BRUSHLESS_110_MS.table.gains { 0.11 } else { lag_s };
                 assert_eq!(flown(&chosen(lag_s).unwrap()), (flown_s, gains), "{index} at {lag_s} s");
             }
             shortest_s = longest_s + 0.001;
@@ -81,8 +89,8 @@ fn what_flies_with_a_stated_lag_is_stable_with_that_off_by_a_quarter_and_everyth
         let told = air.moment_n_s.map(f64::from);
         let mut shortest_s = 0.004;
         for (longest_s, gains) in of_craft {
-            let as_stated = gains != tables::BRUSHLESS_100_MS;
-            let ends_s = if as_stated { vec![shortest_s, longest_s] } else { vec![0.1] };
+            let as_stated = gains != tables::BRUSHLESS_110_MS.table.gains;
+            let ends_s = if as_stated { vec![shortest_s, longest_s] } else { vec![0.11] };
             for lag_s in ends_s.into_iter().map(f64::from) {
                 let craft = CascadeCraft {
                     // 80 % of the identified air are told.
@@ -280,6 +288,36 @@ fn an_actuator_aware_table_is_refused_by_name_and_gains_along_a_trajectory_too()
 }
 
 #[test]
+fn a_cascade_that_is_sent_flies_where_it_is_certified() {
+    let craft = vehicles::by_name("crazyflie-2.1").unwrap();
+    let mut firmware = Firmware::start(&craft, &Tune::new(5, 0.0635).in_vacuum(), QUIET);
+    assert_eq!(send(include_bytes!("../../../gains/generated/cascade-brushless-50ms.bin")), Status::Vehicle as u8);
+    assert_eq!(send(include_bytes!("../../../gains/generated/cascade-63ms.bin")), Status::Taken as u8);
+    ffi::quatrackService();
+    assert_eq!(ffi::quatrack.log.table.load(Relaxed), 5);
+    let mut plant = Craft::new(&craft);
+    plant.motors = plant.motors.with_lag(0.0635, 0.0635);
+    let mut state = RigidState::at_rest(Vector3::z(), craft.hover_thrust_n());
+    let course = Course::FigureEight(1.485);
+    let mut strayed = 0.0;
+    for step in 0..10_000_u32 {
+        let t_s = f64::from(step) * 1e-3;
+        firmware.command(&course, t_s, Setpoints::HighLevel);
+        let commands_n = firmware.step(&state, None);
+        if step >= 6000 {
+            strayed += (state.position_m - course.position_m(t_s).unwrap()).norm() * 1e-3;
+        }
+        state = plant.hold(&state, &commands_n, t_s, 1e-3);
+    }
+    // A third of what 12 s of the table in the image may stray.
+    assert!(strayed < 0.0008, "{strayed} m s");
+    // Certified to 95 ms.
+    ffi::quatrack.parameters.motor_lag_s.set(0.1);
+    ffi::quatrackService();
+    assert_eq!(ffi::quatrack.log.refusal.load(Relaxed), Refusal::MotorLag as u16);
+}
+
+#[test]
 fn a_table_with_an_integral_flies() {
     let craft = vehicles::by_name("crazyflie-2.1").unwrap();
     let mut firmware = Firmware::start(&craft, &Tune::new(0, 0.0178), QUIET);
@@ -315,7 +353,7 @@ fn what_is_damaged_uncertified_or_for_another_craft_is_refused_and_changes_nothi
     assert_eq!(send(&damaged), Status::Checksum as u8);
     // The hash of the certificate, at the end of the head but for its seven figures.
     let mut uncertified = good.clone();
-    let hash_at = 8 + 3 + 2 * 24 + 8 + 20 + 32;
+    let hash_at = 8 + 3 + 2 * Name::BYTES + 8 + 20 + 32;
     uncertified[hash_at..hash_at + 32].fill(0);
     assert_eq!(send(&with_checksum(uncertified)), Status::Table as u8);
     assert_eq!(send(&known_lag_table(KNOWN[2].vehicle)), Status::Vehicle as u8);

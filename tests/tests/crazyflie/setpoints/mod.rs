@@ -3,6 +3,6 @@
 mod by_hand;
 pub(crate) mod flight;
 mod goals;
-mod orders;
+pub(crate) mod orders;
 pub(crate) mod planner;
 pub(crate) mod sent;
