@@ -144,8 +144,8 @@ impl AirLearner {
     /// The air that is flown with.
     pub(super) const fn now(&self, seen: &SeenAir) -> Coefficients {
         match seen.learned {
-            Some(learned) => learned,
-            None => self.told,
+            Some(learned) if self.learn => learned,
+            _ => self.told,
         }
     }
 

@@ -44,7 +44,7 @@ enum Command {
         json: Option<PathBuf>,
     },
     /// Writes every generated file that is not what its design gives: the tables of a folder and, in a checkout, the
-    /// sources made of them: core/src/gains/paper.rs and cascade.rs, crazyflie/src/builtin/motor_gains.rs and paper_limits.rs, plans/*.rs.
+    /// sources made of them: core/src/gains/paper.rs and cascade.rs, crazyflie/src/builtin/paper_limits.rs, plans/*.rs.
     ///
     /// A file that `check` passes stays as it is. Exit code 1 for a file that no design gives.
     Generate {

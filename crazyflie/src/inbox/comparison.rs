@@ -1,13 +1,10 @@
-//! Whether a setpoint is new: two of them in; whether they are of one kind, and whether they ask for the same, out.
-
-use quatrack::nalgebra::Vector3;
+//! Setpoint comparison: whether two are of one kind, and whether they ask for the same.
 
 use crate::abi;
-use crate::demand::Motion;
 
-/// Whether a setpoint is of another kind than the one before: not to be put off.
-#[inline]
-pub fn is_urgent(before: &abi::Setpoint, setpoint: &abi::Setpoint) -> bool {
+/// Whether a setpoint is of another kind than the one before.
+#[inline(always)]
+pub(super) fn is_another_kind(before: &abi::Setpoint, setpoint: &abi::Setpoint) -> bool {
     words(before) != words(setpoint)
 }
 
@@ -16,8 +13,8 @@ pub fn is_urgent(before: &abi::Setpoint, setpoint: &abi::Setpoint) -> bool {
 /// The commander stamps every setpoint that it takes: one with the same stamp can differ only in what the supervisor, when
 /// it levels the craft, and collision avoidance change, and in the thrust, of which two may come within a millisecond.
 /// Without a stamp all of it is looked at.
-#[inline]
-pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
+#[inline(always)]
+pub(super) fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
     if a.timestamp != b.timestamp {
         return false;
     }
@@ -34,21 +31,6 @@ pub fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
         && a.attitude.pitch.to_bits() == b.attitude.pitch.to_bits()
         && a.attitude_rate.yaw.to_bits() == b.attitude_rate.yaw.to_bits()
         && a.thrust.to_bits() == b.thrust.to_bits()
-}
-
-/// The same while a trajectory is flown, whose last setpoint had this motion: levelling has other modes.
-#[inline(always)]
-pub fn is_same_along(a: &abi::Setpoint, motion: &Motion, b: &abi::Setpoint) -> bool {
-    if b.timestamp == 0 {
-        return is_same(a, b);
-    }
-    let vectors = |a: &Vector3<f32>, b: &abi::Vector| {
-        ((a.x.to_bits() ^ b.x.to_bits()) | (a.y.to_bits() ^ b.y.to_bits()) | (a.z.to_bits() ^ b.z.to_bits())) == 0
-    };
-    a.timestamp == b.timestamp
-        && words(a) == words(b)
-        && vectors(&motion.position_m, &b.position)
-        && vectors(&motion.velocity_m_s, &b.velocity)
 }
 
 #[inline(never)]
@@ -77,7 +59,7 @@ fn is_all_the_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
 }
 
 /// Modes and the frame of the velocity, as two words of the target.
-#[inline]
+#[inline(always)]
 #[allow(clippy::unnecessary_cast, reason = "an enum is four bytes where enums are not short")]
 fn words(setpoint: &abi::Setpoint) -> [u32; 2] {
     let abi::Modes { x, y, z, roll, pitch, yaw, quat } = &setpoint.mode;

@@ -1,8 +1,8 @@
-//! From what a setpoint asks to a flat sample that the laws follow: position and velocity demands, tilts, and turns in; a
-//! motion with heading out.
+//! Setpoint shaping: what a request that is no motion to be followed becomes, velocities, tilts and turns in, a motion with
+//! heading out.
 //!
-//! What a demand leaves free is taken from the measured state, so that the laws see no error there: at a tilt, position
-//! and velocity over the ground; under manual thrust, height and climb. A velocity demand becomes a position that moves
+//! What a request leaves free is taken from the measured state, so that the laws see no error there: at a tilt, position
+//! and velocity over the ground; under manual thrust, height and climb. A velocity setpoint becomes a position that moves
 //! with it, speeding up no faster than [`Bounds`] allow, and never far from where the craft is.
 
 use quatrack::flatness::GRAVITY_M_S2;
@@ -10,66 +10,57 @@ use quatrack::math::sqrt;
 use quatrack::nalgebra::Vector3;
 use quatrack::{FifthOrderSample, Heading, Leash, State};
 
-use crate::demand::{Flight, Horizontal, Turn, Vertical};
+use crate::heading::HeadingStream;
+use crate::request::{Horizontal, Request, Turn, Vertical};
 use crate::stream::Stream;
-use crate::turning::Turning;
 
 /// How fast and how far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Largest speed of a velocity demand, m/s, over the ground and up or down.
+    /// Largest speed of a velocity setpoint, m/s, over the ground and up or down.
     pub speed_m_s: f32,
-    /// Largest acceleration of a velocity demand, m/s^2.
+    /// Largest acceleration of a velocity setpoint, m/s^2.
     pub acceleration_m_s2: f32,
-    /// Farthest that a position or a velocity is asked for from the measured one.
+    /// Farthest that a position or a velocity is asked for from the measured one, of a law without limits of its own.
     pub leash: Leash,
 }
 
-/// How fast a velocity demand is taken up, 1/s.
+/// How fast a velocity setpoint is taken up, 1/s.
 const VELOCITY_BANDWIDTH_1_S: f32 = 6.0;
 
-/// How far the position of a velocity demand may run ahead of the craft along each axis, m.
+/// How fast a craft goes down whose setpoint makes no sense, m/s.
+const DESCENT_M_S: f32 = 0.3;
+
+/// How far the position of a velocity setpoint may run ahead of the craft along each axis, m.
 const LEAD_MAX_M: f32 = 0.25;
 
-/// What is integrated over time: the point that a velocity demand moves, the heading that a turn rate moves.
+/// What is integrated over time: the point that a velocity setpoint moves, the heading that a turn rate moves.
 #[derive(Clone, Copy, Debug)]
-pub struct Guide {
+pub struct Shaping {
     position_m: Vector3<f32>,
     velocity_m_s: Vector3<f32>,
     heading_rad: f32,
     period_s: f32,
 }
 
-/// A flight at one step.
+/// What a step shapes, and from what.
 #[derive(Clone, Copy, Debug)]
-pub struct Along<'a> {
-    /// How to fly.
-    pub flight: &'a Flight,
-    /// Along what.
+pub struct Shaped<'a> {
+    /// What is asked for.
+    pub request: &'a Request,
+    /// Motions.
     pub stream: &'a Stream,
-    /// With which heading, where it has one.
-    pub turning: &'a Turning,
+    /// Headings.
+    pub headings: &'a HeadingStream,
     /// When.
     pub now_ms: u32,
     /// Whether the law looks beyond the jerk.
-    pub to_fifth: bool,
-    /// Of the craft.
-    pub mass_kg: f32,
+    pub beyond_jerk: bool,
+    /// Of all motors together over the mass, m/s^2.
+    pub thrust_max_m_s2: f32,
 }
 
-impl Along<'_> {
-    /// What to follow at this step of a flight for which [`Flight::is_along`]: the motion into `sample`, whose angle of
-    /// heading is not used, and the heading.
-    #[inline(always)]
-    pub fn put(&self, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) -> Heading {
-        self.stream.at(self.now_ms, self.to_fifth, sample);
-        let heading = self.turning.at(self.now_ms, sample);
-        bounds.leash.draw(&mut sample.flat.position_m, &mut sample.flat.velocity_m_s, state);
-        heading
-    }
-}
-
-impl Guide {
+impl Shaping {
     /// At the origin; to be put somewhere by [`Self::begin`].
     pub const fn new(period_s: f32) -> Self {
         let zero = Vector3::new(0.0, 0.0, 0.0);
@@ -83,20 +74,25 @@ impl Guide {
         self.heading_rad = heading_rad;
     }
 
-    /// What to follow at this step of a flight that goes along a stream: the motion into `sample`, whose angle of heading
-    /// is not used, and the heading. Not for a horizontal that asks for body rates, which no flat sample has.
-    #[inline]
-    pub fn put(&mut self, along: &Along<'_>, state: &State, bounds: &Bounds, sample: &mut FifthOrderSample) -> Heading {
-        let flight = along.flight;
-        along.stream.at(along.now_ms, along.to_fifth, sample);
-        let heading = match &flight.turn {
-            Turn::Heading { .. } => along.turning.at(along.now_ms, sample),
-            Turn::Rate(rate_rad_s) => self.turn(sample, *rate_rad_s),
+    /// What to follow at this step: the motion into `sample`, whose angle of heading is not used, and the heading. Not for
+    /// a horizontal that asks for body rates, which no flat sample has.
+    #[inline(never)]
+    pub fn put(
+        &mut self,
+        shaped: &Shaped<'_>,
+        state: &State,
+        bounds: &Bounds,
+        sample: &mut FifthOrderSample,
+    ) -> Heading {
+        let request = shaped.request;
+        shaped.stream.at(shaped.now_ms, shaped.beyond_jerk, sample);
+        let heading = match request.turn {
+            Turn::Heading => shaped.headings.at(shaped.now_ms, sample),
+            Turn::Rate(rate_rad_s) => self.turn(sample, rate_rad_s),
         };
-        if !matches!((&flight.horizontal, &flight.vertical), (Horizontal::Position, Vertical::Position)) {
-            self.fill(sample, &heading, along, state, bounds);
+        if !matches!((&request.horizontal, &request.vertical), (Horizontal::Position, Vertical::Position)) {
+            self.fill(sample, &heading, shaped, state, bounds);
         }
-        bounds.leash.draw(&mut sample.flat.position_m, &mut sample.flat.velocity_m_s, state);
         heading
     }
 
@@ -120,25 +116,27 @@ impl Guide {
         &mut self,
         sample: &mut FifthOrderSample,
         heading: &Heading,
-        along: &Along<'_>,
+        shaped: &Shaped<'_>,
         state: &State,
         bounds: &Bounds,
     ) {
-        let (flight, mass_kg) = (along.flight, along.mass_kg);
+        let request = shaped.request;
         // As it was sent: a velocity holds until another one comes.
-        let asked = along.stream.newest().velocity_m_s;
+        let asked = shaped.stream.newest().velocity_m_s;
         let zero = Vector3::new(0.0, 0.0, 0.0);
         // Derivatives of a motion along some axes only, or of none.
         (sample.flat.jerk_m_s3, sample.snap_m_s4, sample.crackle_m_s5) = (zero, zero, zero);
         let a = &mut sample.flat.acceleration_m_s2;
-        match flight.horizontal {
+        match request.horizontal {
             Horizontal::Position => {}
-            Horizontal::Velocity { in_heading_frame } => {
+            Horizontal::Velocity { .. } | Horizontal::Brake => {
                 let (cos, sin) = heading.cos_sin();
-                let (vx, vy) = if in_heading_frame {
-                    (cos * asked.x - sin * asked.y, sin * asked.x + cos * asked.y)
-                } else {
-                    (asked.x, asked.y)
+                let (vx, vy) = match request.horizontal {
+                    Horizontal::Velocity { in_heading_frame: true } => {
+                        (cos * asked.x - sin * asked.y, sin * asked.x + cos * asked.y)
+                    }
+                    Horizontal::Velocity { .. } => (asked.x, asked.y),
+                    _ => (0.0, 0.0),
                 };
                 let speed = sqrt(vx * vx + vy * vy);
                 let share = if speed > bounds.speed_m_s { bounds.speed_m_s / speed } else { 1.0 };
@@ -157,11 +155,12 @@ impl Guide {
                 (sample.flat.velocity_m_s.x, sample.flat.velocity_m_s.y) = (state.velocity_m_s.x, state.velocity_m_s.y);
             }
         }
-        match flight.vertical {
+        match request.vertical {
             Vertical::Position => {}
-            Vertical::Velocity => {
+            Vertical::Velocity | Vertical::Descent => {
                 let (limit, v) = (bounds.speed_m_s, self.velocity_m_s.z);
-                let acceleration = VELOCITY_BANDWIDTH_1_S * (within(asked.z, -limit, limit) - v);
+                let climb = if request.vertical == Vertical::Descent { -DESCENT_M_S } else { asked.z };
+                let acceleration = VELOCITY_BANDWIDTH_1_S * (within(climb, -limit, limit) - v);
                 a.z = within(acceleration, -bounds.acceleration_m_s2, bounds.acceleration_m_s2);
                 self.velocity_m_s.z = v + a.z * self.period_s;
                 let (next, z) = (self.position_m.z + self.velocity_m_s.z * self.period_s, state.position_m.z);
@@ -169,18 +168,18 @@ impl Guide {
                 sample.flat.position_m.z = self.position_m.z;
                 sample.flat.velocity_m_s.z = self.velocity_m_s.z;
             }
-            Vertical::Thrust(thrust_n) => {
+            Vertical::Thrust(share) => {
                 sample.flat.position_m.z = state.position_m.z;
                 sample.flat.velocity_m_s.z = state.velocity_m_s.z;
-                a.z = thrust_n / mass_kg - GRAVITY_M_S2;
+                a.z = share * shaped.thrust_max_m_s2 - GRAVITY_M_S2;
             }
         }
-        if let Horizontal::Tilt(axis) = flight.horizontal {
+        if let Horizontal::Tilt(axis) = request.horizontal {
             let (cos, sin) = heading.cos_sin();
             let world = Vector3::new(cos * axis.x - sin * axis.y, sin * axis.x + cos * axis.y, axis.z);
             // Under manual thrust its direction is turned; at a height its vertical part is kept.
-            let along = match flight.vertical {
-                Vertical::Thrust(thrust_n) => thrust_n / mass_kg,
+            let along = match request.vertical {
+                Vertical::Thrust(share) => share * shaped.thrust_max_m_s2,
                 _ => (a.z + GRAVITY_M_S2) / if world.z > 0.5 { world.z } else { 0.5 },
             };
             *a = Vector3::new(world.x * along, world.y * along, world.z * along - GRAVITY_M_S2);
