@@ -121,6 +121,7 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
         output::create_dir(&folder)?;
         let document = gains::json_document(&certified);
         let mut text = format!("{}\n{}", path.display(), figures(&document));
+        text += &notes(&certified);
         for file in gains::artifacts(&certified, &folder) {
             output::write(&file.path, &file.contents)?;
             wrote(&mut text, &file.path);
@@ -136,6 +137,22 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
         output::write_json(path, &summaries)?;
     }
     Ok(())
+}
+
+/// What an owner has to know of the method.
+fn notes(certified: &Certified) -> String {
+    let (method, mass_kg) = (certified.design.problem.named().1, certified.design.vehicle.mass_kg());
+    if !matches!(method, "cascade" | "actuator-aware") {
+        return String::new();
+    }
+    let mut text = format!(
+        "  weights are as written and do not scale with the mass, {mass_kg} kg: twice the mass and inertia fly alike with a quarter \
+         of force_input\n"
+    );
+    if method == "actuator-aware" {
+        text += "  this is the law before the cascade: for a table of that write method = \"cascade\" and leave [weights] out\n";
+    }
+    text
 }
 
 /// Every figure that a design can ask for, beside what this one asks.
