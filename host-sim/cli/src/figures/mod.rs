@@ -5,6 +5,7 @@
 //! in, bytes out, the same bytes for the same data: nothing here knows controllers or writes files.
 
 mod axis;
+mod chart;
 mod compose;
 mod flight;
 mod panels;
@@ -16,6 +17,7 @@ mod svg;
 
 use nalgebra::Vector3;
 
+pub use chart::ChartFigure;
 pub use flight::{FlightFigure, Quantity, Trace};
 
 /// Coordinates and times up to this size can be told apart on an axis and labelled.

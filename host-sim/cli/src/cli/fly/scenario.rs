@@ -1,5 +1,6 @@
 //! The flight of a scenario: its law on its craft; figures, the log as CSV and a picture out.
 
+use quatrack_identify::log::{Row, cflib_csv};
 use quatrack_simulation::control_law::ControlLaw;
 use quatrack_simulation::scenario::{Recording, Scenario};
 use serde::Serialize;
@@ -40,9 +41,9 @@ impl Args {
         }
         // A table of gains has a vehicle.
         let vehicle_for_nothing = self.gains.is_none() && self.scenario.vehicle.is_some();
-        if self.plot.is_some() || self.scenario.any_but_vehicle() || vehicle_for_nothing {
+        if self.plot.is_some() || self.log.is_some() || self.scenario.any_but_vehicle() || vehicle_for_nothing {
             return Err(Failure::input(
-                "--controller and --gains fly the paper's model: leave out --plot and the flags of a scenario, or choose one of \
+                "--controller and --gains fly the paper's model: leave out --plot, --log and the flags of a scenario, or choose one of \
                  its laws by --law",
             ));
         }
@@ -138,6 +139,10 @@ fn write(args: &Args, scenario: &Scenario, figures: Report, recording: &Recordin
         output::write(&path, recording.to_csv().as_bytes())?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
+    if let Some(path) = &args.log {
+        output::write(path, log(scenario, recording).as_bytes())?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
     if let Some(path) = &args.plot {
         if recording.flight.samples.len() > 1 {
             picture::write(path, &scenario.to_string(), &figures.law, recording)?;
@@ -150,4 +155,22 @@ fn write(args: &Args, scenario: &Scenario, figures: Report, recording: &Recordin
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     figures.outcome()
+}
+
+/// What the craft would have recorded: what its law knew, and the commands as shares of the most that the law asks for.
+fn log(scenario: &Scenario, recording: &Recording) -> String {
+    let most_n = scenario.vehicle.motors().thrust_max_n;
+    let rows: Vec<Row> = (recording.flight.samples.iter().zip(&recording.around))
+        .map(|(sample, around)| Row {
+            time_s: sample.time_s,
+            position: around.estimate.position_m,
+            velocity: around.estimate.velocity_m_s,
+            attitude: around.estimate.attitude,
+            gyro: around.estimate.body_rates_rad_s,
+            specific_force: around.estimate.specific_force_m_s2,
+            commands: [0, 1, 2, 3].map(|motor| sample.commands_n[motor] / most_n),
+            voltage: Some(around.voltage_v).filter(|volts| *volts > 0.0),
+        })
+        .collect();
+    cflib_csv(&rows)
 }
