@@ -92,6 +92,9 @@ pub(crate) struct Args {
     /// Of a scenario: write a picture of the flight, its errors, tilt, motor forces and wind, .svg or .png.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    /// Of a scenario: write a log as a craft records it, which `quatrack identify` reads (CSV, the columns of cflib).
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
     #[command(flatten)]
     scenario: ScenarioArgs,
 }

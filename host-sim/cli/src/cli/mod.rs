@@ -7,6 +7,7 @@ mod crazyflie;
 mod export;
 mod fly;
 mod gains;
+mod identify;
 mod limits;
 mod manoeuvres;
 mod measure;
@@ -65,6 +66,7 @@ enum Command {
     Export(export::Args),
     Fly(fly::Args),
     Gains(gains::Args),
+    Identify(identify::Args),
     Manoeuvres(manoeuvres::Args),
     Measure(measure::Args),
     Pil(pil::Args),
@@ -89,6 +91,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Export(args) => export::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Gains(args) => gains::run(args),
+        Command::Identify(args) => identify::run(args),
         Command::Manoeuvres(args) => manoeuvres::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Pil(args) => pil::run(args),

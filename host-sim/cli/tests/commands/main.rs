@@ -7,4 +7,5 @@ mod figures;
 mod figures_png;
 mod fly_scenario;
 mod gains;
+mod identify;
 mod pil;

@@ -53,6 +53,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let scenario = Scenario { law, ..campaign.run(args.run).scenario.map_err(Failure::input)? };
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
     let (figures, recording) = fly_and_print(&scenario)?;
-    let outputs = Outputs { dir: args.out.as_deref(), json: args.json.as_deref(), plot: args.plot.as_deref() };
+    let outputs = Outputs { dir: args.out.as_deref(), json: args.json.as_deref(), plot: args.plot.as_deref(), log: None };
     outputs.write(&scenario, figures, &recording)
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use quatrack_identify::log::{Row, cflib_csv};
 use quatrack_simulation::control_law::ControlLaw;
 use quatrack_simulation::scenario::{Recording, Scenario};
 use serde::Serialize;
@@ -42,9 +43,9 @@ impl Args {
         }
         // A table of gains has a vehicle.
         let vehicle_for_nothing = self.gains.is_none() && self.scenario.vehicle.is_some();
-        if self.plot.is_some() || self.scenario.any_but_vehicle() || vehicle_for_nothing {
+        if self.plot.is_some() || self.log.is_some() || self.scenario.any_but_vehicle() || vehicle_for_nothing {
             return Err(Failure::input(
-                "--controller and --gains fly the paper's model: leave out --plot and the flags of a scenario, or choose one of \
+                "--controller and --gains fly the paper's model: leave out --plot, --log and the flags of a scenario, or choose one of \
                  its laws by --law",
             ));
         }
@@ -85,7 +86,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Some((path, table)) => table::in_scenario(path, table, &scenario, &|law, name| fly_law(&scenario, law, name))?,
         None => fly_and_print(&scenario)?,
     };
-    let outputs = Outputs { dir: args.out.as_deref(), json: args.json.as_deref(), plot: args.plot.as_deref() };
+    let outputs = Outputs { dir: args.out.as_deref(), json: args.json.as_deref(), plot: args.plot.as_deref(), log: args.log.as_deref() };
     outputs.write(&scenario, figures, &recording)
 }
 
@@ -97,6 +98,8 @@ pub(in crate::cli) struct Outputs<'a> {
     pub(in crate::cli) json: Option<&'a Path>,
     /// The picture.
     pub(in crate::cli) plot: Option<&'a Path>,
+    /// A log as a craft records it, CSV.
+    pub(in crate::cli) log: Option<&'a Path>,
 }
 
 /// Flies a scenario with its law and prints the figures.
@@ -161,6 +164,10 @@ impl Outputs<'_> {
             output::write(&path, recording.to_csv().as_bytes())?;
             output::print(&format!("wrote {}\n", path.display()))?;
         }
+        if let Some(path) = self.log {
+            output::write(path, log(scenario, recording).as_bytes())?;
+            output::print(&format!("wrote {}\n", path.display()))?;
+        }
         if let Some(path) = self.plot {
             if recording.flight.samples.len() > 1 {
                 picture::write(path, &scenario.to_string(), &figures.law, recording)?;
@@ -174,4 +181,22 @@ impl Outputs<'_> {
         }
         figures.outcome()
     }
+}
+
+/// What the craft would have recorded: what its law knew, and the commands as shares of the most that the law asks for.
+fn log(scenario: &Scenario, recording: &Recording) -> String {
+    let most_n = scenario.vehicle.motors().thrust_max_n;
+    let rows: Vec<Row> = (recording.flight.samples.iter().zip(&recording.around))
+        .map(|(sample, around)| Row {
+            time_s: sample.time_s,
+            position: around.estimate.position_m,
+            velocity: around.estimate.velocity_m_s,
+            attitude: around.estimate.attitude,
+            gyro: around.estimate.body_rates_rad_s,
+            specific_force: around.estimate.specific_force_m_s2,
+            commands: [0, 1, 2, 3].map(|motor| sample.commands_n[motor] / most_n),
+            voltage: Some(around.voltage_v).filter(|volts| *volts > 0.0),
+        })
+        .collect();
+    cflib_csv(&rows)
 }
