@@ -36,7 +36,7 @@ pub(super) fn show(path: &Path, json: Option<&Path>) -> Result<(), Failure> {
         }
     };
     output::print(&text)?;
-    json.map_or(Ok(()), |path| output::write_json(path, &document))
+    json.map_or(Ok(()), |path| output::write_json(path, &output::Named::new("gains-show", &document)))
 }
 
 /// What a document says of its design and its gains.
