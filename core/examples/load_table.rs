@@ -4,9 +4,7 @@
 
 use quatrack::gains::table::GainTable;
 use quatrack::nalgebra::Vector3;
-use quatrack::{
-    Actuation, Airframe, FeedForward, Limits, Measured, Memory, MotorReference, Settings, State, Target,
-};
+use quatrack::{Actuation, Airframe, FeedForward, Limits, Measured, Memory, MotorReference, Settings, State, Target};
 
 fn main() -> Result<(), Box<dyn core::error::Error>> {
     let path = std::env::args().nth(1).ok_or("which table? for example gains/generated/sampled-lqr-e.bin")?;

@@ -8,10 +8,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 8] = [
+const CRATES: [&str; 9] = [
     "core",
     "crazyflie",
     "firmware",
+    "host-sim/campaign",
     "host-sim/design",
     "host-sim/plan",
     "host-sim/identify",

@@ -95,6 +95,9 @@ pub(crate) struct Args {
     /// Of a scenario: write a log as a craft records it, which `quatrack identify` reads (CSV, the columns of cflib).
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
+    /// Of a scenario: write the flight for Foxglove and PlotJuggler, .mcap. Needs a command built with --features mcap.
+    #[arg(long, value_name = "FILE")]
+    mcap: Option<PathBuf>,
     #[command(flatten)]
     scenario: ScenarioArgs,
 }
@@ -389,7 +392,7 @@ fn report(args: &Args, flown: &DescribedFlight) -> Result<(), Failure> {
     }
     if let Some(path) = &args.json {
         let lost = flight.lost.as_ref().map(|lost| format!("{:.2} s: {}", lost.time_s, lost.reason));
-        output::write_json(path, &FlightReport { metrics, lost })?;
+        output::write_json(path, &output::Named::new("fly-trajectory", &FlightReport { metrics, lost }))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

@@ -134,7 +134,7 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
         summaries.push(json!({ "design": path, "name": document["name"], "figures": document["figures"] }));
     }
     if let Some(path) = json {
-        output::write_json(path, &summaries)?;
+        output::write_json(path, &output::Named::new("gains-design", &json!({ "designs": summaries })))?;
     }
     Ok(())
 }
@@ -219,7 +219,7 @@ fn check(paths: &[PathBuf], json: Option<&Path>) -> Result<(), Failure> {
     if let Some(path) = json {
         let files: Vec<Value> =
             checked.iter().map(|file| json!({ "file": file.path, "difference": file.difference })).collect();
-        output::write_json(path, &files)?;
+        output::write_json(path, &output::Named::new("gains-check", &json!({ "files": files })))?;
     }
     let differing: Vec<&Checked> = checked.iter().filter(|file| file.difference.is_some()).collect();
     match differing.split_first() {
@@ -312,5 +312,7 @@ fn list(folder: Option<&Path>, json: Option<&Path>) -> Result<(), Failure> {
         );
     }
     output::print(&text)?;
-    json.map_or(Ok(()), |path| output::write_json(path, &entries))
+    json.map_or(Ok(()), |path| {
+        output::write_json(path, &output::Named::new("gains-list", &json!({ "designs": entries })))
+    })
 }

@@ -99,7 +99,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     if let Some(path) = &args.json {
-        output::write_json(path, &report)?;
+        output::write_json(path, &output::Named::new("manoeuvres", &report))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

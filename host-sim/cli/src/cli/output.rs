@@ -52,6 +52,21 @@ pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
     })
 }
 
+/// A value with what it is before its own keys: `"schema": "quatrack/NAME/1"`. The forms are in `docs/json.md`.
+#[derive(Serialize)]
+pub(crate) struct Named<'a, T> {
+    schema: String,
+    #[serde(flatten)]
+    value: &'a T,
+}
+
+impl<'a, T: Serialize> Named<'a, T> {
+    /// Of a value with keys.
+    pub(crate) fn new(name: &str, value: &'a T) -> Self {
+        Self { schema: format!("quatrack/{name}/1"), value }
+    }
+}
+
 /// Writes `value` as JSON, ended by a line feed.
 pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), Failure> {
     let mut text = serde_json::to_string_pretty(value)

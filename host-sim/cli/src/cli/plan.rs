@@ -50,7 +50,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         control_points_m: curve.control_points_m().iter().map(|point| [point.x, point.y, point.z]).collect(),
     };
     if let Some(json) = &args.json {
-        output::write_json(json, &contents)?;
+        output::write_json(json, &output::Named::new("plan", &contents))?;
     }
     if let Some(toml) = &args.toml {
         output::write(toml, as_toml(&contents).as_bytes())?;

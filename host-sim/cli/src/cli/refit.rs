@@ -119,7 +119,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     if let Some(path) = &args.json {
-        output::write_json(path, &report)?;
+        output::write_json(path, &output::Named::new("refit", &report))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

@@ -54,7 +54,8 @@ fn what_is_committed_is_what_the_designs_give() {
     let json = folder("committed").join("checked.json");
     assert_done(&quatrack(&["gains", "check", GAINS, "--json", json.to_str().unwrap()]));
     let checked: serde_json::Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
-    let files: Vec<&str> = checked.as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
+    let files: Vec<&str> =
+        checked["files"].as_array().unwrap().iter().map(|file| file["file"].as_str().unwrap()).collect();
     let names = ["lyap-e", "lyap-f", "lqr-e", "lqr-f", "sampled-lqr-e", "sampled-lqr-f", "lqi-e"];
     for name in names.into_iter().chain(["along-mild", "along-aggressive"]) {
         for extension in ["json", "rs", "bin"] {
@@ -219,7 +220,7 @@ fn tables_are_shown_from_every_form_and_listed() {
     let line = stdout(&output).lines().find(|line| line.starts_with("lyap-f ")).map(str::to_owned).unwrap();
     assert!(["flat-output", "lyapunov", "500 Hz"].iter().all(|word| line.contains(word)), "{line}");
     let list: serde_json::Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
-    assert!(list.as_array().unwrap().iter().all(|entry| entry["generated"] == true));
+    assert!(list["designs"].as_array().unwrap().iter().all(|entry| entry["generated"] == true));
 }
 
 #[test]

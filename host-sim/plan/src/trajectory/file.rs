@@ -89,6 +89,10 @@ pub enum FileError {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ControlPoints {
+    /// What `quatrack plan` writes before the rest.
+    #[serde(default)]
+    #[expect(dead_code, reason = "a file may say what it is")]
+    schema: Option<String>,
     degree: usize,
     duration_s: f64,
     control_points_m: Vec<[f64; 3]>,

@@ -121,6 +121,11 @@ impl Law {
         }
     }
 
+    /// Whether there is one of it in a process, so that two of its flights cannot go on at once in one thread.
+    pub fn flies_alone(self) -> bool {
+        self == Self::Crazyflie
+    }
+
     /// At the start of a flight of a vehicle of which it is told something.
     ///
     /// # Errors

@@ -43,9 +43,14 @@ impl Args {
         }
         // A table of gains has a vehicle.
         let vehicle_for_nothing = self.gains.is_none() && self.scenario.vehicle.is_some();
-        if self.plot.is_some() || self.log.is_some() || self.scenario.any_but_vehicle() || vehicle_for_nothing {
+        if self.plot.is_some()
+            || self.log.is_some()
+            || self.mcap.is_some()
+            || self.scenario.any_but_vehicle()
+            || vehicle_for_nothing
+        {
             return Err(Failure::input(
-                "--controller and --gains fly the paper's model: leave out --plot, --log and the flags of a scenario, or choose one of \
+                "--controller and --gains fly the paper's model: leave out --plot, --log, --mcap and the flags of a scenario, or choose one of \
                  its laws by --law",
             ));
         }
@@ -86,7 +91,13 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         Some((path, table)) => table::in_scenario(path, table, &scenario, &|law, name| fly_law(&scenario, law, name))?,
         None => fly_and_print(&scenario)?,
     };
-    let outputs = Outputs { dir: args.out.as_deref(), json: args.json.as_deref(), plot: args.plot.as_deref(), log: args.log.as_deref() };
+    let outputs = Outputs {
+        dir: args.out.as_deref(),
+        json: args.json.as_deref(),
+        plot: args.plot.as_deref(),
+        log: args.log.as_deref(),
+        mcap: args.mcap.as_deref(),
+    };
     outputs.write(&scenario, figures, &recording)
 }
 
@@ -100,6 +111,20 @@ pub(in crate::cli) struct Outputs<'a> {
     pub(in crate::cli) plot: Option<&'a Path>,
     /// A log as a craft records it, CSV.
     pub(in crate::cli) log: Option<&'a Path>,
+    /// The flight for Foxglove and PlotJuggler.
+    pub(in crate::cli) mcap: Option<&'a Path>,
+}
+
+/// A flight as an MCAP file, in a command that was built with it.
+#[cfg(feature = "mcap")]
+fn mcap_file(scenario: &Scenario, law: &str, recording: &Recording) -> Result<Vec<u8>, Failure> {
+    let half_arm_m = scenario.vehicle.motors().half_arm_m();
+    quatrack_campaign::mcap::file(recording, law, half_arm_m).map_err(Failure::verdict)
+}
+
+#[cfg(not(feature = "mcap"))]
+fn mcap_file(_: &Scenario, _: &str, _: &Recording) -> Result<Vec<u8>, Failure> {
+    Err(Failure::input("--mcap: this command was built without it; build it by cargo build --release --features mcap"))
 }
 
 /// Flies a scenario with its law and prints the figures.
@@ -174,6 +199,10 @@ impl Outputs<'_> {
             } else {
                 output::print("no picture: the craft was lost before anything was measured\n")?;
             }
+        }
+        if let Some(path) = self.mcap {
+            output::write(path, &mcap_file(scenario, &figures.law, recording)?)?;
+            output::print(&format!("wrote {}\n", path.display()))?;
         }
         if let Some(path) = self.json {
             output::write_json(path, &figures)?;
