@@ -9,6 +9,7 @@ mod gains;
 mod limits;
 mod manoeuvres;
 mod measure;
+mod names;
 mod output;
 mod pil;
 mod plan;
@@ -16,6 +17,8 @@ mod refit;
 mod reproduce;
 mod robustness;
 mod scenario;
+mod shell;
+mod transform;
 mod vehicle;
 
 use std::process::ExitCode;
@@ -58,10 +61,12 @@ struct Arguments {
 enum Command {
     Analyze(analyze::Args),
     Compare(compare::Args),
+    Completions(shell::CompletionArgs),
     Crazyflie(crazyflie::Args),
     Export(export::Args),
     Fly(fly::Args),
     Gains(gains::Args),
+    Man(shell::ManArgs),
     Manoeuvres(manoeuvres::Args),
     Measure(measure::Args),
     Pil(pil::Args),
@@ -80,10 +85,12 @@ pub(crate) fn main() -> ExitCode {
     let outcome: Result<(), Failure> = match &arguments.command {
         Command::Analyze(args) => analyze::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Completions(args) => shell::completions(args),
         Command::Crazyflie(args) => crazyflie::run(args),
         Command::Export(args) => export::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Gains(args) => gains::run(args),
+        Command::Man(args) => shell::man(args),
         Command::Manoeuvres(args) => manoeuvres::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Pil(args) => pil::run(args),

@@ -7,3 +7,4 @@ mod figures_png;
 mod fly_scenario;
 mod gains;
 mod pil;
+mod trajectories;

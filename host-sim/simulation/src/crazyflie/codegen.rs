@@ -50,6 +50,7 @@ const CRAFTS: [(&str, [(&str, &str); 3]); 3] = [
 
 /// Why there is no source.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum CodegenError {
     /// A design is not what it has to be.
     #[error("gains/{name}.toml: {error}")]
@@ -57,6 +58,7 @@ pub enum CodegenError {
         /// Its name.
         name: &'static str,
         /// What is wrong with it.
+        #[source]
         error: GainsError,
     },
     /// A design for another law.
