@@ -26,6 +26,7 @@ const SAME_COEFFICIENT: f64 = 1e-6;
 
 /// Why there is nothing to compare with.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum GenerateError {
     /// A design gives no table, or the folder cannot be read.
     #[error("{}: {}", .0.path.display(), .0.error)]

@@ -9,6 +9,7 @@ use quatrack_simulation::scenario::{Law, Scenario};
 use quatrack_simulation::vehicles;
 
 use super::scenario::ScenarioArgs;
+use super::transform::TransformArgs;
 use super::{Failure, fly, output};
 
 /// Flies the Crazyflie controller through its C interface on the rigid plant, with the firmware's setpoints, rates and
@@ -43,7 +44,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             ));
         }
         let scenario = Scenario { law: Law::Crazyflie, ..args.scenario.checked()? };
-        let (figures, _) = fly::scenario::fly_and_print(&scenario)?;
+        let (figures, _) = fly::scenario::fly_and_print(&scenario, &TransformArgs::default())?;
         if let Some(path) = &args.json {
             output::write_json(path, &figures)?;
             output::print(&format!("wrote {}\n", path.display()))?;

@@ -11,6 +11,7 @@ mod identify;
 mod limits;
 mod manoeuvres;
 mod measure;
+mod names;
 mod output;
 mod pil;
 mod plan;
@@ -19,6 +20,8 @@ mod report;
 mod reproduce;
 mod robustness;
 mod scenario;
+mod shell;
+mod transform;
 mod vehicle;
 
 use std::process::ExitCode;
@@ -62,11 +65,13 @@ enum Command {
     Analyze(analyze::Args),
     Campaign(campaign::Args),
     Compare(compare::Args),
+    Completions(shell::CompletionArgs),
     Crazyflie(crazyflie::Args),
     Export(export::Args),
     Fly(fly::Args),
     Gains(gains::Args),
     Identify(identify::Args),
+    Man(shell::ManArgs),
     Manoeuvres(manoeuvres::Args),
     Measure(measure::Args),
     Pil(pil::Args),
@@ -87,11 +92,13 @@ pub(crate) fn main() -> ExitCode {
         Command::Analyze(args) => analyze::run(args),
         Command::Campaign(args) => campaign::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Completions(args) => shell::completions(args),
         Command::Crazyflie(args) => crazyflie::run(args),
         Command::Export(args) => export::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Gains(args) => gains::run(args),
         Command::Identify(args) => identify::run(args),
+        Command::Man(args) => shell::man(args),
         Command::Manoeuvres(args) => manoeuvres::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Pil(args) => pil::run(args),

@@ -9,3 +9,4 @@ mod fly_scenario;
 mod gains;
 mod identify;
 mod pil;
+mod trajectories;

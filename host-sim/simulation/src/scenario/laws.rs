@@ -56,6 +56,7 @@ pub struct ToldFigures {
 
 /// Why a law does not fly a vehicle.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LawError {
     /// Not one of the names.
     #[error("{name}: no such law; there are {known}")]
@@ -86,6 +87,7 @@ pub enum LawError {
         /// Whose name.
         vehicle: String,
         /// Why not.
+        #[source]
         error: FlightError,
     },
 }

@@ -7,6 +7,7 @@ use quatrack_simulation::scenario::{Law, Scenario};
 
 use super::{refused, trajectories};
 use crate::cli::fly::scenario::{Outputs, fly_and_print};
+use crate::cli::transform::TransformArgs;
 use crate::cli::{Failure, output};
 
 /// Flies one flight of a campaign again, the same to the bit, and shows it. Exit code 3 where the craft is lost, as it was.
@@ -55,7 +56,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let scenario = Scenario { law, ..campaign.run(args.run).scenario.map_err(Failure::input)? };
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
-    let (figures, recording) = fly_and_print(&scenario)?;
+    let (figures, recording) = fly_and_print(&scenario, &TransformArgs::default())?;
     let outputs = Outputs {
         dir: args.out.as_deref(),
         json: args.json.as_deref(),

@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use quatrack_identify::log::{Row, cflib_csv};
+use quatrack_plan::trajectory::transform::Transform;
 use quatrack_simulation::control_law::ControlLaw;
 use quatrack_simulation::scenario::{Recording, Scenario};
 use serde::Serialize;
 
-use super::{Args, NOTHING, Precision, picture, table, trajectory};
+use super::{Args, NOTHING, Precision, picture, table, transformed};
+use crate::cli::transform::TransformArgs;
 use crate::cli::{Failure, output};
 
 /// What the figures' file says that it is.
@@ -88,8 +90,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let scenario = args.scenario.checked_for(own.as_ref())?;
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
     let (figures, recording) = match &table {
-        Some((path, table)) => table::in_scenario(path, table, &scenario, &|law, name| fly_law(&scenario, law, name))?,
-        None => fly_and_print(&scenario)?,
+        Some((path, table)) => {
+            table::in_scenario(path, table, &scenario, &|law, name| fly_law(&scenario, law, name, &args.transform))?
+        }
+        None => fly_and_print(&scenario, &args.transform)?,
     };
     let outputs = Outputs {
         dir: args.out.as_deref(),
@@ -128,13 +132,27 @@ fn mcap_file(_: &Scenario, _: &str, _: &Recording) -> Result<Vec<u8>, Failure> {
 }
 
 /// Flies a scenario with its law and prints the figures.
-pub(in crate::cli) fn fly_and_print(scenario: &Scenario) -> Result<(Report, Recording), Failure> {
+pub(in crate::cli) fn fly_and_print(
+    scenario: &Scenario,
+    transform: &TransformArgs,
+) -> Result<(Report, Recording), Failure> {
     let mut law = scenario.law.start(&scenario.vehicle, &scenario.told).map_err(Failure::input)?;
-    fly_law(scenario, law.as_mut(), scenario.law.name())
+    fly_law(scenario, law.as_mut(), scenario.law.name(), transform)
 }
 
-fn fly_law(scenario: &Scenario, law: &mut dyn ControlLaw, name: &str) -> Result<(Report, Recording), Failure> {
-    let flown = scenario.flown(scenario.course.trajectory().map(trajectory).transpose()?);
+fn fly_law(
+    scenario: &Scenario,
+    law: &mut dyn ControlLaw,
+    name: &str,
+    transform: &TransformArgs,
+) -> Result<(Report, Recording), Failure> {
+    let trajectory = scenario.course.trajectory();
+    if trajectory.is_none() && transform.transform()? != Transform::default() {
+        return Err(Failure::input(
+            "--time-scale, --reverse, --start and their like belong to a trajectory: give one by --course",
+        ));
+    }
+    let flown = scenario.flown(trajectory.map(|name| transformed(name, transform)).transpose()?);
     let recording = scenario.record(law, &flown).map_err(Failure::input)?;
     let figures = figures(name, &recording);
     output::print(&text(scenario, &figures))?;
