@@ -257,9 +257,8 @@ impl Controller {
         if self.flight != Flight::Stream {
             return;
         }
-        if self.table.gives_forces() {
-            self.ahead.sample_at(next_step, &self.stream, &self.headings);
-        } else if self.handover.is_over() {
+        // The cascade's sample is made at its step, which has the time.
+        if !self.table.gives_forces() && self.handover.is_over() {
             let leash = &self.settings.bounds.leash;
             let way = (&self.stream, &self.headings);
             self.ahead.sample_on_leash_at(next_step, way, (leash, &units::state(state)));
