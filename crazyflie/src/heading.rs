@@ -108,7 +108,7 @@ impl HeadingStream {
     }
 
     /// The heading at a time, its derivatives into `sample`; it stands where it has come to when it has no successor.
-    #[inline(always)]
+    #[inline(never)]
     pub fn at(&self, now_ms: u32, sample: &mut FifthOrderSample) -> Heading {
         let (rate, acceleration, jerk) = (self.rate_rad_s, self.acceleration_rad_s2, self.jerk_rad_s3);
         if rate == 0.0 && acceleration == 0.0 {

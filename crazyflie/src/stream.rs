@@ -59,6 +59,8 @@ pub struct Stream {
     sent_jerk_m_s3: Vector3<f32>,
     source: Source,
     fit: JerkFit,
+    /// The newest setpoint has not been fitted yet: snap and crackle are those of the one before, carried on.
+    is_due: bool,
 }
 
 /// What a setpoint was to the ones before it.
@@ -85,6 +87,7 @@ impl Stream {
             sent_jerk_m_s3: ZERO,
             source: Source::Sent { unsound: 0 },
             fit: JerkFit::NONE,
+            is_due: false,
         }
     }
 
@@ -110,11 +113,11 @@ impl Stream {
         self.since_ms = Some(date_ms);
         if !(beyond_jerk || matches!(source, Source::Mistrusted { .. })) {
             // Who looks no further is told what is sent.
-            (self.newest, self.source) = (*motion, source);
+            (self.newest, self.source, self.is_due) = (*motion, source, false);
             self.forget_fit();
             return Arrival::Continued;
         }
-        self.fit_to(motion, gap_s, source);
+        self.keep(motion, gap_s, source);
         Arrival::Continued
     }
 
@@ -130,7 +133,7 @@ impl Stream {
         };
         *self =
             Self { newest: *motion, since_ms: Some(date_ms), sent_jerk_m_s3: motion.jerk_m_s3, source, ..Self::new() };
-        self.fit_to(motion, 0.0, source);
+        self.keep(motion, 0.0, source);
         arrival
     }
 
@@ -174,22 +177,37 @@ impl Stream {
         }
     }
 
-    /// Takes a motion with what the fit says of its higher derivatives.
+    /// Takes a motion, with what the one before leads to expect of its higher derivatives until it is fitted.
     #[inline(never)]
-    fn fit_to(&mut self, motion: &Motion, gap_s: f32, source: Source) {
+    fn keep(&mut self, motion: &Motion, gap_s: f32, source: Source) {
         let (was_sent, is_sent) = (self.is_sent(), matches!(source, Source::Sent { .. }));
         if was_sent != is_sent {
-            self.fit.forget();
+            self.forget_fit();
         }
-        self.source = source;
-        self.newest = *motion;
-        if is_sent {
-            self.fit.accept(&motion.jerk_m_s3, gap_s);
-            [self.snap_m_s4, self.crackle_m_s5] = self.fit.snap_and_crackle();
+        let ahead =
+            |a: &Vector3<f32>, b: &Vector3<f32>| Vector3::new(a.x + gap_s * b.x, a.y + gap_s * b.y, a.z + gap_s * b.z);
+        let jerk = if is_sent { motion.jerk_m_s3 } else { ahead(&self.newest.jerk_m_s3, &self.snap_m_s4) };
+        self.snap_m_s4 = ahead(&self.snap_m_s4, &self.crackle_m_s5);
+        self.fit.accept(if is_sent { &motion.jerk_m_s3 } else { &motion.acceleration_m_s2 }, gap_s);
+        self.newest = Motion { jerk_m_s3: jerk, ..*motion };
+        (self.source, self.is_due) = (source, true);
+    }
+
+    /// Whether the newest setpoint is still to be fitted.
+    #[inline(always)]
+    pub const fn is_due(&self) -> bool {
+        self.is_due
+    }
+
+    /// Fits the newest setpoint and the ones before.
+    #[inline(never)]
+    pub fn catch_up(&mut self) {
+        self.is_due = false;
+        let [first, second] = self.fit.snap_and_crackle();
+        if self.is_sent() {
+            (self.snap_m_s4, self.crackle_m_s5) = (first, second);
         } else {
-            self.fit.accept(&motion.acceleration_m_s2, gap_s);
-            [self.newest.jerk_m_s3, self.snap_m_s4] = self.fit.snap_and_crackle();
-            self.crackle_m_s5 = Vector3::new(0.0, 0.0, 0.0);
+            (self.newest.jerk_m_s3, self.snap_m_s4) = (first, second);
         }
         let size = |v: &Vector3<f32>| v.x.abs() + v.y.abs() + v.z.abs();
         if !(size(&self.snap_m_s4) <= SNAP_MAX_M_S4 && size(&self.crackle_m_s5) <= CRACKLE_MAX_M_S5) {
@@ -214,7 +232,7 @@ impl Stream {
     }
 
     /// The motion at a time, heading aside, into `sample`; with snap and crackle only where they are asked for.
-    #[inline(always)]
+    #[inline(never)]
     pub fn at(&self, now_ms: u32, beyond_jerk: bool, sample: &mut FifthOrderSample) {
         let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
         if age_ms > EXTRAPOLATION_MAX_MS {
@@ -270,7 +288,7 @@ impl Stream {
     #[cold]
     #[inline(never)]
     fn end(&self, sample: &mut FifthOrderSample) {
-        self.put_to_fifth(EXTRAPOLATION_MAX_MS as f32 * 1e-3, sample);
+        [sample.flat.position_m, ..] = self.extrapolated(EXTRAPOLATION_MAX_MS as f32 * 1e-3);
         *sample = FifthOrderSample::at_rest(sample.flat.position_m, 0.0);
     }
 }

@@ -188,7 +188,7 @@ impl Table {
         if let Some(cascade) = accepted.cascade() {
             return Self::sent_cascade(cascade, craft, tuning);
         }
-        let gain = table.gain().ok_or(Refusal::Law)?;
+        let gain = table.gain().filter(|gain| !gain.gives_forces()).ok_or(Refusal::Law)?;
         let margin = accepted.margin_behind(craft.motor_lag_s)?;
         let actuation = accepted.actuation(&craft.actuation);
         Ok(Self::constant(TableId::Uploaded, gain, actuation, margin, accepted.limits(), tuning))
@@ -248,6 +248,8 @@ impl Table {
             Gain::Cascade(cascade, _) => {
                 Controller::new(cascade, Limits::NONE).step_unobserved(memory, measured, target)
             }
+            // Refused when it was chosen: said here, nothing of its law is linked.
+            Gain::Constant(ConstantGain::ActuatorAware(_)) => Err(StepError::NoForces),
             Gain::Constant(gain) => gain.step(RATE, &self.settings(limits, feed_forward), memory, measured, target),
         }
     }

@@ -84,7 +84,7 @@ pub(super) struct SeenAir {
     products: [f32; 3],
     squares: [f32; 3],
     /// Steps until the next update.
-    wait: u8,
+    pub(super) wait: u8,
 }
 
 /// What an update looks at.

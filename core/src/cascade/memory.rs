@@ -116,6 +116,11 @@ impl CascadeMemory {
         self.ground = Ground::STANDING;
     }
 
+    /// Whether the next look of the observers takes longer than others: every 10 ms they look at the air.
+    pub const fn is_air_due(&self) -> bool {
+        self.air.wait == 0 && matches!(self.ground, Ground::Flying { .. })
+    }
+
     /// Whether the craft is taken to stand, or to be held.
     pub fn stands(&self) -> bool {
         self.ground.is_standing()

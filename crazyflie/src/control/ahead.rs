@@ -38,15 +38,6 @@ impl Ahead {
         self.reference.as_ref().filter(|_| self.is_for(now_ms))
     }
 
-    /// Makes the sample of a step, to its fifth derivative.
-    #[inline(always)]
-    pub(super) fn sample_at(&mut self, now_ms: u32, stream: &Stream, headings: &HeadingStream) {
-        stream.at(now_ms, true, &mut self.sample);
-        self.heading = headings.at(now_ms, &mut self.sample);
-        self.at_ms = Some(now_ms);
-        self.reference = None;
-    }
-
     /// Makes the sample of a step on a leash, to its jerk.
     #[inline(always)]
     pub(super) fn sample_on_leash_at(

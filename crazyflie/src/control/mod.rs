@@ -28,7 +28,7 @@ pub(crate) use self::power_on::CONTROLLER;
 use crate::abi;
 use crate::craft::{Craft, DECIMATION, PERIOD_S};
 use crate::heading::HeadingStream;
-use crate::inbox::{Change, Inbox};
+use crate::inbox::{Change, Inbox, News};
 use crate::output::Output;
 use crate::shaping::{Shaped, Shaping};
 use crate::stream::{Arrival, Stream};
@@ -102,13 +102,12 @@ impl Controller {
             return true;
         }
         let state = RigidState { state: units::state(state), body_rates_rad_s: units::body_rates_rad_s(sensors) };
-        let urgent = self.inbox.urgent(setpoint, step);
-        if self.last_step.is_none_or(|last| step.wrapping_sub(last) > ABSENT_MS) {
-            self.restart();
-            let change = self.inbox.take(setpoint);
-            self.respond(&change, &state.state);
-        } else if urgent != Change::Nothing {
-            self.respond(&urgent, &state.state);
+        let is_absent = self.last_step.is_none_or(|last| step.wrapping_sub(last) > ABSENT_MS);
+        if self.inbox.is_urgent(setpoint, step) || is_absent {
+            if is_absent {
+                self.restart();
+            }
+            self.take(setpoint, &state.state);
         }
         self.last_step = Some(step);
         self.outcome.limited = MotorLimited::NOTHING;
@@ -138,40 +137,43 @@ impl Controller {
         if self.flight == Flight::NoCraft {
             return Some(self.background.next());
         }
-        self.observe(sensors);
-        let change = self.inbox.look(setpoint, step);
-        let has_time = change == Change::Nothing;
-        if !has_time {
-            self.respond(&change, &units::state(state));
+        // One thing at a time: a setpoint that comes with the longest look of the observers is taken a call later, and is fitted
+        // another one later. It is dated by its stamp.
+        let is_busy = self.observe(sensors);
+        let news = if is_busy { self.inbox.glance(setpoint, step) } else { self.inbox.look(setpoint, step) };
+        let has_time = news == News::Nothing && !is_busy && !self.stream.is_due();
+        match news {
+            News::Nothing if is_busy || has_time => {}
+            News::Nothing => self.stream.catch_up(),
+            News::Motion => self.follow(),
+            News::Other => self.take(setpoint, &units::state(state)),
         }
         self.look_ahead(state, step.wrapping_add(1));
         if has_time { Some(self.background.next()) } else { self.background.put_off() }
     }
 
-    /// Lets the observers of the law look at the control step before.
+    /// Lets the observers of the law look at the control step before; whether that took long.
     #[inline(always)]
-    fn observe(&mut self, sensors: &abi::SensorData) {
+    fn observe(&mut self, sensors: &abi::SensorData) -> bool {
         let has_stepped = matches!(self.flight, Flight::Stream | Flight::Guided(_)) && !self.outcome.is_blind;
-        if let Some(cascade) = self.table.as_cascade().filter(|_| has_stepped) {
-            let felt = units::specific_force_m_s2(sensors);
-            quatrack::Controller::new(cascade, Limits::NONE).observe(&mut self.memory, felt.as_ref());
-        }
+        let Some(cascade) = self.table.as_cascade().filter(|_| has_stepped) else { return false };
+        let (felt, is_long) = (units::specific_force_m_s2(sensors), self.memory.cascade().is_air_due());
+        quatrack::Controller::new(cascade, Limits::NONE).observe(&mut self.memory, felt.as_ref());
+        is_long
     }
 
-    /// Does what a change of the setpoint asks for.
-    #[inline(always)]
-    fn respond(&mut self, change: &Change, state: &State) {
-        match change {
-            Change::Nothing => {}
-            Change::Motion => self.follow(),
-            Change::Request(request) => self.begin_or_go_on(Flight::of(request, &self.craft), state),
+    /// Takes a setpoint, and does what it asks for.
+    #[inline(never)]
+    fn take(&mut self, setpoint: &abi::Setpoint, state: &State) {
+        match self.inbox.take(setpoint) {
+            Change::Request(request) => self.begin_or_go_on(Flight::of(&request, &self.craft), state),
             Change::Off => self.turn_off(),
             Change::Bad => self.bad_setpoint(state),
         }
     }
 
     /// Takes one more motion of the stream, with its heading.
-    #[inline(always)]
+    #[inline(never)]
     fn follow(&mut self) {
         let (newest, beyond_jerk) = (self.inbox.newest(), self.looks_beyond_jerk());
         let arrival = self.stream.accept(&newest.motion, newest.date_ms, beyond_jerk);
@@ -255,9 +257,8 @@ impl Controller {
         if self.flight != Flight::Stream {
             return;
         }
-        if self.table.gives_forces() {
-            self.ahead.sample_at(next_step, &self.stream, &self.headings);
-        } else if self.handover.is_over() {
+        // The cascade's sample is made at its step, which has the time.
+        if !self.table.gives_forces() && self.handover.is_over() {
             let leash = &self.settings.bounds.leash;
             let way = (&self.stream, &self.headings);
             self.ahead.sample_on_leash_at(next_step, way, (leash, &units::state(state)));

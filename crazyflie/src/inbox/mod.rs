@@ -14,13 +14,20 @@ use crate::request::Request;
 use crate::units;
 
 /// What has changed since the inbox was last looked into.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Change {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum News {
     /// Nothing.
     Nothing,
     /// Motion and heading alone, of a request that goes along them: [`Inbox::newest`] has them.
     Motion,
-    /// What is asked for.
+    /// Something else, which is to be taken.
+    Other,
+}
+
+/// What a setpoint that was taken asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Change {
+    /// To be flown.
     Request(Request),
     /// Motors off.
     Off,
@@ -84,21 +91,31 @@ impl Inbox {
         &self.newest
     }
 
-    /// At a control step: what cannot wait for the next call, a setpoint of another kind.
+    /// At a control step: whether there is what cannot wait for the next call, a setpoint of another kind.
     #[inline(always)]
-    pub fn urgent(&mut self, setpoint: &abi::Setpoint, now_ms: u32) -> Change {
+    pub fn is_urgent(&mut self, setpoint: &abi::Setpoint, now_ms: u32) -> bool {
         self.note(setpoint, now_ms);
-        if comparison::is_another_kind(&self.kept, setpoint) { self.take(setpoint) } else { Change::Nothing }
+        comparison::is_another_kind(&self.kept, setpoint)
     }
 
-    /// At the call between: everything.
+    /// At a call without time: nothing is taken, but what has come is remembered to have come now.
     #[inline(always)]
-    pub fn look(&mut self, setpoint: &abi::Setpoint, now_ms: u32) -> Change {
+    pub fn glance(&mut self, setpoint: &abi::Setpoint, now_ms: u32) -> News {
+        self.note(setpoint, now_ms);
+        News::Nothing
+    }
+
+    /// At the call between: everything. A motion is taken.
+    #[inline(always)]
+    pub fn look(&mut self, setpoint: &abi::Setpoint, now_ms: u32) -> News {
         self.note(setpoint, now_ms);
         if comparison::is_same(&self.kept, setpoint) {
-            return Change::Nothing;
+            News::Nothing
+        } else if self.is_along && self.goes_on(setpoint) {
+            News::Motion
+        } else {
+            News::Other
         }
-        if self.is_along && self.goes_on(setpoint) { Change::Motion } else { self.take(setpoint) }
     }
 
     /// Takes a setpoint whatever it is.
@@ -188,48 +205,55 @@ mod tests {
     #[test]
     fn it_says_what_changed() {
         let mut inbox = Inbox::new();
-        assert_eq!(inbox.urgent(&along(5, 1.0, 0.0), 105), ALONG, "another kind cannot wait");
-        assert_eq!(inbox.look(&along(5, 1.0, 0.0), 106), Change::Nothing);
-        assert_eq!(inbox.urgent(&along(15, 1.1, 90.0), 115), Change::Nothing, "one more of them can");
-        assert_eq!(inbox.look(&along(15, 1.1, 90.0), 116), Change::Motion);
+        assert!(inbox.is_urgent(&along(5, 1.0, 0.0), 105), "another kind cannot wait");
+        assert_eq!(inbox.take(&along(5, 1.0, 0.0)), ALONG);
+        assert_eq!(inbox.look(&along(5, 1.0, 0.0), 106), News::Nothing);
+        assert!(!inbox.is_urgent(&along(15, 1.1, 90.0), 115), "one more of them can");
+        assert_eq!(inbox.look(&along(15, 1.1, 90.0), 116), News::Motion);
         let newest = inbox.newest();
         assert_eq!((newest.motion.position_m.x, newest.date_ms), (1.1, 115), "dated by when it was first seen");
         assert!((newest.heading.cos_sin().1 - 1.0).abs() < 1e-6);
         let mut moved = along(15, 1.1, 90.0);
         moved.velocity.x = 0.5;
-        assert_eq!(inbox.look(&moved, 118), Change::Motion, "collision avoidance changes what is stamped already");
+        assert_eq!(inbox.look(&moved, 118), News::Motion, "collision avoidance changes what is stamped already");
         assert_eq!(inbox.newest().date_ms, 115);
-        assert_eq!(inbox.urgent(&Setpoint { timestamp: 20, ..Setpoint::OFF }, 120), Change::Off);
+        assert!(inbox.is_urgent(&Setpoint { timestamp: 20, ..Setpoint::OFF }, 120));
+        assert_eq!(inbox.take(&Setpoint::OFF), Change::Off);
     }
 
     #[test]
     fn what_is_no_number_is_bad_wherever_it_is() {
         let bad = |change: fn(&mut Setpoint)| {
             let mut inbox = Inbox::new();
-            inbox.urgent(&along(5, 1.0, 0.0), 105);
+            inbox.is_urgent(&along(5, 1.0, 0.0), 105);
+            inbox.take(&along(5, 1.0, 0.0));
             let mut setpoint = along(15, 1.0, 0.0);
             change(&mut setpoint);
-            inbox.look(&setpoint, 115)
+            match inbox.look(&setpoint, 115) {
+                News::Other => inbox.take(&setpoint) == Change::Bad,
+                _ => false,
+            }
         };
-        assert_eq!(bad(|s| s.position.z = f32::NAN), Change::Bad);
-        assert_eq!(bad(|s| s.jerk.y = f32::INFINITY), Change::Bad);
-        assert_eq!(bad(|s| s.attitude.yaw = f32::NAN), Change::Bad);
-        assert_eq!(bad(|s| s.attitude_rate.yaw = f32::NAN), Change::Bad);
-        assert_eq!(bad(|s| s.acceleration.x = 3e38), Change::Bad);
-        assert_eq!(bad(|s| s.mode.z = Mode(7)), Change::Bad);
+        assert!(bad(|s| s.position.z = f32::NAN));
+        assert!(bad(|s| s.jerk.y = f32::INFINITY));
+        assert!(bad(|s| s.attitude.yaw = f32::NAN));
+        assert!(bad(|s| s.attitude_rate.yaw = f32::NAN));
+        assert!(bad(|s| s.acceleration.x = 3e38));
+        assert!(bad(|s| s.mode.z = Mode(7)));
         // Turned 300 times.
-        assert_eq!(bad(|s| s.attitude.yaw = 108_000.0), Change::Motion);
+        assert!(!bad(|s| s.attitude.yaw = 108_000.0));
     }
 
     #[test]
     fn without_a_stamp_all_of_it_is_compared() {
         let mut inbox = Inbox::new();
-        inbox.urgent(&along(0, 1.0, 0.0), 100);
-        assert_eq!(inbox.look(&along(0, 1.0, 0.0), 101), Change::Nothing);
+        inbox.is_urgent(&along(0, 1.0, 0.0), 100);
+        inbox.take(&along(0, 1.0, 0.0));
+        assert_eq!(inbox.look(&along(0, 1.0, 0.0), 101), News::Nothing);
         let mut other = along(0, 1.0, 0.0);
         other.jerk.x = 1.0;
-        assert_eq!(inbox.look(&other, 103), Change::Motion);
+        assert_eq!(inbox.look(&other, 103), News::Motion);
         assert_eq!(inbox.newest().date_ms, 103);
-        assert_eq!(inbox.look(&other, 105), Change::Nothing);
+        assert_eq!(inbox.look(&other, 105), News::Nothing);
     }
 }

@@ -98,7 +98,7 @@ fn turn(setpoint: &abi::Setpoint) -> Option<Turn> {
 
 /// The heading that a setpoint asks for by its angle of yaw, else by its attitude, and its rate; nothing where they make no
 /// sense.
-#[inline(always)]
+#[inline(never)]
 pub(super) fn headed(setpoint: &abi::Setpoint) -> Option<Headed> {
     let rate = units::heading_rate_rad_s(setpoint);
     let heading = if is_by_yaw(setpoint) {

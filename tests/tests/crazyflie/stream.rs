@@ -29,6 +29,7 @@ fn fed(gap_ms: u32, end_ms: u32, origin_ms: u32) -> Stream {
     for ms in (0..=end_ms).step_by(gap_ms as usize) {
         let wanted = if ms == 0 { Arrival::Begun } else { Arrival::Continued };
         assert_eq!(stream.accept(&motion(f64::from(ms) * 1e-3), origin_ms.wrapping_add(ms), true), wanted, "{ms} ms");
+        stream.catch_up();
     }
     stream
 }
@@ -77,6 +78,7 @@ fn where_no_jerk_is_sent_it_is_the_slope_of_the_accelerations() {
     for ms in (0..=100).step_by(10) {
         let bare = Motion { jerk_m_s3: Vector3::zeros(), ..motion(f64::from(ms) * 1e-3) };
         stream.accept(&bare, ms, true);
+        stream.catch_up();
     }
     let sample = at(&stream, 100, true);
     // The acceleration's fourth derivative is 6480 m/s^6, its third at most 1600 m/s^5 here: what a parabola over 70 ms lacks.
@@ -120,6 +122,7 @@ fn nothing_is_fitted_over_a_jump_or_a_gap() {
     let mut stream = fed(10, 50, 0);
     assert!(!is_bare(&stream, 50));
     assert_eq!(stream.accept(&shifted(0.06, 0.03), 60, true), Arrival::Jumped);
+    stream.catch_up();
     assert!(is_bare(&stream, 60));
     let mut stream = fed(10, 50, 0);
     assert_eq!(stream.accept(&shifted(0.06, 0.01), 60, true), Arrival::Continued);

@@ -73,7 +73,7 @@ fn a_turn_with_a_step_keeps_height() {
                 let goal = [distance, 0.0, 1.0];
                 let found = way(&mut flight, &position(goal, yaw), goal.map_into(), 6);
                 println!("{name} {yaw} {distance}: {found:?}");
-                assert!(found.lowest_m > 0.93 && found.left_m < 0.02 && found.tilt_deg < 46.0, "{name}: {found:?}");
+                assert!(found.lowest_m > 0.93 && found.left_m < 0.02 && found.tilt_deg < 47.0, "{name}: {found:?}");
             }
         }
     }
@@ -200,7 +200,7 @@ fn odd_late_missing_and_jittered_setpoints_cost_little() {
     for period in [5, 7, 13, 15, 17, 21] {
         let odd = eight_m(|_| period, |_| 0.0);
         println!("{period} ms: {odd:.6}");
-        assert!(odd < 1.1 * even + 1e-3, "{period} ms: {odd} m, even {even} m");
+        assert!(odd < 1.1 * even, "{period} ms: {odd} m, even {even} m");
     }
     let late = eight_m(
         |k| {
@@ -218,8 +218,8 @@ fn odd_late_missing_and_jittered_setpoints_cost_little() {
     // Half a millisecond either way, by a rule that repeats after 31 setpoints.
     let jittered = eight_m(|_| 10, |k| (k * 13 % 31) as f32 / 31.0 - 0.5);
     println!("late {late:.6}, missing {missing:.6}, jittered {jittered:.6}");
-    assert!(late < 1.1 * even + 1e-3 && missing < 1.1 * even + 1e-3, "{late} {missing} {even}");
-    assert!(jittered < 1.5 * even + 1e-3, "{jittered} {even}");
+    assert!(late < 1.1 * even && missing < 1.1 * even, "{late} {missing} {even}");
+    assert!(jittered < 1.5 * even, "{jittered} {even}");
 }
 
 #[test]
@@ -251,6 +251,7 @@ fn a_yaw_goes_on_for_300_turns_and_one_that_is_no_number_brakes() {
     bad.attitude_rate.yaw = f32::NAN;
     flight.hold(&bad, 50);
     assert_eq!(mode(), DESCENDING);
+    drop(flight);
     // In flight at speed: it comes to rest, and goes down.
     let mut flight = hovering("crazyflie-2.1", 0.0);
     flight.state.velocity_m_s.x = 1.4;
