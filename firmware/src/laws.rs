@@ -10,6 +10,8 @@
 mod motors;
 #[cfg(feature = "motors")]
 mod motors;
+#[cfg(feature = "motors")]
+mod rescue;
 
 use quatrack::gains::paper;
 use quatrack::gains::table::{AcceptError, AcceptedTable};
@@ -54,6 +56,8 @@ pub struct Laws {
     handover: Handover,
     /// What carries commands to the motors.
     pub actuations: Actuations,
+    /// Another law has taken over from the one in force.
+    is_rescued: bool,
     store: &'static mut GainStore,
 }
 
@@ -74,6 +78,7 @@ impl Laws {
             before: DEFAULT,
             handover: Handover::OVER,
             actuations: Actuations::new(),
+            is_rescued: false,
             store,
         }
     }
@@ -158,6 +163,7 @@ impl Laws {
     #[cold]
     pub fn begin(&mut self) {
         self.settle();
+        self.is_rescued = false;
         self.memory = Memory::at_rest();
     }
 
@@ -220,6 +226,7 @@ impl Laws {
     /// As [`Controller::step`].
     #[inline]
     pub fn step(&mut self, measured: Measured<'_>, target: Target<'_>) -> Result<Output, StepError> {
+        self.is_rescued = false;
         if self.is_alone {
             step(&self.controller, &mut self.memory, measured, target)
         } else {

@@ -57,7 +57,7 @@ pub use trajectory_store::{
 pub use upload::{BlobKind, Chunk, Progress, UploadBegin, UploadError};
 
 /// Version of the frame layout and of every message in it. A changed message is a changed version.
-pub const PROTOCOL_VERSION: u8 = 2;
+pub const PROTOCOL_VERSION: u8 = 3;
 
 /// Ends every frame and stands nowhere else.
 pub const DELIMITER: u8 = 0;

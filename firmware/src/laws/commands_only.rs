@@ -2,7 +2,13 @@
 
 use quatrack::gains::table::{AcceptedTable, TableKind};
 use quatrack::link::Table;
-use quatrack::{Actuation, ActuatorAware, Controller, Law, Measured, Memory, Output, Settings, StepError, Target};
+use quatrack::supervisor::{Certified, Levelled, Looked, Rescue};
+use quatrack::{
+    Actuation, ActuatorAware, Controller, FifthOrderSample, Heading, Law, Measured, Memory, Output, Settings,
+    StepError, Target,
+};
+
+use super::Laws;
 
 /// There is none.
 pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> = None;
@@ -21,6 +27,39 @@ impl Actuations {
     #[inline(always)]
     pub(crate) const fn of(&self, _table: Table) -> Option<&Actuation> {
         None
+    }
+}
+
+impl Laws {
+    /// Nothing is driven.
+    pub(crate) const fn covers(&self, _are_driven: bool) -> Certified {
+        Certified::NoMotors
+    }
+
+    /// Nobody asks.
+    #[inline(always)]
+    pub(crate) const fn thrust_m_s2(&self) -> f32 {
+        0.0
+    }
+
+    /// Not without motors.
+    pub(crate) fn brake(
+        &mut self,
+        _looked: &Looked<'_>,
+        _sample: &FifthOrderSample,
+        _heading: Heading,
+    ) -> Result<Output, StepError> {
+        Err(StepError::NoActuation)
+    }
+
+    /// Not without motors.
+    pub(crate) fn brake_from(&mut self, _: &Rescue, _: &FifthOrderSample, _: Heading) -> Option<Output> {
+        None
+    }
+
+    /// Not without motors.
+    pub(crate) fn level(&mut self, _levelled: &Levelled) -> Result<Output, StepError> {
+        Err(StepError::NoActuation)
     }
 }
 
