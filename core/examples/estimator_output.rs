@@ -6,7 +6,7 @@
 use quatrack::nalgebra::Vector3;
 use quatrack::{Quaternion, RigidState, State};
 
-/// What arrives, in the units and frames of its sender.
+/// A message as it arrives, in the units and frames of its sender.
 struct Estimate {
     position_ned_m: [f32; 3],
     velocity_ned_m_s: [f32; 3],
@@ -15,9 +15,9 @@ struct Estimate {
     body_rates_deg_s: [f32; 3],
 }
 
-/// Here the world is z up (x north, y west) and the body x forward, y left, z up: both frames are the sender's turned by half
-/// a turn about x, which keeps x and turns the signs of y and z. A rotation between two frames that are turned alike has the
-/// same angle about the turned axis.
+/// Here the world is z up (x north, y west) and the body x forward, y left, z up: both frames are the sender's turned
+/// by half a turn about x, which keeps x and turns the signs of y and z. A rotation between two frames that are turned
+/// alike has the same angle about the turned axis.
 fn rigid_state(estimate: &Estimate) -> RigidState {
     let turned = |[x, y, z]: [f32; 3]| Vector3::new(x, -y, -z);
     let [x, y, z, w] = estimate.attitude_xyzw;
@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
         attitude_xyzw: [0.0, sin, 0.0, cos],
         body_rates_deg_s: [0.0, 45.0, 0.0],
     });
-    // The check names what is wrong: a norm of 57 says that degrees went where numbers belong.
+    // The check names the fault: a norm of 57 says that degrees went where numbers belong.
     let state = found.state.validated()?;
     let thrust_axis = state.attitude.thrust_axis();
     println!("height {} m, climbing at {} m/s", state.position_m.z, state.velocity_m_s.z);

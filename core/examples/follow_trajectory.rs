@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
     let mut player = Player::new(Trajectory::new(&CLIMB)?, Rate::from_hz(500).ok_or("no rate")?);
     for tick in (0..=player.end_tick()).step_by(100) {
         let reference = player.reference(tick)?;
-        // A craft that is where it should be: what is left of the command is the reference's own input.
+        // A craft that is where it should be: the command is the reference's own input.
         let output = controller.step(&mut memory, Measured::new(reference.state()), Target::new(&reference))?;
         let thrust_m_s2 = output.command().ok_or("this law gives thrust and body rates")?.command.thrust_m_s2;
         let height_m = reference.state().position_m.z;

@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
     let mut memory = Memory::at_rest();
     let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0)?;
 
-    // Half a metre too low. What follows is the vertical part of the paper's model alone: z'' = T - g.
+    // Half a metre too low. From here on the vertical part of the paper's model alone: z'' = T - g.
     let (mut height_m, mut speed_m_s, period_s) = (0.5_f32, 0.0_f32, 0.002);
     for step in 0..=1500 {
         let velocity_m_s = Vector3::new(0.0, 0.0, speed_m_s);

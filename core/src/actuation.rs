@@ -1,4 +1,4 @@
-//! What carries thrust and body rates to the motors of a craft, and what its motors make of their commands.
+//! From thrust and body rates to the motors of a craft, and from motor commands to the forces behind their lag.
 
 use nalgebra::Vector3;
 
@@ -10,8 +10,8 @@ use crate::error::{StateError, StepError};
 use crate::mixer::{ForceRange, Wrench};
 use crate::motor_lag::{MotorLag, MotorLagError};
 
-/// A craft's way from a command to its motors, at a control rate: body-rate loop, mixer, and the lag by which motor forces are
-/// predicted.
+/// A craft's way from a command to its motors, at a control rate: body-rate loop, mixer, and the lag by which motor
+/// forces are predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Actuation {
     pub(crate) lag: MotorLag,
@@ -38,8 +38,8 @@ impl Actuation {
         Self { lag, range: ForceRange::of(airframe), airframe: *airframe, body_rates }
     }
 
-    /// The same craft as a design reckons with it: its motors have that lag, and references for it are ahead by half a control
-    /// period beside ([`Airframe::commanded_at`]).
+    /// The same craft as a design reckons with it: its motors have that lag, and references for it are ahead by half a
+    /// control period beside ([`Airframe::commanded_at`]).
     pub const fn reckoning_with(&self, lag: &MotorLag) -> Self {
         Self { body_rates: self.body_rates, ..Self::of(&self.airframe.reckoning_with(lag), *lag) }
     }

@@ -22,7 +22,7 @@ use crate::command::Limits;
 use crate::flatness::GRAVITY_M_S2;
 use crate::motor_lag::MotorLag;
 
-/// What is measured of a craft; checked by [`Airframe::new`].
+/// The measured figures of a craft; checked by [`Airframe::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -52,7 +52,7 @@ pub struct Airframe {
     pub(crate) lead_s: f32,
 }
 
-/// Motor forces per unit of what is asked for.
+/// Motor forces per unit of thrust and torque.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Mixing {
     /// `m / 4`: force per motor over thrust in m/s^2, kg.
@@ -113,8 +113,8 @@ pub enum AirframeError {
 }
 
 impl Airframe {
-    /// Crazyflie 2.1. The sources of these figures stand in its vehicle file, `gains/vehicles/crazyflie-2.1.toml`, as do those
-    /// of the others in theirs.
+    /// Crazyflie 2.1. The sources of these figures stand in its vehicle file, `gains/vehicles/crazyflie-2.1.toml`, as
+    /// do those of the others in theirs.
     pub const CRAZYFLIE_2_1: Self = Self::constant(AirframeFigures {
         mass_kg: 0.029,
         inertia_kg_m2: [16.571_71e-6, 16.655_602e-6, 29.261_652e-6],
@@ -199,8 +199,8 @@ impl Airframe {
         Self::new(AirframeFigures { motor_lag_s, ..self.figures })
     }
 
-    /// The same craft under commands that are held over the period of `rate`: they take effect half a period late, on average,
-    /// and references made for it are ahead by as much.
+    /// The same craft under commands that are held over the period of `rate`: they take effect half a period late, on
+    /// average, and references made for it are ahead by as much.
     pub const fn commanded_at(&self, rate: Rate) -> Self {
         Self { lead_s: self.figures.motor_lag_s + 0.5 / rate.hz() as f32, ..*self }
     }
@@ -218,7 +218,7 @@ impl Airframe {
         }
     }
 
-    /// What it was made from.
+    /// The figures that it was made from.
     pub const fn figures(&self) -> &AirframeFigures {
         &self.figures
     }
@@ -230,7 +230,8 @@ impl Airframe {
 }
 
 impl Limits {
-    /// What the four motors of a craft can do, within body rates of so many rad/s; a rate that is not positive binds nothing.
+    /// The range of the four motors of a craft, within body rates of so many rad/s; a rate that is not positive binds
+    /// nothing.
     pub fn of(airframe: &Airframe, body_rates_max_rad_s: Vector3<f32>) -> Self {
         let figures = airframe.figures();
         let per_mass = 4.0 / figures.mass_kg;

@@ -50,7 +50,7 @@ impl Crc32c {
     /// Whether the last four bytes were the checksum, lowest byte first, of the bytes before them.
     #[cfg(any(feature = "link", test))]
     pub(crate) const fn ends_with_itself(self) -> bool {
-        // What is left of any bytes followed by their own checksum.
+        // The remainder of any bytes followed by their own checksum.
         const RESIDUE: u32 = 0xB798_B438;
         self.register == RESIDUE
     }

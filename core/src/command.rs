@@ -1,4 +1,5 @@
-//! The command: thrust and body rates in, the same within the vehicle's limits out, with a report of what was limited.
+//! The command: thrust and body rates in, the same within the vehicle's limits out, with a report of each limit that
+//! was met.
 
 use core::fmt;
 use core::hint::cold_path;
@@ -17,7 +18,7 @@ pub struct Command {
 }
 
 impl Command {
-    /// No thrust, no rotation: what a stopped craft is given.
+    /// No thrust, no rotation: the command of a stopped craft.
     pub const ZERO: Self = Self { thrust_m_s2: 0.0, body_rates_rad_s: Vector3::new(0.0, 0.0, 0.0) };
 
     /// Whether all four numbers are finite.
@@ -28,7 +29,7 @@ impl Command {
     }
 }
 
-/// What a vehicle can be asked for; built with [`Limits::new`].
+/// The range of commands that a vehicle can follow; built with [`Limits::new`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     thrust_min_m_s2: f32,
@@ -141,7 +142,7 @@ impl From<Limited> for u8 {
 }
 
 impl Limits {
-    /// The whole range of f32: never binds, and still refuses what is not finite.
+    /// The whole range of f32: never binds, and still refuses numbers that are not finite.
     pub const NONE: Self = Self {
         thrust_min_m_s2: f32::MIN,
         thrust_max_m_s2: f32::MAX,
@@ -167,7 +168,8 @@ impl Limits {
         }
     }
 
-    /// The tighter of these limits and a table's, each; where nothing is left of the thrust, the table's counts for nothing.
+    /// The tighter of these limits and a table's, each; where nothing is left of the thrust, the table's counts for
+    /// nothing.
     #[must_use]
     pub fn within(&self, table: &Self) -> Self {
         let lesser = |a: f32, b: f32| if a < b { a } else { b };
@@ -197,7 +199,7 @@ impl Limits {
         self.body_rates_max_rad_s
     }
 
-    /// The command cut to the limits and what was cut; nothing where a number is not finite.
+    /// The command cut to the limits and the cuts; nothing where a number is not finite.
     #[inline]
     pub fn saturate(&self, command: &Command) -> Option<(Command, Limited)> {
         let Command { thrust_m_s2: thrust, body_rates_rad_s: rates } = *command;

@@ -1,4 +1,4 @@
-//! What defmt writes for types that hold vectors, which have no format of their own: their numbers, with their units.
+//! The defmt formats of types that hold vectors, which have none of their own: their numbers, with their units.
 
 use defmt::{Format, Formatter, write};
 use nalgebra::Vector3;

@@ -1,4 +1,4 @@
-//! What can be wrong, one small enum per edge; every variant carries the offending value and says what to do.
+//! All errors, one small enum per edge; every variant carries the offending value and says what to do.
 
 use core::fmt;
 
@@ -67,7 +67,7 @@ pub enum StateError {
     NonFinite {
         /// Where.
         field: Field,
-        /// What stands there.
+        /// The value found.
         value: f32,
     },
     /// The quaternion is no rotation: check its scaling and order (scalar first).
@@ -86,7 +86,7 @@ pub enum ReferenceError {
     NonFinite {
         /// Where.
         field: Field,
-        /// What stands there.
+        /// The value found.
         value: f32,
     },
     /// Free fall: without thrust the attitude is not determined. Plan with a thrust bound.
@@ -116,7 +116,7 @@ pub enum StepError {
     /// State and reference are sound, but the law asks for an attitude at which the flat map is singular (free fall,
     /// thrust downwards, heading half a turn off), or for numbers beyond the range of f32.
     Singular,
-    /// What was measured has no body rates, and motor forces take them.
+    /// The measurement has no body rates, and motor forces take them.
     NoBodyRates,
     /// The law gives motor forces, and the target has none.
     NoForces,
@@ -128,7 +128,7 @@ pub enum StepError {
 }
 
 impl StateError {
-    /// What is wrong with measured body rates.
+    /// The fault of measured body rates, if they have one.
     #[cold]
     pub(crate) fn of_body_rates(body_rates_rad_s: &Vector3<f32>) -> Option<Self> {
         let bad = body_rates_rad_s.iter().find(|rate| !rate.is_finite())?;

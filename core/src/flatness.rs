@@ -21,7 +21,7 @@ pub const MIN_THRUST_M_S2: f32 = 0.1;
 /// Smallest vertical component of a reference's thrust axis: a tilt of 177 degrees, next to the singularity at 180.
 pub const MIN_AXIS_Z: f32 = -0.998_6;
 
-/// What the flat map gives.
+/// State and input of the flat map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttitudeAndInput {
     /// Attitude, body to world, of unit norm.
@@ -30,7 +30,7 @@ pub struct AttitudeAndInput {
     pub input: Command,
 }
 
-/// What the inverse map gives, at one instant.
+/// The flat output and its derivatives of the inverse map, at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlatDerivatives {
     /// Acceleration without gravity, m/s^2.
@@ -79,7 +79,7 @@ pub fn phi_at_heading(
     Ok(tilt.with_heading(heading, heading_rate_rad_s))
 }
 
-/// The inverse of Phi: what the flat output does under an attitude, an input and the rate of the thrust, which the
+/// The inverse of Phi: the derivatives of the flat output under an attitude, an input and the rate of the thrust, which the
 /// model (1) leaves free.
 pub fn phi_inverse(attitude: Quaternion, input: &Command, thrust_rate_m_s3: f32) -> FlatDerivatives {
     let n = attitude.thrust_axis();
@@ -95,7 +95,7 @@ pub fn phi_inverse(attitude: Quaternion, input: &Command, thrust_rate_m_s3: f32)
     }
 }
 
-/// Direction of the thrust and how it turns: what both forms of Phi share.
+/// Direction of the thrust and how it turns: the part that both forms of Phi share.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tilt {
     thrust_m_s2: f32,

@@ -6,7 +6,7 @@ use nalgebra::SMatrix;
 
 /// A constant feedback gain: `M` outputs from `N` errors, finite, every column with an entry that is not zero.
 ///
-/// The last condition is what lets a step look at its outputs alone: an error that is not finite shows in one of them.
+/// Because of the last condition a step looks at its outputs alone: an error that is not finite shows in one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gain<const M: usize, const N: usize> {
     rows: [[f32; N]; M],

@@ -15,7 +15,7 @@
 //! let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0)?;
 //! let output = controller.step(&mut memory, Measured::new(&state), Target::new(&reference))?;
 //! let Output::Command(step) = output else { unreachable!("the law gives thrust and body rates") };
-//! // 10 cm too low: 100 m/s^2 per metre on top of gravity, cut to what the motors can do.
+//! // 10 cm too low: 100 m/s^2 per metre on top of gravity, cut to the range of the motors.
 //! assert_eq!(step.command.thrust_m_s2, 16.5);
 //! assert!(step.limited.thrust());
 //! # Ok::<(), Box<dyn core::error::Error>>(())
@@ -26,7 +26,7 @@
 //! ```text
 //! link                        frames, uploads (feature `link`)
 //!   gains                     tables of every kind
-//!     control                 any law down to command or motor forces; what it remembers; from one to the next
+//!     control                 any law down to command or motor forces; its memory; the handover to another
 //!       supervisor            whether its output may pass
 //!       cascade               nested loops with limits, observers, air; with its gains
 //!       law                   equilibrium (E), flat output (F), integral action, gains along a trajectory, actuator-aware
@@ -43,7 +43,8 @@
 //!                   math, checksum  square root, sine and cosine; CRC-32C
 //! ```
 //!
-//! Features, none of them default: `cascade` for the law of nested loops; `link` for the serial link's frames; `serde` and `defmt` for plain data to be stored or logged.
+//! Features, none of them default: `cascade` for the law of nested loops; `link` for the serial link's frames; `serde`
+//! and `defmt` for plain data to be stored or logged.
 //!
 //! Conventions: world frame z up; quaternion scalar first, Hamilton product, body to world; thrust divided by mass, in
 //! m/s^2; body rates in rad/s.

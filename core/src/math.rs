@@ -29,7 +29,7 @@ extern "C" fn vsqrt(x: f32) -> f32 {
 /// Sine and cosine of an angle in radians, within 1.1 ulp each for `|x| <= 1000`; NaN for a non-finite angle.
 ///
 /// Argument reduction by multiples of pi/2 held in four parts (Cody and Waite), the first three short enough for their
-/// products to be exact, and what its last step rounds away carried on to the result; then the minimax polynomials of
+/// products to be exact, and the rounding error of its last step carried on to the result; then the minimax polynomials of
 /// Cephes (`sinf`, `cosf`) on +-pi/4.
 #[inline]
 pub fn sin_cos(x: f32) -> (f32, f32) {

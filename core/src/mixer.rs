@@ -1,8 +1,10 @@
-//! The mixer: a thrust and a torque in, four motor forces within their range out, with a report of what was given up.
+//! The mixer: a thrust and a torque in, four motor forces within their range out, with a report of each part that was
+//! given up.
 //!
-//! Where the motors cannot do all that is asked, roll and pitch torque come first, then thrust, then yaw torque: a craft that
-//! keeps its attitude can still recover height and heading. Thrust moves no further than roll and pitch need; yaw keeps
-//! what is then left; only roll and pitch that exceed the whole range are scaled, both by the same factor.
+//! Where the motors cannot do all that is asked, roll and pitch torque come first, then thrust, then yaw torque: a
+//! craft that keeps its attitude can still recover height and heading. Thrust moves no further than roll and pitch
+//! need; yaw keeps the range that is then left; only roll and pitch that exceed the whole range are scaled, both by the
+//! same factor.
 
 use nalgebra::Vector3;
 
@@ -20,8 +22,8 @@ pub struct Wrench {
     pub torque_n_m: Vector3<f32>,
 }
 
-/// What a step could not do: motors at an end of their range, parts of the wrench that the mixer gave up, and parts of the
-/// law's own command that were cut before.
+/// The limits that a step met: motors at an end of their range, parts of the wrench that the mixer gave up, and parts
+/// of the law's own command that were cut before.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(from = "u16", into = "u16"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -65,7 +67,7 @@ impl MotorLimited {
         self.bits & Self::YAW != 0
     }
 
-    /// What was cut of a command of thrust and body rates.
+    /// The cuts of a command of thrust and body rates.
     pub const fn command(self) -> Limited {
         Limited::from_bits((self.bits >> 8) as u8)
     }
@@ -96,13 +98,13 @@ impl MotorLimited {
         Self { bits: self.bits | Self::YAW }
     }
 
-    /// What was cut of a command, and nothing beside.
+    /// The cuts of a command, and nothing beside.
     #[inline]
     pub const fn of_command(limited: Limited) -> Self {
         Self::NOTHING.with_command(limited)
     }
 
-    /// The same with what was cut of a command.
+    /// The same with the cuts of a command.
     #[inline]
     pub(crate) const fn with_command(self, limited: Limited) -> Self {
         Self { bits: self.bits | (limited.bits() as u16) << 8 }
@@ -156,7 +158,7 @@ impl Parts {
 }
 
 impl Airframe {
-    /// Motor forces for a wrench and what was given up to stay within their range; nothing where a number of the wrench is
+    /// Motor forces for a wrench and the parts given up to stay within their range; nothing where a number of the wrench is
     /// not finite.
     #[inline]
     pub fn mix(&self, wrench: &Wrench) -> Option<(MotorForces, MotorLimited)> {
@@ -228,7 +230,7 @@ fn by_priority(asked: Parts, min: f32, max: f32) -> Option<(MotorForces, MotorLi
     if shifted != thrust {
         bits |= MotorLimited::THRUST;
     }
-    // M2 and M4 gain by yaw what M1 and M3 lose.
+    // M2 and M4 gain by yaw as much as M1 and M3 lose.
     let (along, across) = ((roll + pitch).abs(), (pitch - roll).abs());
     let (above, below) = (max - shifted, shifted - min);
     let most = smaller(above - across, below - along);
@@ -248,11 +250,11 @@ fn smaller(a: f32, b: f32) -> f32 {
 
 /// The forces that a motor can give, not below zero.
 ///
-/// By integers: floats of one sign stand in the order of their bits, and those below zero or not finite come after all others.
-/// That takes half the instructions of two comparisons by the FPU.
+/// By integers: floats of one sign stand in the order of their bits, and those below zero or not finite come after all
+/// others. That takes half the instructions of two comparisons by the FPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ForceRange {
-    /// Bits of the least force, and what the bits of the most are beyond them.
+    /// Bits of the least force, and by how much the bits of the most exceed them.
     least: u32,
     span: u32,
     min_n: f32,
@@ -270,7 +272,7 @@ impl ForceRange {
     pub(crate) fn saturate(&self, commands: &MotorForces) -> Option<(MotorForces, MotorLimited)> {
         let is_within = |command: f32| command.to_bits().wrapping_sub(self.least) <= self.span;
         let cut = |command: f32| {
-            // Signed: what is below zero comes first.
+            // Signed: negative forces come first.
             let order = command.to_bits() as i32;
             let at_least = if order < self.min_n.to_bits() as i32 { self.min_n } else { command };
             if order > self.max_n.to_bits() as i32 { self.max_n } else { at_least }
@@ -279,7 +281,8 @@ impl ForceRange {
         // NaN and infinities stay visible in a sum.
         let is_finite = || ((u1 + u2) + (u3 + u4)).to_bits() << 1 < f32::INFINITY.to_bits() << 1;
         let limited = MotorLimited { bits: MotorLimited::MOTORS };
-        // Each way out leaves alone what has been looked at: the later a motor is the first to be cut, the fewer are left.
+        // Each way out leaves alone the motors that have been looked at: the later a motor is the first to be cut, the
+        // fewer are left.
         if !is_within(u1) {
             if is_finite() { Some(([cut(u1), cut(u2), cut(u3), cut(u4)], limited)) } else { None }
         } else if !is_within(u2) {

@@ -1,7 +1,7 @@
 //! How a motor answers: the time constant and the control rate in; the force at the next step out.
 //!
 //! `f' = (u - f) / tau` with the command u held over a period h has the exact solution `f+ = u + (f - u) e^(-h / tau)`. The
-//! motors are not measured: this is what stands for their forces.
+//! motors are not measured: this prediction is taken for their forces.
 
 use core::fmt;
 
@@ -62,7 +62,7 @@ impl MotorLag {
         self.period_s
     }
 
-    /// What is left of a difference between force and command after a period: `e^(-h / tau)`.
+    /// The share of a difference between force and command that is left after a period: `e^(-h / tau)`.
     pub const fn decay(&self) -> f32 {
         self.decay
     }

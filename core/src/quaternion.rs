@@ -255,7 +255,7 @@ mod tests {
         assert!((turned - attitude.thrust_axis()).norm() < 1e-6);
         let product = heading.quaternion().conjugate() * Q;
         assert!((attitude.dot(product) - 1.0).abs() < 1e-6);
-        // A quarter turn to the left: what lies to the north of the craft lies ahead of it.
+        // A quarter turn to the left: a point to the north of the craft lies ahead of it.
         let north = Heading::from_angle(core::f32::consts::FRAC_PI_2).to_heading_frame(Vector3::new(0.0, 1.0, 0.0));
         assert!((north - Vector3::new(1.0, 0.0, 0.0)).norm() < 1e-6);
     }

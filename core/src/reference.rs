@@ -8,7 +8,7 @@ use crate::flatness::{AttitudeAndInput, Tilt};
 use crate::quaternion::Heading;
 use crate::state::State;
 
-/// The flat output and its derivatives at one time, world frame; what a planner or a stored trajectory knows.
+/// The flat output and its derivatives at one time, world frame; as a planner or a stored trajectory gives it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FlatSample {
@@ -107,7 +107,7 @@ impl Reference {
         Ok(Self::of_map(sample, heading, &tilt.with_heading(heading, sample.heading_rate_rad_s)))
     }
 
-    /// Moves a reference that is kept to what [`Self::from_flat_at`] gives, where it lies, for a sample whose numbers were
+    /// Overwrites a reference in place with the result of [`Self::from_flat_at`], for a sample whose numbers were
     /// looked at where they came from; where there is nothing to be given it stays as it was. A position or velocity that
     /// is not finite all the same shows as an error of the step that follows it.
     ///

@@ -1,4 +1,4 @@
-//! The estimated state of a craft with inertia: what the paper's model has, and the body rates that it commands.
+//! The estimated state of a craft with inertia: the state of the paper's model, and the body rates that it commands.
 
 use nalgebra::Vector3;
 

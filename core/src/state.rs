@@ -7,7 +7,7 @@ use crate::quaternion::{Heading, Quaternion};
 
 /// Largest deviation of a measured quaternion's squared norm from 1 that is taken for rounding and normalised away:
 /// the norm itself may be off by 1.1 %. Estimators keep theirs within 1e-6, compressed quaternions of a radio link within
-/// 2e-3; what is further off is no attitude.
+/// 2e-3; a quaternion further off is no attitude.
 pub const NORM_SQUARED_TOLERANCE: f32 = 3.0 / 128.0;
 
 /// Position, attitude and velocity: `x = [r q v]` of the paper's (2a), regrouped in the canonical order.
@@ -65,7 +65,7 @@ impl State {
     }
 }
 
-/// A state whose quaternion is an attitude: its norm is known, and divided out of what is computed from it.
+/// A state whose quaternion is an attitude: its norm is known, and divided out of every result computed from it.
 #[derive(Clone, Copy, Debug)]
 pub struct NormalizedState<'a> {
     state: &'a State,

@@ -63,7 +63,7 @@ pub struct Known {
 /// The crafts that the controller knows.
 pub const KNOWN: [Known; 3] = [
     known("crazyflie-2.1", IDS[0], Airframe::CRAZYFLIE_2_1),
-    known("crazyflie-2.1-upgrade", IDS[1], Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
+    known("crazyflie-2.1-upgrade-kit", IDS[1], Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
     known("crazyflie-2.1-brushless", IDS[2], Airframe::CRAZYFLIE_2_1_BRUSHLESS),
 ];
 

@@ -125,6 +125,11 @@ impl Flight {
         self.heard_at = Some(now);
     }
 
+    /// Whether no frame has come for longer than a flight tolerates; not before the first one.
+    pub fn is_link_silent(&self, now: Tick) -> bool {
+        age(self.heard_at, now).is_some_and(|ticks| ticks > self.config.link_silence_max_ticks)
+    }
+
     /// Takes a state. In lock-step it is to be stepped on at once.
     pub fn accept(&mut self, state: StateIn, now: Tick) {
         self.motors.accept(None);
@@ -239,6 +244,7 @@ impl Flight {
         if self.mode().motors_allowed() {
             return Ok(());
         }
+        self.laws.choose_default(self.motors.are_driven());
         let link_silence_ticks = age(self.heard_at, now);
         let Config { link_silence_max_ticks, state_age_max_ticks, .. } = self.config;
         let preflight = Preflight {

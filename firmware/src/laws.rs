@@ -25,7 +25,7 @@ use quatrack::{
 pub use self::motors::Actuations;
 #[cfg(feature = "motors")]
 pub use self::motors::table;
-use self::motors::{BUILT_IN_TO_MOTORS, loaded, step};
+use self::motors::{BUILT_IN_TO_MOTORS, cascade, loaded, step};
 use crate::rates::TICK_RATE;
 use crate::vehicle::{STEP_RATE, VEHICLE};
 
@@ -56,12 +56,14 @@ pub struct Laws {
     handover: Handover,
     /// What carries commands to the motors.
     pub actuations: Actuations,
+    /// Somebody has chosen the law.
+    is_chosen: bool,
     /// Another law has taken over from the one in force.
     is_rescued: bool,
     store: &'static mut GainStore,
 }
 
-/// What a board flies that is told nothing.
+/// What a board flies that is told nothing and knows no body rates; where it does, the cascade.
 const DEFAULT: LawChoice = LawChoice::new(Table::LqrE);
 
 impl Laws {
@@ -78,6 +80,7 @@ impl Laws {
             before: DEFAULT,
             handover: Handover::OVER,
             actuations: Actuations::new(),
+            is_chosen: false,
             is_rescued: false,
             store,
         }
@@ -101,7 +104,7 @@ impl Laws {
             return;
         }
         self.store.assign(rate.map(|rate| (VEHICLE, rate)));
-        if matches!(self.choice.table, Table::Loaded(_) | Table::ActuatorAware) {
+        if matches!(self.choice.table, Table::Loaded(_) | Table::ActuatorAware | Table::Cascade) {
             self.choice = DEFAULT;
         }
         self.settle();
@@ -129,7 +132,19 @@ impl Laws {
             return Ok(());
         }
         self.controller_of(&choice).ok_or(Refused::NoTable)?;
+        self.is_chosen = true;
         self.change(choice, self.choice, steps)
+    }
+
+    /// Before arming, where nobody has chosen: the cascade where there are body rates to fly it on.
+    #[cold]
+    pub fn choose_default(&mut self, has_body_rates: bool) {
+        let table = if has_body_rates { Table::Cascade } else { DEFAULT.table };
+        let choice = LawChoice::new(table);
+        if !self.is_chosen && self.controller_of(&choice).is_some() {
+            // It is on board.
+            let _ = self.change(choice, choice, 0);
+        }
     }
 
     /// Puts an accepted table in the place of the uploaded one, which becomes the one before. Where it is flown, the flight
@@ -205,12 +220,19 @@ impl Laws {
         self.controller.law().follows_forces() || (!self.is_alone && self.is_any_to_motors())
     }
 
+    /// Whether the law that is stepped takes the flat output itself, and no other beside it.
+    #[cfg(feature = "motors")]
+    #[inline]
+    pub fn follows_samples(&self) -> bool {
+        self.is_alone && self.controller.law().follows_samples()
+    }
+
     #[cfg(feature = "motors")]
     #[cold]
     #[inline(never)]
     fn is_any_to_motors(&self) -> bool {
         let gives_forces =
-            |choice| self.controller_of(choice).is_some_and(|controller| controller.law().follows_forces());
+            |choice| self.controller_of(choice).is_some_and(|c| c.law().follows_forces() || c.law().follows_samples());
         gives_forces(&self.choice) || (!self.handover.is_over() && gives_forces(&self.before))
     }
 
@@ -269,11 +291,10 @@ impl Laws {
     fn controller_of(&self, choice: &LawChoice) -> Option<Controller<'_>> {
         let Table::Loaded(slot) = choice.table else { return self.built_in(choice) };
         let settings = Settings {
-            limits: self.limits,
             actuation: self.actuations.of(choice.table),
             feed_forward: choice.feed_forward,
             error_form: choice.error_form,
-            player_rate: TICK_RATE,
+            ..Settings::new(self.limits, TICK_RATE)
         };
         loaded(&self.store.table(slot)?, &settings)
     }
@@ -283,6 +304,7 @@ impl Laws {
     fn built_in(&self, choice: &LawChoice) -> Option<Controller<'static>> {
         let law = match choice.table {
             Table::ActuatorAware if self.rate() == Some(STEP_RATE) => BUILT_IN_TO_MOTORS?.into(),
+            Table::Cascade if self.rate() == Some(STEP_RATE) => cascade()?,
             _ => choice.built_in()?,
         };
         Some(Controller::new(law, self.limits))

@@ -4,8 +4,8 @@ use heapless::Vec;
 use quatrack::Tick;
 use quatrack::gains::table::{GainTable, LoadError};
 use quatrack::link::{
-    BlobError, BlobKind, BlobReceiver, Decoder, Encoder, FRAME_BYTES, FaultReport, FromBoard, Identity, LoopStatistics,
-    Parameter, ParameterId, Received, Refusal, TRAJECTORY_BLOB_BYTES, TRAJECTORY_PIECES, Telemetry, ToBoard,
+    BLOB_BYTES_MAX, BlobError, BlobKind, BlobReceiver, Decoder, Encoder, FRAME_BYTES, FaultReport, FromBoard, Identity,
+    LoopStatistics, Parameter, ParameterId, Received, Refusal, TRAJECTORY_PIECES, Telemetry, ToBoard,
     TrajectoryCommand, TrajectoryId, UploadBegin, Version,
 };
 
@@ -41,7 +41,7 @@ pub trait Vitals {
 }
 
 /// Room for the blob that is being uploaded.
-pub type Uploads = BlobReceiver<TRAJECTORY_BLOB_BYTES>;
+pub type Uploads = BlobReceiver<BLOB_BYTES_MAX>;
 
 /// Frames of one connection after the other.
 pub struct Session {

@@ -1,6 +1,6 @@
-// actuator-aware-kit-20ms for crazyflie-2.1-upgrade at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 1fd9687edc9361340e8beb22eceb546ff7bebfda3cc6e6fbaa931713709db1b4
-// Certificate f819604e81757628d325828f67f706854aad1e578c345ae89268a0e5e7175e05
+// actuator-aware-kit-20ms for crazyflie-2.1-upgrade-kit at 500 Hz: made by `quatrack gains design` and not edited by hand.
+// Design 6cdf556d61023855460fb248375b1c22de863319fc1e85977b9e8f945571d755
+// Certificate c79a6c3e94a6725180f0ac77aa78e8e6e04cf1f520c17e91adad2b09071288b5
 
 /// For a Crazyflie 2.1 with the upgrade kit whose motors are known to lag about 20 ms.
 #[rustfmt::skip]

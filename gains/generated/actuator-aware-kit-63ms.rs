@@ -1,6 +1,6 @@
-// actuator-aware-kit-63ms for crazyflie-2.1-upgrade at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 25599223af87fae9b984aec819e88a0c51a24be80c69e5b7f3de593291335f07
-// Certificate a21424d7dc0fdb0f351000663c922486a40d1e41ff97d3418adb8ef51bf3ea67
+// actuator-aware-kit-63ms for crazyflie-2.1-upgrade-kit at 500 Hz: made by `quatrack gains design` and not edited by hand.
+// Design 572421a51ccee2dc0c2a2e121db2e630bea0a9acad205a3505a75fc181cf50e3
+// Certificate 4de0c52244731e95024fe84422d5bf0643d7d3e00fb9450387fce950aadc8685
 
 /// For a Crazyflie 2.1 with the upgrade kit whose motors are known to lag about 63.5 ms.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
-// actuator-aware-kit for crazyflie-2.1-upgrade at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 949aef508f0f173cc047259b938c9afb60f6cc6b06e0617f69af37666a074304
-// Certificate e36c355d9b5af99561432564411cb33c82e57fcbf2eb514e205756bcea04b770
+// actuator-aware-kit for crazyflie-2.1-upgrade-kit at 500 Hz: made by `quatrack gains design` and not edited by hand.
+// Design e065eb7a60be5315cbdc1cc7e73acc26c12dc3973b6313ec9d8afa9839d54775
+// Certificate 6f639ec93123f75191998f64bf7e7f8a2cc08b8c0c441fcb77e93178524187c2
 
 /// The default for a Crazyflie 2.1 with the upgrade kit: straight to the motors, for any published lag of them.
 #[rustfmt::skip]

@@ -37,8 +37,8 @@ pub enum CascadeLimitsError {
 }
 
 impl CascadeLimits {
-    /// 2 m/s over ground, 1.5 m/s up and down, 54.5 degrees.
-    pub const STANDARD: Self = Self { speed_m_s: 2.0, climb_m_s: 1.5, tilt_tangent: 1.402 };
+    /// 1.8 m/s over ground, 1.5 m/s up and down, 54.5 degrees.
+    pub const STANDARD: Self = Self { speed_m_s: 1.8, climb_m_s: 1.5, tilt_tangent: 1.402 };
 
     /// Checks the figures.
     ///

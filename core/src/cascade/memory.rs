@@ -6,6 +6,7 @@ use super::air_learner::SeenAir;
 use super::estimate::{Carried, HeldVelocity, Now};
 use super::force_observer::Disturbance;
 use super::ground::Ground;
+use super::reference::Approach;
 use super::torque_observer::Imbalance;
 use super::yield_learner::MotorYield;
 use crate::mixer::Parts;
@@ -22,6 +23,8 @@ pub struct CascadeMemory {
     pub(super) air: SeenAir,
     pub(super) motors: MotorYield,
     pub(super) ground: Ground,
+    /// On the way to the reference.
+    pub(super) approach: Approach,
     /// Mean of the forces over the step that has begun, in parts, N.
     pub(super) coming: Parts,
     pub(super) seen: Seen,
@@ -74,6 +77,7 @@ impl CascadeMemory {
             air: SeenAir::NONE,
             motors: MotorYield::TOLD,
             ground,
+            approach: Approach::NONE,
             coming: none,
             before: Before { velocity: zero, axis: up, answer: [0.0; 2] },
             seen: Seen {

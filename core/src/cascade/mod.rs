@@ -1,11 +1,13 @@
-//! The cascade: the equilibrium LQR of a craft whose motors lag, factored so that it has limits, told of the air, with observers in
-//! place of an integral. Estimate, gyroscope and a reference to its fifth derivative in; four motor forces out.
+//! The cascade: the equilibrium LQR of a craft whose motors lag, factored so that it has limits, told of the air, with
+//! observers in place of an integral. Estimate, gyroscope and a reference to its fifth derivative in; four motor forces
+//! out.
 //!
 //! In the order in which data flows, with `n = R z` and forces in parts of thrust, roll, pitch and yaw:
 //!
 //! ```text
 //! estimate        p, v, q carried on to the step; v held to p
-//! reference       a' = a + d v - d^, ...; flat map -> q_r, w_r, f_r, u_r; answer to the air's moment
+//! outer           approach: the velocity towards p_r that the craft should have beside the reference's
+//! reference       a' = a + d v - d^, ...; flat map -> q_r, w_r, f_r, u_r; answer to the air's moment at v_r and some of the approach
 //! outer           A = -k_v sat[(v - v_r) + sat(k_p / k_v (p - p_r))];  h = a' + A + g z, within its limits
 //! attitude        e = vector part of q_d^-1 q, q_d along h at the reference's heading
 //! inner           u = u_r - (k_th 2 e + k_w (w - w_r) + k_f (f^ + t^ - f_r)) - t^;   t = m / 4 (h . n - d^_z)
@@ -18,8 +20,8 @@
 //! ground          whether the craft stands, and the observers with it
 //! ```
 //!
-//! [`Cascade::command`] is the upper half, [`Cascade::observe`] the lower one: a caller with little time at the step may call it
-//! before the next one. Where nothing is limited and the observers see nothing, the command is the LQR's.
+//! [`Cascade::command`] is the upper half, [`Cascade::observe`] the lower one: a caller with little time at the step
+//! may call it before the next one. Where nothing is limited and the observers see nothing, the command is the LQR's.
 
 mod air;
 mod air_learner;
@@ -123,7 +125,8 @@ impl Cascade {
         })
     }
 
-    /// The same, stiffer or softer in position by a factor: its square times the position gains, itself times the velocity gains.
+    /// The same, stiffer or softer in position by a factor: its square times the position gains, itself times the
+    /// velocity gains.
     pub const fn with_stiffness(self, factor: f32) -> Self {
         Self { outer: self.outer.scaled(factor), ..self }
     }
@@ -144,7 +147,8 @@ impl Cascade {
         (now.drag, self.air_learner.moment_n_s(&now))
     }
 
-    /// One step with all that follows it, with the specific force in the body frame (m/s^2) where an accelerometer gives one;
+    /// One step with all that follows it, with the specific force in the body frame (m/s^2) where an accelerometer
+    /// gives one;
     /// `forces_n` are those that the motors should have, and move on.
     ///
     /// # Errors
@@ -164,8 +168,8 @@ impl Cascade {
     /// The commanded forces for this step, N, finite and within the motors' range, and what was given up to stay there.
     ///
     /// # Errors
-    /// [`StepError`] where the estimate is not to be flown on or the reference has no attitude. There are then no forces and the
-    /// memory is as it was: the caller stops or levels, and never holds the last ones.
+    /// [`StepError`] where the estimate is not to be flown on or the reference has no attitude. There are then no
+    /// forces and the memory is as it was: the caller stops or levels, and never holds the last ones.
     pub fn command(
         &self,
         memory: &mut CascadeMemory,
@@ -186,6 +190,11 @@ impl Cascade {
         let mut now = carried.at_step(input.state, input.body_rates_rad_s, period_s)?;
         held.step(&mut now, period_s);
 
+        let flat = &input.sample.flat;
+        let position = difference(&now.position, &flat.position_m);
+        let velocity = difference(&now.velocity, &flat.velocity_m_s);
+        let approach = self.outer.approach(&memory.approach, &position, period_s);
+
         let (standing, disturbance, air) =
             (memory.ground.is_standing(), &memory.disturbance, self.air_learner.now(&memory.air));
         let around = Surroundings {
@@ -193,12 +202,10 @@ impl Cascade {
             disturbance: disturbance.across,
             slope: disturbance.slope,
             wind: memory.air.wind,
+            approach,
         };
         let reference = InAir::of(input.sample, input.heading, &around, now.attitude, self.airframe()).ok()?;
 
-        let flat = &input.sample.flat;
-        let position = difference(&now.position, &flat.position_m);
-        let velocity = difference(&now.velocity, &flat.velocity_m_s);
         let correction = self.outer.correction(&position, &velocity, standing);
         let wanted = self.outer.limited(&reference.acceleration, &correction);
 
@@ -234,7 +241,7 @@ impl Cascade {
             undisturbed: !(far || limited.any()),
         };
         memory.coming = middle(&forces, &turned(&parts_of(forces_n), share));
-        (memory.carried, memory.held) = (carried, held);
+        (memory.carried, memory.held, memory.approach) = (carried, held, approach);
         Some((commands_n, limited))
     }
 
@@ -253,7 +260,8 @@ impl Cascade {
             (self.air_learner.now(&memory.air).drag, mean(&before.velocity, &seen.now.velocity));
         let drag = smaller(known, BELIEVED_DRAG_MAX_PER_S);
         if known > drag {
-            // What is known beyond is taken of the reference's velocity, as the reference has it: it is no part of the loop.
+            // What is known beyond is taken of the reference's velocity, as the reference has it: it is no part of the
+            // loop.
             let (rest, v) = ((known - drag) / drag, &seen.wanted);
             mean_velocity += Vector3::new(rest * v.x, rest * v.y, rest * v.z);
         }

@@ -3,6 +3,8 @@
 use core::fmt;
 
 use crate::actuation::Actuation;
+#[cfg(feature = "cascade")]
+use crate::cascade::Cascade;
 use crate::clock::Rate;
 use crate::command::Limits;
 use crate::law::{ErrorForm, FeedForward};
@@ -15,6 +17,9 @@ pub struct Settings<'a> {
     /// What carries commands to the motors; a table for motor forces takes that of its own lag
     /// ([`crate::gains::table::AcceptedTable::actuation`]).
     pub actuation: Option<&'a Actuation>,
+    /// The law that was made of a table of the cascade, for that table.
+    #[cfg(feature = "cascade")]
+    pub cascade: Option<&'a Cascade>,
     /// Whether the reference's input is added.
     pub feed_forward: FeedForward,
     /// How the equilibrium law forms its error; the others have one form only.
@@ -27,7 +32,15 @@ impl Settings<'_> {
     /// Limits and the rate of the player alone: no motors, no feed-forward, errors in the heading frame.
     pub const fn new(limits: Limits, player_rate: Rate) -> Self {
         let (feed_forward, error_form) = (FeedForward::Without, ErrorForm::HeadingFrame);
-        Self { limits, actuation: None, feed_forward, error_form, player_rate }
+        Self {
+            limits,
+            actuation: None,
+            #[cfg(feature = "cascade")]
+            cascade: None,
+            feed_forward,
+            error_form,
+            player_rate,
+        }
     }
 }
 
@@ -38,6 +51,8 @@ impl Settings<'_> {
 pub enum ControllerError {
     /// Its law gives motor forces, and there is nothing to carry any.
     NoActuation,
+    /// It is a table of the cascade, and the law that was made of it is not given.
+    NoCascade,
     /// The actuation reckons with another motor lag than the table.
     MotorLag {
         /// The table's, s.
@@ -51,6 +66,9 @@ impl fmt::Display for ControllerError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoActuation => f.write_str("controller: the table is for motor forces; give an actuation"),
+            Self::NoCascade => {
+                f.write_str("controller: the table is of the cascade; give the law that it makes of the craft")
+            }
             Self::MotorLag { table_s, actuation_s } => write!(
                 f,
                 "controller: the table reckons with a motor lag of {table_s} s, the actuation with {actuation_s} s; take \

@@ -7,7 +7,7 @@ use super::motion::Imu;
 
 /// Sums samples up to the next prediction: of a gyroscope at 1 kHz, ten for a filter that predicts at 100 Hz.
 ///
-/// The mean of the body rates is what a rotation needs, up to the product of two changes of direction within a period.
+/// A rotation needs the mean of the body rates, up to the product of two changes of direction within a period.
 #[derive(Clone, Copy, Debug)]
 pub struct ImuAverager {
     rates: Vector3<f32>,

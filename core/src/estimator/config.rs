@@ -1,14 +1,14 @@
-//! What an estimator is told of craft and sensors, checked once.
+//! The configuration of an estimator: craft and sensors, checked once.
 
 use super::error::{EstimatorError, EstimatorFigure, within};
 use crate::math::sqrt;
 
-/// What the prediction takes for the force on the craft.
+/// The prediction's model of the force on the craft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Force {
-    /// Along body z what the accelerometer measures there; along body x and y linear drag alone. A rotor craft's
+    /// Along body z the accelerometer's reading; along body x and y linear drag alone. A rotor craft's
     /// accelerometer measures little else on those axes, and that little is often hidden under vibration and bias.
     ThrustAxis,
     /// All three axes of the accelerometer. Whatever pushes the craft is measured, so that no drag is reckoned with; a
@@ -24,7 +24,7 @@ pub enum Integration {
     /// Body rates and force held over the period: of second order and more.
     SecondOrder,
     /// As the Crazyflie's firmware does it (`kalman_core.c`, commit 2a18fc29): Euler's rule on the velocity in the body
-    /// frame, and the covariance of the attitude turned by half of what the body turns. For comparison with that
+    /// frame, and the covariance of the attitude turned by half of the body's rotation. For comparison with that
     /// firmware.
     Crazyflie,
 }
@@ -93,8 +93,8 @@ pub struct EstimatorConfig {
     /// Linear drag over mass along body x and body y, 1/s, for [`Force::ThrustAxis`]; 0 where it is unknown. There is
     /// none for body z: along it the accelerometer measures the drag together with the thrust.
     pub drag_per_s: [f32; 2],
-    /// White noise of the acceleration along body x, y, z, m/s^2 per root hertz: gusts and what else is not modelled;
-    /// the accelerometer's along each axis that is taken from it.
+    /// White noise of the acceleration along body x, y, z, m/s^2 per root hertz: gusts and all other forces that are
+    /// not modelled; the accelerometer's along each axis that is taken from it.
     pub acceleration_noise: [f32; 3],
     /// White noise of the gyroscope about body x, y, z, rad/s per root hertz.
     pub gyro_noise: [f32; 3],
@@ -105,7 +105,7 @@ pub struct EstimatorConfig {
     pub deviation_min: f32,
     /// Most of the same.
     pub deviation_max: f32,
-    /// What is no measurement.
+    /// Figures that are no measurement.
     pub gate: Gate,
 }
 

@@ -1,4 +1,4 @@
-//! The covariance of the nine errors as blocks of three, so that only what is not zero is multiplied.
+//! The covariance of the nine errors as blocks of three, so that zero blocks are not multiplied.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -63,7 +63,7 @@ impl Covariance {
             Some(e) => e * m,
             None => *m,
         };
-        // F P without the rows of the attitude, column by column: of the rows of the attitude, G is what counts.
+        // F P without the rows of the attitude, column by column: of the rows of the attitude, only G counts.
         let pushed = g * self.position_attitude.transpose();
         let vr = self.position_velocity.transpose();
         self.position += (vr + pushed * 0.5) * h;

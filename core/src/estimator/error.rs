@@ -1,4 +1,4 @@
-//! What the estimator refuses: the figure, its value and the range that it should have.
+//! Errors of the estimator: the figure, its value and the range that it should have.
 
 use core::fmt;
 
@@ -55,7 +55,7 @@ impl EstimatorFigure {
     }
 }
 
-/// Why the estimator did not take what it was given.
+/// Why the estimator refused its input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -71,7 +71,7 @@ pub enum EstimatorError {
         /// Most that is taken.
         max: f32,
     },
-    /// The step would have left what numbers can hold or what a craft can do. The estimate stays as it was, with the
+    /// The step would have left the range of the numbers or of a craft. The estimate stays as it was, with the
     /// covariance of a start: it trusts the next measurements again.
     Restarted,
 }

@@ -1,4 +1,4 @@
-//! What an estimator knows at a time.
+//! The state of an estimator at a time.
 
 use nalgebra::Vector3;
 

@@ -24,7 +24,7 @@ pub const VELOCITY_MAX_M_S: f32 = 300.0;
 /// Largest turn within one prediction or correction, rad: as far as the series go.
 pub const TURN_MAX_RAD: f32 = 1.0;
 
-/// What a correction adds to the variances, as a part of those before it: more than what f32 rounds in taking a large
+/// The share that a correction adds to the variances, as a part of those before it: more than f32 rounds in taking a large
 /// variance down to a small one (nine errors, some three roundings of 6e-8 each), so that the covariance stays
 /// positive. A position that was known to 10 m is then known to 14 mm by its first measurement, and better by the next.
 const ROUNDING: f32 = 2e-6;
@@ -38,7 +38,7 @@ impl Imu {
     }
 }
 
-/// What a measurement of `N` numbers said.
+/// The innovation of a measurement of `N` numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Innovation<const N: usize> {
     /// Measured minus predicted, in the measurement's unit; of an attitude the rotation vector from the predicted to
@@ -61,7 +61,7 @@ pub(super) struct Row {
     pub(super) variance: f32,
 }
 
-/// The error-state Kalman filter: craft and sensors as they have been told. What it knows is in an [`Estimate`].
+/// The error-state Kalman filter: craft and sensors as configured. Its state is in an [`Estimate`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimator {
     config: EstimatorConfig,
@@ -109,7 +109,7 @@ impl Estimator {
         })
     }
 
-    /// Carries an estimate on over `period_s` by the mean of what the inertial sensors measured in it.
+    /// Carries an estimate on over `period_s` by the mean of the inertial measurements in it.
     ///
     /// # Errors
     /// [`EstimatorError::OutOfRange`] where a number is none or beyond a sensor's range, the period is not within
@@ -156,7 +156,7 @@ impl Estimator {
             let own = if own > 0.0 { own } else { 0.0 };
             let inverse = 1.0 / (own + row.variance);
             let gain = Column::ZERO.plus(&column, inverse);
-            // What the rows before have already explained.
+            // The part that the rows before have already explained.
             let left = row.difference - row.direction.dot(error.of(group));
             normalised_squared += left * left * inverse;
             error = error.plus(&gain, left);

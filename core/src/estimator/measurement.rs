@@ -1,4 +1,4 @@
-//! What a filter can be told: position, velocity, attitude, both halves of a pose, height, distance from a point.
+//! Measurements that a filter takes: position, velocity, attitude, both halves of a pose, height, distance from a point.
 //!
 //! The numbers of a measurement have independent noise with one standard deviation.
 
@@ -45,7 +45,7 @@ impl Estimator {
     /// Takes a measured position, world frame, m.
     ///
     /// # Errors
-    /// [`EstimatorError::OutOfRange`] for what is no position or no standard deviation: nothing changes.
+    /// [`EstimatorError::OutOfRange`] for a position or a standard deviation out of range: nothing changes.
     /// [`EstimatorError::Restarted`].
     pub fn update_position(
         &self,
@@ -128,7 +128,7 @@ impl Estimator {
         self.correct(estimate, Group::Position, &[row])
     }
 
-    /// Takes a measured distance from a known point, m: what ultra-wideband radio gives.
+    /// Takes a measured distance from a known point, m, as ultra-wideband radio gives it.
     ///
     /// # Errors
     /// As [`Self::update_position`]; also where the estimate is nearer to the point than 1 mm, which has no direction.

@@ -1,10 +1,10 @@
-//! Where the craft is: gyroscope, accelerometer and what measures its position in; state, covariance and innovations
+//! Where the craft is: gyroscope, accelerometer and position measurements in; state, covariance and innovations
 //! out.
 //!
 //! The error-state Kalman filter of M. W. Mueller, M. Hamer and R. D'Andrea, "Fusing ultra-wideband range measurements
 //! with accelerometers and rate gyroscopes for quadrocopter state estimation" (ICRA 2015), with the covariance
 //! correction of M. W. Mueller, M. Hehn and R. D'Andrea, "Covariance correction step for Kalman filtering with an
-//! attitude" (Journal of Guidance, Control, and Dynamics 40(9), 2017). It is what the Crazyflie flies by;
+//! attitude" (Journal of Guidance, Control, and Dynamics 40(9), 2017). The Crazyflie flies by this filter;
 //! [`EstimatorConfig::CRAZYFLIE`] is set as it is there.
 //!
 //! # Model
@@ -19,7 +19,7 @@
 //! | `D` | linear drag over mass, diagonal `(d_x, d_y, 0)` | 1/s |
 //! | `h` | time between two predictions | s |
 //!
-//! `dr/dt = v`, `dv/dt = R f - g e3`, `dq/dt = 1/2 q (0, w)`. The force is what the accelerometer measures along the
+//! `dr/dt = v`, `dv/dt = R f - g e3`, `dq/dt = 1/2 q (0, w)`. The force is the accelerometer's reading along the
 //! thrust and linear drag across it, `f = (0, 0, f_z) - D R' v` ([`Force::ThrustAxis`]), or all that it measures
 //! ([`Force::AllAxes`]). Body rates and force are held over a period; the attitude turns under them, so that
 //! `v+ = v + h (R (f + w h x f / 2 + ...) - g e3)`, and likewise the position ([`Integration::SecondOrder`]).
@@ -29,7 +29,7 @@
 //! in each other, so that the filter is the same to the first order, and here position and velocity stay free of the
 //! gyroscope's noise.
 //!
-//! A measurement is taken number by number, which needs no inverse. What it says of `a` is moved into `q`, and the
+//! A measurement is taken number by number, which needs no inverse. Its correction of `a` is moved into `q`, and the
 //! covariance turned by half of it, `exp(-[a / 2])`.
 //!
 //! # Numbers

@@ -9,7 +9,7 @@ use crate::flatness::GRAVITY_M_S2;
 use crate::quaternion::Quaternion;
 use crate::state::State;
 
-/// What gyroscope and accelerometer measure, mean values over the period that is predicted.
+/// Readings of gyroscope and accelerometer, mean values over the period that is predicted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Imu {
@@ -165,7 +165,7 @@ mod tests {
         assert!((along.x / wanted - 1.0).abs() < 1e-4, "{} {wanted}", along.x);
     }
 
-    /// The transition beside what the motion does with a state that is a little off.
+    /// The transition beside the true motion of a state that is a little off.
     #[test]
     fn errors_go_as_the_transition_says() {
         let period = 0.01;

@@ -48,7 +48,7 @@ pub(super) fn matrix_of(q: &Quaternion) -> Matrix3<f32> {
     )
 }
 
-/// The second-order matrix of a rotation by `-theta`: `I - [theta] + [theta]^2 / 2`; what it leaves out is below
+/// The second-order matrix of a rotation by `-theta`: `I - [theta] + [theta]^2 / 2`; the rest is below
 /// `|theta|^3 / 6`.
 #[inline]
 pub(super) fn matrix_back(theta: &Vector3<f32>) -> Matrix3<f32> {

@@ -2,6 +2,7 @@
 //! loaded.
 
 #[cfg(feature = "cascade")]
+#[rustfmt::skip]
 pub mod cascade;
 mod constant;
 pub mod paper;

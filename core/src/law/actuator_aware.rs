@@ -1,11 +1,12 @@
 //! The actuator-aware law: LQR with integral action on a rigid craft whose motors lag, from state and gyroscope straight to
 //! motor forces.
 //!
-//! `u = f_r + tau df_r/dt - K [dr dv 2 q_err,v dw (f - f_r) int dr]`, each motor cut to its range. `q_err = q_r^-1 q` of the
-//! sign with a scalar part of at least 0, dw = measured less reference body rates, f the forces that the lag gives from the
-//! commands so far ([`MotorLag`]: motors are not measured). The gain is designed at heading 0: position and velocity errors and
-//! their integral are turned into the reference's heading frame; rotation and body rates are the body's own. The integral
-//! is kept in the world frame, used before the present error is added, and holds while any motor is cut.
+//! `u = f_r + tau df_r/dt - K [dr dv 2 q_err,v dw (f - f_r) int dr]`, each motor cut to its range. `q_err = q_r^-1 q`
+//! of the sign with a scalar part of at least 0, dw = measured less reference body rates, f the forces that the lag
+//! gives from the commands so far ([`MotorLag`]: motors are not measured). The gain is designed at heading 0: position
+//! and velocity errors and their integral are turned into the reference's heading frame; rotation and body rates are
+//! the body's own. The integral is kept in the world frame, used before the present error is added, and holds while any
+//! motor is cut.
 
 use nalgebra::Vector3;
 
@@ -17,8 +18,8 @@ use crate::motor_lag::MotorForces;
 use crate::motor_reference::MotorReference;
 use crate::state::State;
 
-/// Outputs: forces of M1 to M4, N. Errors: position (3, m), velocity (3, m/s), rotation vector (3, rad), body rates (3, rad/s),
-/// motor forces (4, N), integral of position (3, m s); the first two groups and the last in the heading frame.
+/// Outputs: forces of M1 to M4, N. Errors: position (3, m), velocity (3, m/s), rotation vector (3, rad), body rates (3,
+/// rad/s), motor forces (4, N), integral of position (3, m s); the first two groups and the last in the heading frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActuatorAwareGain {
     gain: Gain<4, 19>,
@@ -34,8 +35,8 @@ enum Feedback {
     Dense([[f32; 4]; 19]),
 }
 
-/// The gain of a design in which the hover model of an X with equal arms falls apart: thrust, roll, pitch and yaw parts of the
-/// four forces answer each to their own errors. A quarter of the products of the whole matrix.
+/// The gain of a design in which the hover model of an X with equal arms falls apart: thrust, roll, pitch and yaw parts
+/// of the four forces answer each to their own errors. A quarter of the products of the whole matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Chains {
     /// From z, vz, thrust part of the forces, integral of z.
@@ -48,7 +49,7 @@ struct Chains {
     yaw: [f32; 3],
 }
 
-/// The law: a gain on a craft's motors. What it remembers is the caller's: predicted motor forces and the
+/// The law: a gain on a craft's motors. Its memory is the caller's: predicted motor forces and the
 /// integral of the position error ([`crate::Memory`]).
 ///
 /// It is flown from a table: [`crate::gains::table`] has an example.
@@ -80,7 +81,7 @@ impl ActuatorAwareGain {
     /// For tables in the source: a bad one does not compile when it initialises a constant.
     ///
     /// # Panics
-    /// At compile time, on what [`ActuatorAwareGain::new`] refuses.
+    /// At compile time, on gains that [`ActuatorAwareGain::new`] refuses.
     pub const fn table(rows: [[f32; 19]; 4]) -> Self {
         match Self::new(rows) {
             Ok(gain) => gain,
@@ -173,7 +174,8 @@ impl Chains {
         let roll = [size(y, &ROLL), size(vy, &ROLL), size(rotation_x, &ROLL), size(p, &ROLL), size(iy, &ROLL)];
         let pitch = [size(x, &PITCH), size(vx, &PITCH), size(rotation_y, &PITCH), size(q, &PITCH), size(ix, &PITCH)];
         let yaw = [size(rotation_z, &YAW), size(r, &YAW), Some(0.0), Some(0.0), Some(0.0)];
-        // What one motor adds to another depends only on how the two lie to each other: the same, on one side, across, at one end.
+        // The share of one motor in the command of another depends only on how the two lie to each other:
+        // the same, on one side, across, at one end.
         let [same, side, across, end] = *f1;
         let circulates =
             is(f2, [side, same, end, across]) && is(f3, [across, end, same, side]) && is(f4, [end, across, side, same]);
@@ -196,7 +198,7 @@ impl Chains {
     }
 }
 
-/// What a column is times the signs, if it is.
+/// The factor by which a column is the signs, if there is one.
 const fn size(column: &[f32; 4], signs: &[f32; 4]) -> Option<f32> {
     let size = column[0] * signs[0];
     if is(column, [size * signs[0], size * signs[1], size * signs[2], size * signs[3]]) { Some(size) } else { None }
@@ -206,7 +208,7 @@ const fn is(column: &[f32; 4], other: [f32; 4]) -> bool {
     column[0] == other[0] && column[1] == other[1] && column[2] == other[2] && column[3] == other[3]
 }
 
-/// What the gain is applied to.
+/// The error that the gain is applied to.
 struct Errors {
     position: Vector3<f32>,
     velocity: Vector3<f32>,
@@ -217,15 +219,15 @@ struct Errors {
 }
 
 impl<'a> ActuatorAware<'a> {
-    /// The law on a craft at a control rate, those of the gain's design. References are to be made for the actuation's airframe,
-    /// [`crate::Airframe::commanded_at`] that rate: they too depend on its motor lag.
+    /// The law on a craft at a control rate, those of the gain's design. References are to be made for the actuation's
+    /// airframe, [`crate::Airframe::commanded_at`] that rate: they too depend on its motor lag.
     pub const fn new(gain: &'a ActuatorAwareGain, actuation: &'a Actuation) -> Self {
         Self { gain, actuation }
     }
 
-    /// Commanded forces (N) within the motors' range and whether any was cut; nothing, and the memory as it was, where one of
-    /// them is not finite. The quaternion's norm is known to be near 1, and is not made 1: it scales the attitude error, by
-    /// one part in a hundred at most.
+    /// Commanded forces (N) within the motors' range and whether any was cut; nothing, and the memory as it was, where
+    /// one of them is not finite. The quaternion's norm is known to be near 1, and is not made 1: it scales the
+    /// attitude error, by one part in a hundred at most.
     #[inline(always)]
     pub(crate) fn step(
         &self,

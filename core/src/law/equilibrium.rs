@@ -51,7 +51,7 @@ impl EquilibriumGain {
     /// For tables in the source: a bad one does not compile when it initialises a constant.
     ///
     /// # Panics
-    /// At compile time, on what [`EquilibriumGain::new`] refuses.
+    /// At compile time, on gains that [`EquilibriumGain::new`] refuses.
     pub const fn table(rows: [[f32; 9]; 4]) -> Self {
         match Self::new(rows) {
             Ok(gain) => gain,
@@ -98,7 +98,7 @@ impl Chains {
     }
 }
 
-/// What `x - x_r` means when the craft is turned.
+/// The meaning of `x - x_r` for a craft at a heading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -47,7 +47,7 @@ impl FlatOutputGain {
     /// For tables in the source: a bad one does not compile when it initialises a constant.
     ///
     /// # Panics
-    /// At compile time, on what [`FlatOutputGain::new`] refuses.
+    /// At compile time, on gains that [`FlatOutputGain::new`] refuses.
     pub const fn table(rows: [[f32; 10]; 7]) -> Self {
         match Self::new(rows) {
             Ok(gain) => gain,
@@ -103,7 +103,7 @@ impl Chains {
 /// use quatrack::nalgebra::Vector3;
 /// use quatrack::{Controller, FlatOutput, Limits, Measured, Memory, Reference, State, Target, gains::paper};
 ///
-/// // 10 cm too low: 44.7 1/s^2 times 0.1 m on top of gravity. Sideways it asks for no attitude: that is what F lacks.
+/// // 10 cm too low: 44.7 1/s^2 times 0.1 m on top of gravity. Sideways it asks for no attitude: F has no outer loop.
 /// let controller = Controller::new(FlatOutput::new(&paper::LQR_F), Limits::NONE);
 /// let state = State::at_rest(Vector3::new(0.0, 0.0, 0.9));
 /// let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0)?;

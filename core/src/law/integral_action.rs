@@ -2,7 +2,7 @@
 //!
 //! The integral is a sum over the control steps, `i+ = i + h (r - r_r)`, kept in the world frame, where a wind or a weight
 //! stands still while the craft turns; the law turns it to the reference's heading frame like every other error. A
-//! command is computed from the sum before the present error is added: this is what the design's model has.
+//! command is computed from the sum before the present error is added: the design's model does the same.
 //!
 //! **Anti-windup.** The sum holds while the command that answers to it is cut to the limits: the vertical part while the
 //! thrust is, both horizontal parts while the roll rate or the pitch rate is. A cut yaw rate holds nothing: no position
@@ -45,7 +45,7 @@ impl IntegralGain {
     /// For tables in the source: a bad one does not compile when it initialises a constant.
     ///
     /// # Panics
-    /// At compile time, on what [`IntegralGain::new`] refuses.
+    /// At compile time, on gains that [`IntegralGain::new`] refuses.
     pub const fn table(rows: [[f32; 12]; 4]) -> Self {
         match Self::new(rows) {
             Ok(gain) => gain,

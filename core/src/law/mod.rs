@@ -1,7 +1,7 @@
 //! The control laws: a measured state and a reference in, a command before saturation out.
 //!
-//! A law does not check its inputs and does not fail: what is not finite, and what its map has no answer to, comes out
-//! as a command that is not finite, which [`crate::control`] refuses.
+//! A law does not check its inputs and does not fail: numbers that are not finite, and inputs outside the domain of its
+//! map, come out as a command that is not finite, which [`crate::control`] refuses.
 
 mod actuator_aware;
 mod along_trajectory;

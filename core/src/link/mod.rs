@@ -59,6 +59,12 @@ pub use upload::{BlobKind, Chunk, Progress, UploadBegin, UploadError};
 /// Version of the frame layout and of every message in it. A changed message is a changed version.
 pub const PROTOCOL_VERSION: u8 = 3;
 
+/// Bytes of the longest blob of any kind.
+pub const BLOB_BYTES_MAX: usize = {
+    let (trajectory, table) = (TRAJECTORY_BLOB_BYTES, crate::gains::table::TABLE_BYTES_MAX);
+    if trajectory > table { trajectory } else { table }
+};
+
 /// Ends every frame and stands nowhere else.
 pub const DELIMITER: u8 = 0;
 

@@ -69,7 +69,7 @@ impl Turn {
     }
 }
 
-/// What the map gives; rates, accelerations and jerks in the body frame.
+/// The angular motion of the map; rates, accelerations and jerks in the body frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turning {
     pub(crate) attitude: Quaternion,

@@ -1,5 +1,5 @@
-//! The reference carried on to the motors: the flat output to its fifth derivative, and any heading to its third, in; state,
-//! angular acceleration, motor forces and the commands that give them out, checked once.
+//! The reference carried on to the motors: the flat output to its fifth derivative, and any heading to its third, in;
+//! state, angular acceleration, motor forces and the commands that give them out, checked once.
 //!
 //! The paper's flat map ends at body rates, which take the jerk. Torque takes the angular acceleration and so the snap;
 //! its rate, which a motor that lags has to be ahead by, takes the fifth derivative.
@@ -59,7 +59,7 @@ impl FifthOrderSample {
 }
 
 /// A flyable reference with the motor forces that fly it: finite, with thrust, upright enough for the flat map. Only this
-/// module makes one. The forces may be beyond what the motors can do.
+/// module makes one. The forces may be beyond the range of the motors.
 ///
 /// ```
 /// use quatrack::nalgebra::Vector3;
@@ -76,7 +76,7 @@ pub struct MotorReference {
     pub(crate) reference: Reference,
     pub(crate) angular_acceleration_rad_s2: Vector3<f32>,
     pub(crate) forces_n: MotorForces,
-    /// What gives these forces behind the airframe's motor lag.
+    /// The commands that give these forces behind the airframe's motor lag.
     pub(crate) commands_n: MotorForces,
 }
 
@@ -89,13 +89,13 @@ impl MotorReference {
         Self::from_flat(&FifthOrderSample::at_rest(position_m, heading_rad), airframe)
     }
 
-    /// What flies a flat output with a craft.
+    /// The reference that flies a flat output with a craft.
     ///
     /// # Errors
     /// [`ReferenceError`] where a number is not finite and at the flat map's singularities.
     pub fn from_flat(sample: &FifthOrderSample, airframe: &Airframe) -> Result<Self, ReferenceError> {
         let FlatSample { position_m: r, velocity_m_s: v, .. } = &sample.flat;
-        // What the motor forces depend on shows in them; position and velocity do not.
+        // Every number that the motor forces depend on shows in them; position and velocity do not.
         if ((r.x + r.y + r.z) + (v.x + v.y + v.z)).is_finite() {
             let mapped = Self::of_finite(sample, airframe);
             if mapped.is_ok() {
@@ -165,7 +165,7 @@ impl MotorReference {
             pitch: forces.pitch + lead_s * rates.pitch,
             yaw: forces.yaw + lead_s * rates.yaw,
         };
-        // Every derivative is in one of the commands; what is not finite stays so in their sum.
+        // Every derivative is in one of the commands; a number that is not finite stays so in their sum.
         let sum = (commands.thrust + commands.roll) + (commands.pitch + commands.yaw);
         if sum.to_bits() << 1 >= f32::INFINITY.to_bits() << 1 {
             return Err(beyond_range(sum));
@@ -210,8 +210,8 @@ impl MotorReference {
         self.forces_n
     }
 
-    /// Commands that give these forces behind the motor lag of the airframe that the reference was made for, `f + tau df/dt`, N;
-    /// with half a control period beside tau where that is [`Airframe::commanded_at`] a rate.
+    /// Commands that give these forces behind the motor lag of the airframe that the reference was made for, `f + tau
+    /// df/dt`, N; with half a control period beside tau where that is [`Airframe::commanded_at`] a rate.
     pub fn commands_n(&self) -> MotorForces {
         self.commands_n
     }

@@ -1,4 +1,4 @@
-//! Checked pieces: pieces in; a trajectory, its length and its checksum out, or what is wrong with them.
+//! Checked pieces: pieces in; a trajectory, its length and its checksum out, or the first error in them.
 
 use nalgebra::Vector3;
 
@@ -18,7 +18,7 @@ pub struct Trajectory<'a> {
     pub(super) summary: Summary,
 }
 
-/// What the check of pieces found. Kept beside pieces that do not change, it spares another check.
+/// The result of the check of pieces. Kept beside pieces that do not change, it spares another check.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Summary {
     pub(super) duration_ns: u64,
@@ -91,13 +91,13 @@ impl<'a> Trajectory<'a> {
         crc.value()
     }
 
-    /// What the check found.
+    /// The result of the check.
     #[cfg_attr(not(feature = "link"), expect(dead_code, reason = "for trajectories that come over the link"))]
     pub(crate) fn summary(&self) -> Summary {
         self.summary
     }
 
-    /// The same pieces again, with what their check found.
+    /// The same pieces again, with the result of their check.
     #[cfg_attr(not(feature = "link"), expect(dead_code, reason = "for trajectories that come over the link"))]
     pub(crate) fn of_checked(pieces: &'a [Piece], summary: Summary) -> Option<Self> {
         let (first, following) = pieces.split_first()?;

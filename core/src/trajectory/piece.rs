@@ -32,7 +32,7 @@ pub struct Piece {
     pub heading: Coefficients,
 }
 
-/// What all pieces have in common, and a step therefore need not compute.
+/// The properties that all pieces share, which a step therefore need not compute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shape {
     /// Heading 0 throughout.
@@ -95,7 +95,7 @@ impl Piece {
         FlatSample::at_rest(Vector3::new(x, y, z), heading)
     }
 
-    /// [`Self::at`] one axis after the other, to the same bits: small, for who is in no hurry.
+    /// [`Self::at`] one axis after the other, to the same bits: smaller code, and slower.
     #[inline(never)]
     pub(super) fn at_leisure(&self, time_ns: u64) -> FlatSample {
         #[inline(never)]

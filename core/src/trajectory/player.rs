@@ -54,7 +54,7 @@ pub struct Progress {
     pub tick: Tick,
 }
 
-/// Where a player is, without its trajectory: for who cannot keep a trajectory borrowed between two steps.
+/// Where a player is, without its trajectory: for callers that cannot keep a trajectory borrowed between two steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Bookmark {
     clock: TickClock,
@@ -96,7 +96,7 @@ impl<'a> Player<'a> {
         Some(Self { trajectory, clock, end_tick, piece, following, end_ns })
     }
 
-    /// What is played.
+    /// The trajectory that is played.
     pub const fn trajectory(&self) -> &Trajectory<'a> {
         &self.trajectory
     }
@@ -109,7 +109,7 @@ impl<'a> Player<'a> {
     /// The reference `tick` ticks after the start: [`Self::at`] and the flat map in one, cheaper than one after the other.
     ///
     /// # Errors
-    /// [`ReferenceError`] where the trajectory asks for what cannot be flown.
+    /// [`ReferenceError`] where the trajectory asks for a motion that cannot be flown.
     pub fn reference(&mut self, tick: Tick) -> Result<Reference, ReferenceError> {
         let Summary { end, shape, .. } = self.trajectory.summary;
         let sample = if tick >= self.end_tick {
@@ -118,14 +118,15 @@ impl<'a> Player<'a> {
             let time_ns = self.seek(tick);
             self.piece.at(time_ns, shape)
         };
-        // The pieces have been checked: what they give is finite.
+        // The pieces have been checked: their values are finite.
         Reference::of_finite(&sample)
     }
 
-    /// What flies the trajectory with a craft `tick` ticks after the start, to the motor forces and their rates.
+    /// The reference that flies the trajectory with a craft `tick` ticks after the start, to the motor forces and their
+    /// rates.
     ///
     /// # Errors
-    /// [`ReferenceError`] where the trajectory asks for what cannot be flown.
+    /// [`ReferenceError`] where the trajectory asks for a motion that cannot be flown.
     pub fn motor_reference(&mut self, tick: Tick, airframe: &Airframe) -> Result<MotorReference, ReferenceError> {
         if tick >= self.end_tick {
             return MotorReference::of_finite(&FifthOrderSample::of_jerk(self.trajectory.summary.end), airframe);
@@ -194,7 +195,7 @@ impl<'a> Player<'a> {
         self.search(time_ns)
     }
 
-    /// The same from the start, for who skips pieces or goes back.
+    /// The same from the start, for callers that skip pieces or go back.
     #[cold]
     #[inline(never)]
     fn search(&mut self, time_ns: u64) -> u64 {

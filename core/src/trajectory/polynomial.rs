@@ -3,8 +3,8 @@
 /// Coefficients of a polynomial of degree at most 7, ascending powers of the seconds since the piece began.
 pub type Coefficients = [f32; 8];
 
-/// A polynomial and its first three derivatives at `t`, all by one pass of Horner's scheme. Written out: what is still
-/// zero in its first steps costs nothing.
+/// A polynomial and its first three derivatives at `t`, all by one pass of Horner's scheme. Written out: coefficients
+/// that are still zero in its first steps costs nothing.
 #[inline]
 pub(super) fn derivatives(coefficients: &Coefficients, t: f32) -> [f32; 4] {
     let [c0, c1, c2, c3, c4, c5, c6, c7] = *coefficients;

@@ -1,4 +1,4 @@
-//! The control layer by itself: the leash, what is handed over on the way, what is handed in and told.
+//! The control layer by itself: the leash, the handover, inputs and outputs.
 
 use std::error::Error;
 

@@ -180,7 +180,7 @@ fn a_large_jerk_is_mapped_as_long_as_its_rates_are_numbers() {
         let refused = phi_at_heading(Vector3::zeros(), jerk, Heading::ZERO, 0.0);
         assert!(matches!(refused, Err(ReferenceError::NonFinite { .. })), "{refused:?}");
     }
-    // The chart refuses what the heading does, and by the same name.
+    // The chart refuses the same inputs as the heading, and by the same name.
     let falling = Vector3::new(0.0, 0.0, -9.81);
     assert!(matches!(phi(falling, Vector3::zeros(), 0.0, 0.0), Err(ReferenceError::NoThrust { .. })));
     let inverted = phi_at_heading(Vector3::new(0.0, 0.0, -20.0), Vector3::zeros(), Heading::ZERO, 0.0);

@@ -17,7 +17,7 @@ use crate::twin::{self, Craft, craft, goal, matrix};
 
 const CASES: u32 = 4000;
 
-/// What a law's errors may be: their median, 99 % of them, all.
+/// Bounds of a law's errors: their median, 99 % of them, all.
 type Bounds = [f64; 3];
 
 /// The law against the exact input, both signs of the measured quaternion.
@@ -46,12 +46,13 @@ fn agrees(law: Law<'_>, heading_max_rad: f64, bounds: Bounds, exact: impl Fn(&Cr
     }
 }
 
-/// The reference's attitude, the measured one and its norm's inverse are each rounded to 2^-24; nine products of errors below
+/// The reference's attitude, the measured one and its norm's inverse are each rounded to 2^-24; nine products of errors
+/// below
 /// 1.5 with gains up to 100 are summed: a dozen roundings of half of 1.2e-7, of the largest of which a command is.
 const LINEAR: Bounds = [1.5e-7, 6e-7, 1.5e-6];
 
-/// The flat map divides by thrust and by q0; where the asked acceleration comes near free fall the rates grow, and their error
-/// with them.
+/// The flat map divides by thrust and by q0; where the asked acceleration comes near free fall the rates grow, and
+/// their error with them.
 const FLAT: Bounds = [1.5e-7, 1e-6, 5e-5];
 
 /// A gain with an entry everywhere: that of a design, each entry moved by another amount.

@@ -58,7 +58,7 @@ fn bits(command: &Command) -> [u32; 4] {
     array(command).map(f32::to_bits)
 }
 
-/// What is left of half a second at a displacement: a controller of 1 Hz whose law is flown one step.
+/// The command after half a second at a displacement: a controller of 1 Hz whose law is flown one step.
 fn memory_of(sum: Vector3<f32>) -> Memory {
     static GAIN: LazyLock<IntegralGain> = LazyLock::new(|| lqi(1));
     let controller = Controller::new(IntegralAction::new(&GAIN, rate(1), FeedForward::Without), Limits::NONE);
@@ -131,7 +131,7 @@ fn the_sum_holds_while_the_command_that_answers_to_it_is_cut() {
     let limits = Limits::new(2.0, 17.0, Vector3::new(5.0, 5.0, 1.0)).unwrap();
     let controller = Controller::new(IntegralAction::new(&gain, rate(100), FeedForward::Without), limits);
     let yaw = |angle_rad: f32| Quaternion::new((0.5 * angle_rad).cos(), 0.0, 0.0, (0.5 * angle_rad).sin());
-    // What is cut, of T p q r, and whether x, y, z of the sum go on.
+    // The cuts, of T p q r, and whether x, y, z of the sum go on.
     let cases = [
         (displaced(0.1, 0.1, 0.02), 0b0000, [true, true, true]),
         (displaced(0.1, 0.1, -1.0), 0b0001, [true, true, false]),

@@ -9,7 +9,7 @@ use quatrack::link::{
 };
 use quatrack::{Piece, Player, Rate, Trajectory};
 
-/// What the line does to a frame.
+/// The line's effect on a frame.
 #[derive(Clone, Copy, Debug)]
 enum Fate {
     Arrives,
@@ -112,7 +112,7 @@ struct Host {
 }
 
 impl Host {
-    /// What follows from the answer to the last request, or from there being none.
+    /// The next frame after the answer to the last request, or after none.
     fn next(&self, answer: Option<FromBoard>) -> Option<ToBoard> {
         Some(match answer {
             Some(FromBoard::Upload(progress)) => progress

@@ -1,4 +1,4 @@
-//! What the core promises by itself: laws, link, gain tables, mixer, supervisor.
+//! The core's promises by itself: laws, link, gain tables, mixer, supervisor.
 
 mod control;
 mod flatness;

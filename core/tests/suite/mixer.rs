@@ -36,7 +36,7 @@ proptest! {
             let (a, c) = (4.0 * CRAFT.figures().lever_arm_m, 4.0 * CRAFT.figures().torque_per_thrust_m);
             [found.thrust_n / 4.0, found.torque_n_m.x / a, found.torque_n_m.y / a, found.torque_n_m.z / c]
         };
-        // What is not reported as given up is there.
+        // Each part that is not reported as given up is there.
         prop_assert!(limited.thrust() || close(got[0], thrust), "{got:?}");
         prop_assert!(limited.attitude() || (close(got[1], roll) && close(got[2], pitch)), "{got:?}");
         prop_assert!(limited.yaw() || close(got[3], yaw), "{got:?}");

@@ -1,4 +1,4 @@
-//! The way to the motors against its f64 twin: rate loop and mixer, the actuator-aware law; what is remembered, and what is
+//! The way to the motors against its f64 twin: rate loop and mixer, the actuator-aware law; the memory, and what is
 //! refused.
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector4};

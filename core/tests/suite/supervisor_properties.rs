@@ -97,7 +97,8 @@ impl Craft {
     fn new() -> Self {
         let rate = Rate::from_hz(500).unwrap();
         let craft = Airframe::CRAZYFLIE_2_1_BRUSHLESS.with_motor_lag(0.05).unwrap();
-        let cascade = Cascade::new(&BRUSHLESS_50_MS, &craft, rate, &CascadeLimits::STANDARD, &Air::BRUSHLESS).unwrap();
+        let gains = &BRUSHLESS_50_MS.table.gains;
+        let cascade = Cascade::new(gains, &craft, rate, &CascadeLimits::STANDARD, &Air::BRUSHLESS).unwrap();
         Self { guard: Guard::new(), cascade, memory: Memory::at_rest(), limited: MotorLimited::NOTHING, now: 0 }
     }
 

@@ -36,13 +36,13 @@ pub(super) const CRAZYFLIE_2_1: [Design; 3] = [
     ]) },
 ];
 
-/// Vehicle id of crazyflie-2.1-upgrade.
-pub(super) const CRAZYFLIE_2_1_UPGRADE_KIT_ID: u32 = 0x16e29a50;
+/// Vehicle id of crazyflie-2.1-upgrade-kit.
+pub(super) const CRAZYFLIE_2_1_UPGRADE_KIT_ID: u32 = 0x456815c7;
 
 /// With none stated: the lag (s) and the factor of the last one.
 pub(super) const CRAZYFLIE_2_1_UPGRADE_KIT_ANY: (f32, f32) = (0.1, 1.5);
 
-/// Of crazyflie-2.1-upgrade.
+/// Of crazyflie-2.1-upgrade-kit.
 pub(super) const CRAZYFLIE_2_1_UPGRADE_KIT: [Design; 3] = [
     Design { stated_s: [0.004, 0.04], margin: 1.75, gain: ActuatorAwareGain::table([
         [-0.09497805, 0.09496211, 0.43180665, -0.055798057, 0.055781163, 0.21401574, -0.09406454, -0.09414605, -0.011139608, -0.007470948, -0.0074841315, -0.0067011905, 0.48096094, 0.090995155, -0.22677386, 0.09032798, -0.06821079, 0.06820607, 0.42358238],

@@ -60,7 +60,7 @@ impl ToMotors {
     /// Looks at whether there are body rates, or should be: forces then answer the state, or why there are none.
     #[inline]
     pub(super) fn look_at(&mut self, rates: BodyRates) {
-        self.has_gyroscope = rates != BodyRates::NoGyroscope;
+        self.has_gyroscope |= rates != BodyRates::NoGyroscope;
         self.answers_by_forces = self.are_driven();
     }
 
@@ -75,6 +75,11 @@ impl ToMotors {
             BodyRates::NoGyroscope => self.sent_rad_s.map(|_| NONE),
             BodyRates::Failed => Some(NONE),
         }
+    }
+
+    /// Takes the word that the board has a gyroscope.
+    pub fn set_gyroscope(&mut self) {
+        self.has_gyroscope = true;
     }
 
     /// Whether steps end in motor forces.
@@ -99,15 +104,22 @@ impl ToMotors {
         looked: &Looked<'_>,
         has_body_rates: bool,
     ) -> Result<Output, NoCommand> {
-        if !has_body_rates && (self.answers_by_forces || laws.follows_forces()) {
+        let follows_samples = laws.follows_samples();
+        if !has_body_rates && (self.answers_by_forces || laws.follows_forces() || follows_samples) {
             return Err(NoCommand::NoBodyRates);
         }
         let measured = Measured::new(looked.state);
         let measured = if has_body_rates { measured.with_body_rates(looked.body_rates_rad_s) } else { measured };
-        let output = if laws.follows_forces() {
+        let output = if follows_samples {
+            let (sample, heading) = playback.sample(tick).map_err(NoCommand::Reference)?;
+            laws.step(measured, Target::with_sample(&sample, heading))
+        } else if laws.follows_forces() {
             let airframe = laws.airframe().ok_or(NoCommand::Step(StepError::NoActuation))?;
             let reference = playback.motor_reference(tick, airframe).map_err(NoCommand::Reference)?;
-            laws.step(measured, Target::with_forces(&reference).at(playback.progress()))
+            // For the cascade, on the way from one law to another.
+            let (sample, heading) = playback.sample(tick).map_err(NoCommand::Reference)?;
+            let target = Target::with_forces(&reference).at(playback.progress());
+            laws.step(measured, target.and_sample(&sample, heading))
         } else {
             // Looked at where it lies: to move a reference out costs as many instructions as the product with a gain.
             match &playback.reference(tick) {

@@ -13,6 +13,11 @@ use super::Laws;
 /// There is none.
 pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> = None;
 
+/// There is none.
+pub(crate) const fn cascade() -> Option<Law<'static>> {
+    None
+}
+
 /// None.
 pub struct Actuations;
 

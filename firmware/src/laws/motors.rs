@@ -4,14 +4,20 @@ use quatrack::body_rate::BandwidthError;
 use quatrack::gains::table::AcceptedTable;
 use quatrack::link::Table;
 use quatrack::{
-    Actuation, ActuatorAware, BodyRateLoop, Controller, Measured, Memory, Output, Settings, StepError, Target,
+    Actuation, ActuatorAware, BodyRateLoop, Controller, Law, Measured, Memory, Output, Settings, StepError, Target,
 };
 
+use super::rescue::CASCADE;
 use crate::vehicle::{ACTUATION, AIRFRAME};
 
 /// The table in the image.
 pub mod table {
     include!("../../../gains/generated/actuator-aware.rs");
+}
+
+/// The law of nested loops in the image, for steps at [`crate::vehicle::STEP_RATE`].
+pub(crate) fn cascade() -> Option<Law<'static>> {
+    Some(Law::from(&CASCADE))
 }
 
 static TO_MOTORS: Actuation = ACTUATION;

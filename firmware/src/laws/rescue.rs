@@ -1,34 +1,28 @@
 //! What the laws are good for, and what is flown instead of them: the cascade to a standstill and down, or by attitude alone.
 
-use quatrack::cascade::{Air, Cascade, CascadeLimits};
-use quatrack::gains::cascade::CRAZYFLIE_2_1_100_MS;
+use quatrack::cascade::{Cascade, CascadeLimits};
+use quatrack::gains::cascade::CRAZYFLIE_2_1_DEFAULT;
+use quatrack::gains::table::CascadeTable;
 use quatrack::link::Table;
 use quatrack::supervisor::{Certified, Coverage, Levelled, Looked, Rescue};
-use quatrack::{
-    Airframe, Controller, FifthOrderSample, Heading, Limits, Measured, MotorStep, Output, StepError, Target,
-};
+use quatrack::{Controller, FifthOrderSample, Heading, Limits, Measured, MotorStep, Output, StepError, Target};
 
 use super::Laws;
 use crate::vehicle::{AIRFRAME, STEP_RATE};
 
-/// The lag that it reckons with: of those that are published of a Crazyflie 2.1, from 50 to 126 ms, all are certified.
-const LAG_S: f32 = 0.1;
+/// Its table: flown where no lag is stated.
+const TABLE: CascadeTable = CRAZYFLIE_2_1_DEFAULT.table;
 
 /// The cascade of this craft.
-static CASCADE: Cascade = {
-    let airframe = match AIRFRAME.with_motor_lag(LAG_S) {
-        Ok(airframe) => airframe,
-        Err(_) => panic!("no lag of motors"),
-    };
-    match Cascade::new(&CRAZYFLIE_2_1_100_MS, &airframe, STEP_RATE, &CascadeLimits::STANDARD, &Air::BRUSHED) {
-        Ok(cascade) => cascade,
-        Err(_) => panic!("the motors are too fast for this rate"),
-    }
+pub(crate) static CASCADE: Cascade = match TABLE.flown(&AIRFRAME, STEP_RATE, &CascadeLimits::STANDARD, &TABLE.air) {
+    Ok(cascade) => cascade,
+    Err(_) => panic!("the motors are too fast for this rate"),
 };
 
-/// Lags of motors (s) that the table for motor forces in the image is certified for, and shares of the mass.
+/// Lags of motors (s) that the table for motor forces in the image is certified for, and how much heavier or lighter the craft may
+/// be, as a share.
 const TO_MOTORS_LAG_S: [f32; 2] = [0.05, 0.126];
-const MASS_SHARES: [f32; 2] = [0.8, 1.2];
+const MASS_SHARE: f32 = 0.2;
 
 impl Laws {
     /// What the law in force is certified for, if it ends in motor forces.
@@ -37,16 +31,21 @@ impl Laws {
         if !are_driven {
             return Certified::NoMotors;
         }
-        let covering = |lag_s| Coverage {
+        let told_kg = AIRFRAME.figures().mass_kg;
+        let covering = |lag_s, share: f32| Coverage {
             lag_s,
-            mass_kg: MASS_SHARES.map(|share| share * AIRFRAME.figures().mass_kg),
+            mass_kg: [(1.0 - share) * told_kg, (1.0 + share) * told_kg],
             rate_hz: STEP_RATE.hz(),
         };
         match self.choice.table {
-            Table::ActuatorAware => Certified::For(covering(TO_MOTORS_LAG_S)),
+            Table::Cascade => Certified::For(covering(TABLE.certified.motor_lag_s, TABLE.certified.mass_share)),
+            Table::ActuatorAware => Certified::For(covering(TO_MOTORS_LAG_S, MASS_SHARE)),
             Table::Loaded(slot) => self.store.table(slot).map_or(Certified::ForNone, |table| {
                 let rate_hz = self.rate().map_or(0, |rate| rate.hz());
-                Certified::For(Coverage { rate_hz, ..covering([0.0, table.head().certificate.motor_lag_max_s]) })
+                Certified::For(Coverage {
+                    rate_hz,
+                    ..covering([0.0, table.head().certificate.motor_lag_max_s], MASS_SHARE)
+                })
             }),
             // Those of the paper know no motors: behind this craft's, none is stable.
             _ => Certified::ForNone,
@@ -106,10 +105,13 @@ impl Laws {
     fn take_over(&mut self) {
         if !self.is_rescued {
             self.is_rescued = true;
+            let is_cascade = self.controller.law().follows_samples();
             self.settle();
-            self.memory.begin_cascade_in_flight();
+            if !is_cascade {
+                self.memory.begin_cascade_in_flight();
+            }
         }
     }
 }
 
-const _: () = assert!(Airframe::CRAZYFLIE_2_1.figures().motor_lag_s <= TO_MOTORS_LAG_S[1]);
+const _: () = assert!(AIRFRAME.figures().motor_lag_s <= TABLE.certified.motor_lag_s[1]);

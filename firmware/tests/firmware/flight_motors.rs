@@ -266,11 +266,31 @@ fn body_rates_that_are_none_are_bridged_by_the_attitude_and_then_end_the_flight(
 }
 
 #[test]
+fn the_default_is_the_cascade_where_there_are_body_rates() {
+    for (has_rates, expected) in [(true, Table::Cascade), (false, Table::LqrE)] {
+        let mut flight = Flight::new(Box::leak(Box::default()), None);
+        flight.playback.start(stored::player(TrajectoryId::Mild).expect("it is in flash"));
+        flight.hear(0);
+        if has_rates {
+            flight.accept_rigid(RigidStateIn { tick: 0, state: state(0) }, 0);
+        } else {
+            flight.accept(StateIn { tick: 0, state: state(0).state }, 0);
+        }
+        flight.arm(0).expect("it is fit to fly");
+        assert_eq!(flight.law().table, expected);
+        flight.step(0, false, BodyRates::NoGyroscope);
+        assert_eq!(flight.mode(), Mode::Flying);
+        assert_eq!(flight.forces_n() != &NONE, has_rates);
+    }
+}
+
+#[test]
 fn a_law_that_no_certificate_covers_is_not_armed_for_motors() {
     for (table, expected) in [
         (Table::LqrE, Err(ArmError::NotCertified)),
         (Table::LyapF, Err(ArmError::NotCertified)),
         (Table::ActuatorAware, Ok(())),
+        (Table::Cascade, Ok(())),
     ] {
         let mut flight = board(table);
         flight.hear(0);

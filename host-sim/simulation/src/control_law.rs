@@ -1,8 +1,8 @@
-//! The interface by which a law flies: what it knows at a control step in, the forces that it asks of the motors out.
+//! The interface by which a law flies: its inputs at a control step in, the motor forces that it commands out.
 //!
 //! A law of one's own implements [`ControlLaw`] and flies in every command and test beside the built-in ones; see the
 //! example `own_law`. Conventions: world frame z up, body frame x forwards, y left, z up; SI; `f64`. A law that computes
-//! in `f32` rounds what it takes.
+//! in `f32` rounds its inputs.
 
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 
@@ -16,15 +16,15 @@ pub trait ControlLaw {
     /// Control steps a second: a divisor of [`STEPS_HZ`]. Forces are held in between.
     fn rate_hz(&self) -> u32;
 
-    /// One control step: the forces asked of the four motors, N, numbered as in [`quatrack_design::vehicle`]. The motors then do
-    /// what they can of them.
+    /// One control step: the forces asked of the four motors, N, numbered as in [`quatrack_design::vehicle`]. The
+    /// motors then do what they can of them.
     ///
     /// # Errors
     /// One line that says why there is no answer. The flight ends there and counts as lost.
     fn step(&mut self, input: &Input) -> Result<Vector4<f64>, String>;
 }
 
-/// What a law is given at a control step.
+/// The inputs of a law at a control step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Input {
     /// Now, s since the start of the flight.
@@ -48,7 +48,7 @@ pub struct Estimate {
     pub attitude: UnitQuaternion<f64>,
     /// Gyroscope, body frame, rad/s.
     pub body_rates_rad_s: Vector3<f64>,
-    /// Accelerometer, body frame, m/s^2: what is felt, so +9.81 along z at hover.
+    /// Accelerometer, body frame, m/s^2: the specific force, so +9.81 along z at hover.
     pub specific_force_m_s2: Vector3<f64>,
 }
 
@@ -101,7 +101,7 @@ impl Setpoint {
         Self { snap_m_s4: Vector3::zeros(), crackle_m_s5: Vector3::zeros(), ..Self::exact(point, sent_s) }
     }
 
-    /// Carried on to a later time by its own derivatives: Taylor's polynomial of what was sent.
+    /// Carried on to a later time by its own derivatives: Taylor's polynomial of the setpoint.
     pub fn carried_to(&self, time_s: f64) -> FifthOrder {
         let h = time_s - self.sent_s;
         let sent = [

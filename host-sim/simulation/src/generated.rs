@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `gains/generated/*` | `gains/*.toml` |
 //! | `core/src/gains/paper.rs` | the paper's weights |
+//! | `core/src/gains/cascade.rs` | `gains/cascade-*.toml` |
 //! | `crazyflie/src/builtin/motor_gains.rs` | `gains/actuator-*.toml` |
 //! | `crazyflie/src/builtin/paper_limits.rs` | `gains/lyap-*.toml`, `gains/lqr-*.toml` |
 //! | `plans/*.rs` | `plans/*.toml` |
@@ -18,7 +19,7 @@ use quatrack_plan::trajectory::polynomial::{PiecewisePolynomial, PolynomialError
 use thiserror::Error;
 
 use crate::crazyflie::{CodegenError, motor_gains, paper_limits};
-use crate::gains::{Checked, Comparison, Failed, check_folder};
+use crate::gains::{BuiltInError, Checked, Comparison, Failed, built_in_source, check_folder};
 
 /// A solver's last digits differ between machines, and with them those of the coefficients: by at most this share of a
 /// coefficient, or of 1 where it is smaller.
@@ -33,6 +34,9 @@ pub enum GenerateError {
     /// A source of the core has no contents.
     #[error("core/src/gains/paper.rs: {0}")]
     Core(#[from] DesignError),
+    /// A built-in table of the cascade has no design.
+    #[error("core/src/gains/cascade.rs: {0}")]
+    Cascade(#[from] BuiltInError),
     /// A source of the Crazyflie controller has none.
     #[error("crazyflie/src/builtin: {0}")]
     Crazyflie(#[from] CodegenError),
@@ -70,6 +74,7 @@ fn sources(root: &Path) -> Result<Vec<Checked>, GenerateError> {
     };
     Ok(vec![
         exact("core/src/gains/paper.rs", codegen::paper_tables()?),
+        exact("core/src/gains/cascade.rs", built_in_source(&at("gains"))?),
         exact("crazyflie/src/builtin/motor_gains.rs", motor_gains()?),
         exact("crazyflie/src/builtin/paper_limits.rs", paper_limits()?),
         planned("plans/mild.rs", "MILD", paper::mild()?)?,

@@ -122,7 +122,7 @@ fn tracking_goes_on_through_half_a_turn() {
         let straight = iae(&move_and_turn(0.0, 0.0), law);
         for (from, to) in [(PI - 1.0, PI + 1.0), (-PI + 1.0, -PI - 1.0), (3.0 * PI - 1.0, 3.0 * PI + 1.0), (0.0, TAU)] {
             let turning = iae(&move_and_turn(from, to), law);
-            // A turn costs what half a period of hold leaves of the heading rate, up to 3.4 rad/s: millimetres.
+            // In a turn, half a period of hold at a heading rate of up to 3.4 rad/s costs millimetres.
             assert!(turning < straight + 0.02, "{name} from {from:.2} to {to:.2} rad: {turning} beside {straight}");
         }
     }

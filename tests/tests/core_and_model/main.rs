@@ -1,4 +1,4 @@
-//! What no package can test alone: the f32 core against the f64 model, the rigid plant and
+//! Tests across packages: the f32 core against the f64 model, the rigid plant and
 //! real flights, and the layers of every crate.
 
 mod cascade;

@@ -1,5 +1,7 @@
 //! A table that this board flies: an accepted one in, a controller out.
 
+#[cfg(feature = "cascade")]
+use super::cascade::CascadeTable;
 use super::gains::{Content, Gains};
 use super::{AcceptError, TableHead, TableKind};
 use crate::actuation::Actuation;
@@ -26,7 +28,8 @@ impl<'t> AcceptedTable<'t> {
     /// Its law, within the tighter of the table's and the board's limits: a controller.
     ///
     /// # Errors
-    /// [`ControllerError`] where a table for motor forces is not given the actuation of its lag.
+    /// [`ControllerError`] where a table for motor forces is not given the actuation of its lag, or one of the cascade not its own
+    /// [`CascadeTable::flown`](crate::gains::table::CascadeTable::flown).
     #[inline]
     pub fn controller(&self, settings: &Settings<'t>) -> Result<Controller<'t>, ControllerError> {
         let limits = settings.limits.within(&self.content.head.limits);
@@ -54,6 +57,15 @@ impl<'t> AcceptedTable<'t> {
                     return Err(ControllerError::MotorLag { table_s, actuation_s });
                 }
                 gain.law(rate, settings)
+            }
+            #[cfg(feature = "cascade")]
+            Gains::Cascade { lag, .. } => {
+                let Some(cascade) = settings.cascade else { return Err(ControllerError::NoCascade) };
+                if cascade.actuation().lag() != lag {
+                    let (table_s, actuation_s) = (lag.lag_s(), cascade.actuation().lag().lag_s());
+                    return Err(ControllerError::MotorLag { table_s, actuation_s });
+                }
+                Ok(cascade.into())
             }
             Gains::Along { steps_per_knot, trajectory } => {
                 let schedule = GainSchedule::of_checked(self.knots, *steps_per_knot, *trajectory);
@@ -110,6 +122,18 @@ impl<'t> AcceptedTable<'t> {
     pub const fn lag(&self) -> Option<&'t MotorLag> {
         match &self.content.gains {
             Gains::ToMotors { lag, .. } => Some(lag),
+            #[cfg(feature = "cascade")]
+            Gains::Cascade { lag, .. } => Some(lag),
+            _ => None,
+        }
+    }
+
+    /// What it says of the cascade, if that is its kind: [`CascadeTable::flown`] makes the law of it, which
+    /// [`Self::controller`] takes in its settings.
+    #[cfg(feature = "cascade")]
+    pub const fn cascade(&self) -> Option<&'t CascadeTable> {
+        match &self.content.gains {
+            Gains::Cascade { table, .. } => Some(table),
             _ => None,
         }
     }

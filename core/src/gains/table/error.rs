@@ -117,6 +117,51 @@ pub enum TableError {
         /// What, within its gain.
         fault: KnotFault,
     },
+    /// A figure that a table of the cascade has beside the head has no sense.
+    Cascade {
+        /// Which.
+        figure: CascadeFigure,
+        /// What is there.
+        value: f32,
+    },
+}
+
+/// What a table of the cascade says beside the head.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum CascadeFigure {
+    /// A gain: its size must be within 1e-7 to 1e4, and its sign must close the loop.
+    Gain {
+        /// Its place among the 16, from 0.
+        index: u8,
+    },
+    /// An end of the certified range of motor lags, s: the range holds the lag of the design and ends within the largest that the
+    /// certificate states.
+    MotorLag,
+    /// Certified share of mass, 0 to 0.9.
+    Mass,
+    /// Certified share of inertia, 0 to 0.9.
+    Inertia,
+    /// An end of the certified range of force over command, which holds 1.
+    ForceShare,
+    /// Certified delay, s, 0 to the largest that the certificate states.
+    Delay,
+    /// Certified drag, 1/s, from 0.
+    Drag,
+    /// Certified moment of the air, N s, from 0.
+    Moment,
+    /// Drag that is told, 1/s, 0 to 1.
+    ToldDrag,
+    /// Told drag along the thrust over that across it, 0 to 2.
+    ToldDragAlong,
+    /// Moment that is told, N s, 0 to 2e-3.
+    ToldMoment,
+    /// Share of the wind's moment that is fed forward, 0 to 1.
+    ToldGust,
+    /// Whether the air is learned: 0 or 1.
+    Learn,
 }
 
 /// What is wrong with a gain at a knot; rows and columns are counted from 0.
@@ -199,7 +244,11 @@ impl fmt::Display for TableError {
             }
             Self::Version { found } => {
                 let version = super::FORMAT_VERSION;
-                write!(f, "format version {found}, not {version}; generate the table and build the firmware together")
+                write!(
+                    f,
+                    "format version {found}, not {version}; write it again with `quatrack gains design`, with the program of the \
+                     firmware's release"
+                )
             }
             Self::Kind { found } => write!(f, "kind {found} is not flown by this firmware; update it"),
             Self::Dimensions { kind, rows, columns } => {
@@ -232,6 +281,7 @@ impl fmt::Display for TableError {
                 f,
                 "designed for a motor lag of {lag_s} s; must be from two control periods to the largest that is certified"
             ),
+            Self::Cascade { figure, value } => write!(f, "{figure} is {value}; design it again"),
             Self::KnotSpacing => f.write_str("knots 0 control steps apart; must be at least 1"),
             Self::Knot { knot, fault: KnotFault::Gain(error) } => write!(f, "knot {knot}: {error}; design it again"),
             Self::Knot { knot, fault: KnotFault::Entry { row, column, value } } => {
@@ -239,6 +289,26 @@ impl fmt::Display for TableError {
                 entry_out_of_proportion(f, *row, *column, *value)
             }
         }
+    }
+}
+
+impl fmt::Display for CascadeFigure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Gain { index } => return write!(f, "gain {index} of the cascade"),
+            Self::MotorLag => "an end of the certified motor lags (s)",
+            Self::Mass => "certified share of mass",
+            Self::Inertia => "certified share of inertia",
+            Self::ForceShare => "certified force over command",
+            Self::Delay => "certified delay (s)",
+            Self::Drag => "certified drag (1/s)",
+            Self::Moment => "certified moment of the air (N s)",
+            Self::ToldDrag => "told drag (1/s)",
+            Self::ToldDragAlong => "told drag along the thrust",
+            Self::ToldMoment => "told moment of the air (N s)",
+            Self::ToldGust => "share of the wind fed forward",
+            Self::Learn => "the mark of learned air",
+        })
     }
 }
 

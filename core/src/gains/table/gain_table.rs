@@ -1,5 +1,7 @@
 //! A table of any kind: bytes in, a sound and certified table out, and back.
 
+#[cfg(feature = "cascade")]
+use super::cascade::CascadeTable;
 use super::gains::{Content, Gains, bytes_behind_head, require_knots};
 use super::{AcceptError, AcceptedTable, Rows, ScheduleRows, TableError, TableHead, TableKind, Vehicle, wire};
 use crate::clock::Rate;
@@ -63,6 +65,10 @@ impl<'b> GainTable<'b> {
                 let field = lag.lag_s().to_le_bytes();
                 wire::write(buffer, kind, head, &field, self.rows()?.entries().iter().copied())
             }
+            #[cfg(feature = "cascade")]
+            Gains::Cascade { table, .. } => {
+                wire::write(buffer, kind, head, &table.fields(), table.gains.numbers().into_iter())
+            }
             Gains::Along { steps_per_knot, trajectory } => {
                 let fields = along_fields(u16::try_from(self.knots.len()).ok()?, *steps_per_knot, *trajectory);
                 let entries = self.knots.as_flattened().as_flattened();
@@ -91,11 +97,22 @@ impl<'b> GainTable<'b> {
         &self.content.head
     }
 
-    /// The gain, if it is the same all the time.
+    /// The gain, if it is one matrix that is the same all the time.
     pub const fn gain(&self) -> Option<&ConstantGain> {
         match &self.content.gains {
             Gains::Constant(gain) | Gains::ToMotors { gain, .. } => Some(gain),
+            #[cfg(feature = "cascade")]
+            Gains::Cascade { .. } => None,
             Gains::Along { .. } => None,
+        }
+    }
+
+    /// What it says of the cascade, if that is its kind.
+    #[cfg(feature = "cascade")]
+    pub const fn cascade(&self) -> Option<&CascadeTable> {
+        match &self.content.gains {
+            Gains::Cascade { table, .. } => Some(table),
+            _ => None,
         }
     }
 
@@ -103,6 +120,8 @@ impl<'b> GainTable<'b> {
     pub const fn lag(&self) -> Option<&MotorLag> {
         match &self.content.gains {
             Gains::ToMotors { lag, .. } => Some(lag),
+            #[cfg(feature = "cascade")]
+            Gains::Cascade { lag, .. } => Some(lag),
             _ => None,
         }
     }
@@ -117,7 +136,7 @@ impl<'b> GainTable<'b> {
         }
     }
 
-    /// What it was written from, if its gain is the same all the time.
+    /// What it was written from, if that is one matrix.
     pub const fn rows(&self) -> Option<Rows> {
         Some(match self.gain() {
             Some(ConstantGain::Equilibrium(gain)) => Rows::Equilibrium(*gain.gain().rows()),
@@ -143,6 +162,16 @@ impl GainTable<'static> {
     pub fn new(head: TableHead, rows: &Rows) -> Result<Self, TableError> {
         head.check()?;
         Ok(Self { content: Content { head, gains: Gains::new(rows, &head)? }, knots: &[] })
+    }
+
+    /// The same of one of the cascade.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    #[cfg(feature = "cascade")]
+    pub fn of_cascade(head: TableHead, table: &CascadeTable) -> Result<Self, TableError> {
+        head.check()?;
+        Ok(Self { content: Content { head, gains: Gains::cascade(table, &head)? }, knots: &[] })
     }
 }
 

@@ -1,5 +1,9 @@
 //! The gains in a table, of any kind: rows or bytes in, checked gains out.
 
+#[cfg(feature = "cascade")]
+use super::cascade::{self, CascadeTable};
+#[cfg(feature = "cascade")]
+use super::error::count;
 use super::error::{KnotFault, TableError};
 use super::{ENTRY_MAX, ENTRY_MIN, KNOTS_MAX, Rows, TableHead, TableKind, wire};
 use crate::gains::ConstantGain;
@@ -20,6 +24,9 @@ pub(crate) enum Gains {
     Constant(ConstantGain),
     /// The same all the time, for motor forces: with the lag that it was designed for.
     ToMotors { gain: ConstantGain, lag: MotorLag },
+    /// Of the cascade, with the lag in its table.
+    #[cfg(feature = "cascade")]
+    Cascade { table: CascadeTable, lag: MotorLag },
     /// At knots along the trajectory of a checksum.
     Along { steps_per_knot: u16, trajectory: u32 },
 }
@@ -37,6 +44,8 @@ impl Gains {
             Self::Constant(ConstantGain::FlatOutput(_)) => TableKind::FlatOutput,
             Self::Constant(ConstantGain::Integral(_)) => TableKind::Integral,
             Self::Constant(ConstantGain::ActuatorAware(_)) | Self::ToMotors { .. } => TableKind::ActuatorAware,
+            #[cfg(feature = "cascade")]
+            Self::Cascade { .. } => TableKind::Cascade,
             Self::Along { .. } => TableKind::AlongTrajectory,
         }
     }
@@ -78,9 +87,21 @@ impl Gains {
                 wire::read_entries(entries, rows.as_flattened_mut());
                 Self::to_motors(&rows, f32::from_le_bytes(*field), head)?
             }
+            #[cfg(feature = "cascade")]
+            TableKind::Cascade => {
+                let ended = TableError::Length { bytes: count(rest.len()), wanted: count(cascade::BYTES) };
+                Self::cascade(&CascadeTable::read(rest, ended)?, head)?
+            }
+            #[cfg(not(feature = "cascade"))]
+            TableKind::Cascade => return Err(TableError::Kind { found: kind.number() }),
             TableKind::AlongTrajectory => return Self::along(rest),
         };
         Ok((gains, &[]))
+    }
+
+    #[cfg(feature = "cascade")]
+    pub(super) fn cascade(table: &CascadeTable, head: &TableHead) -> Result<Self, TableError> {
+        Ok(Self::Cascade { table: *table, lag: table.checked(head)? })
     }
 
     fn equilibrium(rows: &[[f32; 9]; 4]) -> Result<Self, TableError> {
@@ -141,6 +162,10 @@ pub(super) fn bytes_behind_head(kind: TableKind, rest: &[u8], ended: TableError)
             ALONG_BYTES + knots * kind.gain_bytes()
         }
         TableKind::ActuatorAware => LAG_BYTES + kind.gain_bytes(),
+        #[cfg(feature = "cascade")]
+        TableKind::Cascade => cascade::BYTES,
+        #[cfg(not(feature = "cascade"))]
+        TableKind::Cascade => return Err(TableError::Kind { found: kind.number() }),
         _ => kind.gain_bytes(),
     })
 }

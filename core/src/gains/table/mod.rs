@@ -16,8 +16,9 @@
 //!     let accepted = table.accept_for(vehicle, rate)?;
 //!     let actuation = accepted.actuation(board);
 //!     let (feed_forward, error_form) = (FeedForward::With, ErrorForm::HeadingFrame);
-//!     let settings =
-//!         Settings { limits: Limits::NONE, actuation: Some(&actuation), feed_forward, error_form, player_rate: rate };
+//!     let settings = Settings {
+//!         actuation: Some(&actuation), feed_forward, error_form, ..Settings::new(Limits::NONE, rate)
+//!     };
 //!     let controller = accepted.controller(&settings)?;
 //!     # let _ = controller;
 //!     Ok(accepted.head().certificate.delay_max_s)
@@ -25,6 +26,8 @@
 //! ```
 
 mod accepted;
+#[cfg(feature = "cascade")]
+mod cascade;
 mod certificate;
 mod error;
 mod gain_table;
@@ -33,8 +36,10 @@ mod name;
 mod wire;
 
 pub use accepted::{AcceptedTable, margin_behind};
+#[cfg(feature = "cascade")]
+pub use cascade::{BuiltInCascade, CascadeRange, CascadeTable};
 pub use certificate::{Certificate, Figure, Hash, Margins, Vehicle};
-pub use error::{AcceptError, KnotFault, LoadError, TableError};
+pub use error::{AcceptError, CascadeFigure, KnotFault, LoadError, TableError};
 pub use gain_table::GainTable;
 #[cfg(feature = "link")]
 pub(crate) use gains::Content;
@@ -61,7 +66,7 @@ pub const THRUST_MAX_M_S2: f32 = 200.0;
 /// Largest body rate limit, rad/s: almost three times what a gyroscope of 2000 degrees a second measures.
 pub const BODY_RATE_MAX_RAD_S: f32 = 100.0;
 
-/// Most knots along a trajectory: with as many, a table goes where an uploaded trajectory goes.
+/// Most knots along a trajectory: with as many, a table is about as long as the longest trajectory that is uploaded.
 pub const KNOTS_MAX: usize = 60;
 
 /// Bytes of the longest table: one of gains along a trajectory.
@@ -88,9 +93,11 @@ pub enum TableKind {
     AlongTrajectory,
     /// [`crate::ActuatorAware`], 4 by 19.
     ActuatorAware,
+    /// The cascade (feature `cascade`): 16 gains of four chains.
+    Cascade,
 }
 
-/// What a table of one gain is written from: its entries by rows.
+/// What a table of one gain is written from: its entries by rows. One of the cascade is written from a `CascadeTable`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Rows {
@@ -209,6 +216,7 @@ impl TableKind {
             Self::Integral => 3,
             Self::AlongTrajectory => 4,
             Self::ActuatorAware => 5,
+            Self::Cascade => 6,
         }
     }
 
@@ -219,6 +227,7 @@ impl TableKind {
             3 => Some(Self::Integral),
             4 => Some(Self::AlongTrajectory),
             5 => Some(Self::ActuatorAware),
+            6 => Some(Self::Cascade),
             _ => None,
         }
     }
@@ -231,6 +240,7 @@ impl TableKind {
             Self::Integral => (4, 12),
             Self::AlongTrajectory => (4, 9),
             Self::ActuatorAware => (4, 19),
+            Self::Cascade => (1, 16),
         }
     }
 
@@ -249,6 +259,7 @@ impl fmt::Display for TableKind {
             Self::Integral => "equilibrium with integral action",
             Self::AlongTrajectory => "equilibrium along a trajectory",
             Self::ActuatorAware => "actuator-aware",
+            Self::Cascade => "cascade",
         })
     }
 }

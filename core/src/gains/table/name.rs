@@ -36,7 +36,7 @@ pub enum NameError {
 
 impl Name {
     /// Most characters.
-    pub const BYTES: usize = 24;
+    pub const BYTES: usize = 31;
 
     /// Checks a text.
     ///
@@ -67,7 +67,7 @@ impl Name {
     pub const fn literal(text: &str) -> Self {
         match Self::new(text) {
             Ok(name) => name,
-            Err(_) => panic!("a name has 1 to 24 printable ASCII characters without spaces"),
+            Err(_) => panic!("a name has 1 to 31 printable ASCII characters without spaces"),
         }
     }
 
@@ -154,7 +154,7 @@ mod tests {
 
     #[test]
     fn a_name_is_the_same_as_text_and_as_bytes() {
-        for text in ["a", "crazyflie-2.1", "exactly-24-characters-ok"] {
+        for text in ["a", "crazyflie-2.1", "exactly-31-characters-is-all-ok"] {
             let name = Name::new(text).unwrap();
             assert_eq!(name.as_str(), text);
             assert_eq!(Name::from_padded(name.padded()), Ok(name));
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn what_is_no_name_is_refused_by_text_and_by_bytes() {
         assert_eq!(Name::new(""), Err(NameError::Length { bytes: 0 }));
-        assert_eq!(Name::new("exactly-25-characters-now"), Err(NameError::Length { bytes: 25 }));
+        assert_eq!(Name::new("exactly-32-characters-is-too-lon"), Err(NameError::Length { bytes: 32 }));
         for (text, position, byte) in [("a b", 1, b' '), ("a\0", 1, 0), ("ü", 0, 0xC3)] {
             assert_eq!(Name::new(text), Err(NameError::Character { position, byte }), "{text:?}");
         }

@@ -19,7 +19,7 @@ use crate::command::Limits;
 pub const MAGIC: [u8; 4] = *b"QTGT";
 
 /// Version of the payload. The frame (magic, version, length, checksum) is the same in all of them.
-pub const FORMAT_VERSION: u16 = 1;
+pub const FORMAT_VERSION: u16 = 2;
 
 /// Magic, version and length before the payload.
 pub(super) const PAYLOAD_OFFSET: usize = 4 + 2 + 2;

@@ -26,7 +26,7 @@ fn written(motor_lag_s: f32, rows: [[f32; 19]; 4]) -> Result<GainTable<'static>,
     GainTable::new(head("motors"), &Rows::ActuatorAware { motor_lag_s, rows })
 }
 
-/// What the table is refused for after some of its bytes have been replaced, checksum made anew.
+/// The error of the table after some of its bytes have been replaced, checksum made anew.
 fn refusal(offset: usize, replacement: &[u8]) -> TableError {
     let mut bytes = actuator_bytes();
     bytes[offset..offset + replacement.len()].copy_from_slice(replacement);
@@ -36,10 +36,10 @@ fn refusal(offset: usize, replacement: &[u8]) -> TableError {
 #[test]
 fn every_field_stands_where_the_page_says_and_comes_back() {
     let bytes = actuator_bytes();
-    assert_eq!((bytes.len(), CONSTANT_TABLE_BYTES_MAX), (491, 491));
+    assert_eq!((bytes.len(), CONSTANT_TABLE_BYTES_MAX), (505, 505));
     assert_eq!(bytes[8..11], [5, 4, 19]);
-    assert_eq!(bytes[179..183], LAG_S.to_le_bytes());
-    let entries: Vec<f32> = bytes[183..487].chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
+    assert_eq!(bytes[193..197], LAG_S.to_le_bytes());
+    let entries: Vec<f32> = bytes[197..501].chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
     assert_eq!(entries, rows().as_flattened());
     let read = GainTable::from_bytes(&bytes).unwrap();
     assert_eq!((read.head(), read.kind()), (&head("motors"), TableKind::ActuatorAware));
@@ -52,10 +52,10 @@ fn every_field_stands_where_the_page_says_and_comes_back() {
 fn the_lag_is_one_that_can_be_followed_and_is_certified() {
     // Two periods of 500 Hz; the certificate's largest lag is 31.25 ms.
     for lag_s in [0.0_f32, -0.025, 0.0039, 0.0313, f32::INFINITY] {
-        assert_eq!(refusal(179, &lag_s.to_le_bytes()), TableError::MotorLag { lag_s });
+        assert_eq!(refusal(193, &lag_s.to_le_bytes()), TableError::MotorLag { lag_s });
         assert_eq!(written(lag_s, rows()), Err(TableError::MotorLag { lag_s }));
     }
-    assert!(matches!(refusal(179, &f32::NAN.to_le_bytes()), TableError::MotorLag { .. }));
+    assert!(matches!(refusal(193, &f32::NAN.to_le_bytes()), TableError::MotorLag { .. }));
     assert_eq!(
         TableError::MotorLag { lag_s: 0.5 }.to_string(),
         "gain table: designed for a motor lag of 0.5 s; must be from two control periods to the largest that is certified"
@@ -65,7 +65,7 @@ fn the_lag_is_one_that_can_be_followed_and_is_certified() {
 #[test]
 fn every_entry_is_looked_at() {
     for (row, column) in (0..4).flat_map(|row| (0..19).map(move |column| (row, column))) {
-        let at = 183 + 4 * (19 * row + column);
+        let at = 197 + 4 * (19 * row + column);
         let not_finite = TableError::Gain(GainError::NonFinite { row, column });
         assert_eq!(refusal(at, &f32::NAN.to_le_bytes()), not_finite);
         for value in [-1.1e4_f32, 0.9e-9] {
@@ -116,7 +116,7 @@ fn an_accepted_table_flies_its_vehicle_with_its_lag() {
 
 proptest! {
     #[test]
-    fn any_cut_or_flipped_bit_is_refused(at in 0_usize..491, bit in 0_u32..8) {
+    fn any_cut_or_flipped_bit_is_refused(at in 0_usize..505, bit in 0_u32..8) {
         let mut bytes = actuator_bytes();
         prop_assert!(GainTable::from_bytes(&bytes[..at]).is_err());
         bytes[at] ^= 1 << bit;
@@ -126,7 +126,7 @@ proptest! {
     #[test]
     fn any_payload_is_refused_or_comes_back(noise in vec(any::<u8>(), 0..308), at in 8_usize..480) {
         let mut bytes = actuator_bytes();
-        for (byte, noise) in bytes[at..487].iter_mut().zip(noise) {
+        for (byte, noise) in bytes[at..501].iter_mut().zip(noise) {
             *byte = noise;
         }
         let bytes = sealed(bytes);

@@ -13,7 +13,7 @@ pub(crate) fn rate() -> Rate {
     Rate::from_hz(500).unwrap()
 }
 
-/// The figures only have to be possible ones: no test here is about what they claim.
+/// The figures only have to be possible ones: no test here is about their truth.
 pub(crate) fn head(name: &str) -> TableHead {
     TableHead {
         name: Name::new(name).unwrap(),
@@ -42,7 +42,7 @@ pub(crate) fn paper_tables() -> [(&'static str, Rows); 4] {
     ]
 }
 
-/// LQR-E with what its integrals of the position would answer; 50.9 and 20.7 are those of the design with weights 50.
+/// LQR-E with gains of its position integrals; 50.9 and 20.7 are those of the design with weights 50.
 pub(crate) fn integral_rows() -> [[f32; 12]; 4] {
     let answers = [[0.0, 0.0, 50.9], [0.0, -20.7, 0.0], [20.7, 0.0, 0.0], [0.0; 3]];
     let mut rows = [[0.0; 12]; 4];

@@ -43,28 +43,28 @@ fn every_flipped_bit_is_found() {
 fn every_part_of_a_table_and_every_longer_one_is_refused_by_its_length() {
     let mut bytes = bytes_of(&table("lqr-e"));
     for length in 0..bytes.len() {
-        let wanted = if length < 12 { 12 } else { 327 };
+        let wanted = if length < 12 { 12 } else { 341 };
         let refused = Err(TableError::Length { bytes: length as u32, wanted });
         assert_eq!(GainTable::from_bytes(&bytes[..length]), refused);
     }
     bytes.push(0);
-    assert_eq!(GainTable::from_bytes(&bytes), Err(TableError::Length { bytes: 328, wanted: 327 }));
+    assert_eq!(GainTable::from_bytes(&bytes), Err(TableError::Length { bytes: 342, wanted: 341 }));
 }
 
 #[test]
 fn the_frame_is_looked_at_first() {
     assert_eq!(refusal("lqr-e", 0, b"QTTR"), TableError::Magic { found: *b"QTTR" });
-    assert_eq!(refusal("lqr-e", 4, &[2, 1]), TableError::Version { found: 0x0102 });
+    assert_eq!(refusal("lqr-e", 4, &[3, 1]), TableError::Version { found: 0x0103 });
     let mut bytes = bytes_of(&table("lqr-e"));
-    let stated = u32::from_le_bytes(bytes[323..].try_into().unwrap());
-    bytes[326] ^= 0x80;
+    let stated = u32::from_le_bytes(bytes[337..].try_into().unwrap());
+    bytes[340] ^= 0x80;
     let refused = Err(TableError::Checksum { stated: stated ^ 0x8000_0000, found: stated });
     assert_eq!(GainTable::from_bytes(&bytes), refused);
 }
 
 #[test]
 fn a_payload_of_another_kind_or_size_is_refused() {
-    for found in [0, 6, 7, 255] {
+    for found in [0, 7, 8, 255] {
         assert_eq!(refusal("lqr-e", 8, &[found]), TableError::Kind { found });
     }
     let transposed = TableError::Dimensions { kind: TableKind::Equilibrium, rows: 9, columns: 4 };
@@ -77,8 +77,10 @@ fn a_payload_of_another_kind_or_size_is_refused() {
     assert_eq!(refusal("lqr-e", 8, &[4]), TableError::Knots { found: 0 });
     let without_motors = TableError::Dimensions { kind: TableKind::ActuatorAware, rows: 4, columns: 9 };
     assert_eq!(refusal("lqr-e", 8, &[5]), without_motors);
+    let without_chains = TableError::Dimensions { kind: TableKind::Cascade, rows: 4, columns: 9 };
+    assert_eq!(refusal("lqr-e", 8, &[6]), without_chains);
     // Sound frames around payloads of other lengths: none, half a head, gains of the other kind.
-    let cases = [(1, 0, 183), (1, 100, 183), (1, 451, 327), (1, 314, 327), (2, 315, 463), (3, 315, 375), (3, 364, 375)];
+    let cases = [(1, 0, 197), (1, 114, 197), (1, 465, 341), (1, 328, 341), (2, 329, 477), (3, 329, 389), (3, 378, 389)];
     for (kind, payload, wanted) in cases {
         let (m, n) = [(4, 9), (7, 10), (4, 12)][kind as usize - 1];
         let mut bytes = bytes_of(&table("lqr-f"));
@@ -97,7 +99,7 @@ fn every_entry_is_looked_at() {
     for name in ["lqr-e", "lqr-f", "lqi-e"] {
         let (m, n) = dimensions(table(name).kind());
         for (row, column) in (0..m).flat_map(|row| (0..n).map(move |column| (row, column))) {
-            let at = 179 + 4 * (row * n + column);
+            let at = 193 + 4 * (row * n + column);
             for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
                 let refused = TableError::Gain(GainError::NonFinite { row, column });
                 assert_eq!(refusal(name, at, &bad.to_le_bytes()), refused);
@@ -111,7 +113,7 @@ fn every_entry_is_looked_at() {
         let unused = (0..n).map(|column| {
             let mut bytes = bytes_of(&table(name));
             for row in 0..m {
-                let at = 179 + 4 * (row * n + column);
+                let at = 193 + 4 * (row * n + column);
                 bytes[at..at + 4].copy_from_slice(&(-0.0_f32).to_le_bytes());
             }
             (column, GainTable::from_bytes(&sealed(bytes)).err())
@@ -126,35 +128,35 @@ fn every_entry_is_looked_at() {
 fn entries_on_the_bounds_pass() {
     for value in [1e4_f32, -1e4, 1e-9, -1e-9] {
         let mut bytes = bytes_of(&table("lqr-e"));
-        bytes[179..183].copy_from_slice(&value.to_le_bytes());
+        bytes[193..197].copy_from_slice(&value.to_le_bytes());
         assert!(GainTable::from_bytes(&sealed(bytes)).is_ok(), "{value:e}");
     }
 }
 
 #[test]
 fn names_are_names() {
-    assert_eq!(refusal("lqr-e", 11, &[0; 24]), TableError::TableName(NameError::Length { bytes: 0 }));
+    assert_eq!(refusal("lqr-e", 11, &[0; 31]), TableError::TableName(NameError::Length { bytes: 0 }));
     let space = NameError::Character { position: 3, byte: b' ' };
     assert_eq!(refusal("lqr-e", 11, b"lqr e"), TableError::TableName(space));
-    let behind = NameError::Character { position: 23, byte: b'x' };
-    assert_eq!(refusal("lqr-e", 58, b"x"), TableError::VehicleName(behind));
+    let behind = NameError::Character { position: 30, byte: b'x' };
+    assert_eq!(refusal("lqr-e", 72, b"x"), TableError::VehicleName(behind));
 }
 
 #[test]
 fn rate_and_limits_are_possible_ones() {
     for hz in [0, 10_001, u32::MAX] {
-        assert_eq!(refusal("lqr-e", 63, &u32::to_le_bytes(hz)), TableError::Rate { hz });
+        assert_eq!(refusal("lqr-e", 77, &u32::to_le_bytes(hz)), TableError::Rate { hz });
     }
     let thrust = |min_m_s2, max_m_s2| TableError::Thrust { min_m_s2, max_m_s2 };
     let empty = LimitsError::Thrust { min_m_s2: 17.0, max_m_s2: 16.5 };
-    assert_eq!(refusal_of_f32(67, 17.0), TableError::Limits(empty));
-    assert_eq!(refusal_of_f32(67, -1.0), thrust(-1.0, 16.5), "propellers do not pull down");
-    assert_eq!(refusal_of_f32(67, 9.9), thrust(9.9, 16.5), "cannot hover");
-    assert_eq!(refusal_of_f32(71, 9.5), thrust(1.75, 9.5), "cannot hover");
-    assert_eq!(refusal_of_f32(71, 200.1), thrust(1.75, 200.1));
-    assert!(matches!(refusal_of_f32(71, f32::NAN), TableError::Limits(LimitsError::Thrust { .. })));
-    assert_eq!(refusal_of_f32(79, 0.0), TableError::Limits(LimitsError::BodyRate { max_rad_s: 0.0 }));
-    for offset in [75, 79, 83] {
+    assert_eq!(refusal_of_f32(81, 17.0), TableError::Limits(empty));
+    assert_eq!(refusal_of_f32(81, -1.0), thrust(-1.0, 16.5), "propellers do not pull down");
+    assert_eq!(refusal_of_f32(81, 9.9), thrust(9.9, 16.5), "cannot hover");
+    assert_eq!(refusal_of_f32(85, 9.5), thrust(1.75, 9.5), "cannot hover");
+    assert_eq!(refusal_of_f32(85, 200.1), thrust(1.75, 200.1));
+    assert!(matches!(refusal_of_f32(85, f32::NAN), TableError::Limits(LimitsError::Thrust { .. })));
+    assert_eq!(refusal_of_f32(93, 0.0), TableError::Limits(LimitsError::BodyRate { max_rad_s: 0.0 }));
+    for offset in [89, 93, 97] {
         let beyond = 1.01 * BODY_RATE_MAX_RAD_S;
         assert_eq!(refusal_of_f32(offset, beyond), TableError::BodyRate { max_rad_s: beyond });
     }
@@ -162,17 +164,17 @@ fn rate_and_limits_are_possible_ones() {
 
 #[test]
 fn a_table_without_design_or_certificate_is_refused() {
-    assert_eq!(refusal("lqr-e", 87, &[0; 32]), TableError::NoDesign);
-    assert_eq!(refusal("lqr-e", 119, &[0; 32]), TableError::NoCertificate);
+    assert_eq!(refusal("lqr-e", 101, &[0; 32]), TableError::NoDesign);
+    assert_eq!(refusal("lqr-e", 133, &[0; 32]), TableError::NoCertificate);
     // Offset of the figure; values that certify nothing, and one beyond what is believed.
     let cases = [
-        (151, Figure::OneChannelGain, [0.0, 1.0, -2.0], 1001.0),
-        (155, Figure::OneChannelPhase, [0.0, -0.0, -1.0], 3.2),
-        (159, Figure::AllChannelsGain, [0.0, 0.5, 1.0], f32::INFINITY),
-        (163, Figure::AllChannelsPhase, [0.0, -1.0, -3.0], 3.2),
-        (167, Figure::DelayMax, [0.0, -0.0, -1.0], 10.1),
-        (171, Figure::MotorLagMax, [0.0, -0.0, -1.0], f32::INFINITY),
-        (175, Figure::F32Distance, [-1e-9, -1.0, f32::NEG_INFINITY], 1.1e-6),
+        (165, Figure::OneChannelGain, [0.0, 1.0, -2.0], 1001.0),
+        (169, Figure::OneChannelPhase, [0.0, -0.0, -1.0], 3.2),
+        (173, Figure::AllChannelsGain, [0.0, 0.5, 1.0], f32::INFINITY),
+        (177, Figure::AllChannelsPhase, [0.0, -1.0, -3.0], 3.2),
+        (181, Figure::DelayMax, [0.0, -0.0, -1.0], 10.1),
+        (185, Figure::MotorLagMax, [0.0, -0.0, -1.0], f32::INFINITY),
+        (189, Figure::F32Distance, [-1e-9, -1.0, f32::NEG_INFINITY], 1.1e-6),
     ];
     for (offset, figure, nothing, beyond) in cases {
         for value in nothing.into_iter().chain([beyond]) {
@@ -204,14 +206,15 @@ fn a_refusal_names_what_is_wrong_and_what_to_do() {
             "gain table: starts with [51, 54, 54, 52], not [51, 54, 47, 54]; give a binary gain table",
         ),
         (
-            refusal("lqr-e", 4, &[2]),
-            "gain table: format version 2, not 1; generate the table and build the firmware together",
+            refusal("lqr-e", 4, &[1]),
+            "gain table: format version 1, not 2; write it again with `quatrack gains design`, with the program of the firmware's \
+             release",
         ),
-        (refusal_of_f32(183, 2e4), "gain table: entry (0, 1) is 2e4; must be 0 or of a size from 1e-9 to 1e4"),
-        (refusal_of_f32(183, f32::NAN), "gain table: gain: entry (0, 1) is not finite; design it again"),
-        (refusal("lqr-e", 119, &[0; 32]), "gain table: no certificate; certify the design"),
+        (refusal_of_f32(197, 2e4), "gain table: entry (0, 1) is 2e4; must be 0 or of a size from 1e-9 to 1e4"),
+        (refusal_of_f32(197, f32::NAN), "gain table: gain: entry (0, 1) is not finite; design it again"),
+        (refusal("lqr-e", 133, &[0; 32]), "gain table: no certificate; certify the design"),
         (
-            refusal_of_f32(167, 0.0),
+            refusal_of_f32(181, 0.0),
             "gain table: certified largest delay (s) is 0, which certifies nothing; change the design",
         ),
     ];

@@ -7,7 +7,7 @@ use quatrack::gains::table::{
     AcceptError, GainTable, KNOTS_MAX, KnotFault, LoadError, ScheduleRows, TABLE_BYTES_MAX, TableError, TableKind,
     Vehicle,
 };
-use quatrack::link::{GainStore, TRAJECTORY_BLOB_BYTES};
+use quatrack::link::{BLOB_BYTES_MAX, GainStore};
 use quatrack::nalgebra::Vector3;
 use quatrack::{
     Controller, FeedForward, Limits, Memory, Piece, Progress, Rate, Reference, Settings, State, Step, Target,
@@ -19,7 +19,7 @@ use super::fixture::{
     TRAJECTORY, VEHICLE, bytes_of, gains_over_time, head, rate, schedule_bytes, sealed, table, tables,
 };
 
-/// What a table of four knots is refused for after some of its bytes have been replaced, checksum made anew.
+/// The error of a table of four knots after some of its bytes have been replaced, checksum made anew.
 fn refusal(offset: usize, replacement: &[u8]) -> TableError {
     let mut bytes = schedule_bytes(&gains_over_time(4));
     bytes[offset..offset + replacement.len()].copy_from_slice(replacement);
@@ -31,11 +31,11 @@ fn every_field_stands_where_the_page_says_and_comes_back() {
     for knots in [2, 33, KNOTS_MAX] {
         let gains = gains_over_time(knots);
         let bytes = schedule_bytes(&gains);
-        assert_eq!(bytes.len(), 191 + 144 * knots);
-        assert_eq!(bytes[4..11], [1, 0, (179 + 144 * knots) as u8, ((179 + 144 * knots) >> 8) as u8, 4, 4, 9]);
-        assert_eq!(bytes[179..187], [knots as u8, 0, 25, 0, 0x44, 0x33, 0x22, 0x11], "knots, spacing, trajectory");
+        assert_eq!(bytes.len(), 205 + 144 * knots);
+        assert_eq!(bytes[4..11], [2, 0, (193 + 144 * knots) as u8, ((193 + 144 * knots) >> 8) as u8, 4, 4, 9]);
+        assert_eq!(bytes[193..201], [knots as u8, 0, 25, 0, 0x44, 0x33, 0x22, 0x11], "knots, spacing, trajectory");
         let of_file: Vec<f32> =
-            bytes[187..bytes.len() - 4].chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
+            bytes[201..bytes.len() - 4].chunks(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
         assert_eq!(of_file, gains.as_flattened().as_flattened());
 
         let read = GainTable::from_bytes(&bytes).unwrap();
@@ -46,7 +46,7 @@ fn every_field_stands_where_the_page_says_and_comes_back() {
         assert_eq!((0..).map_while(|knot| schedule.gain(knot)).collect::<Vec<_>>(), gains);
     }
     // A compile-time fact of two constants, in different modules of the core.
-    const { assert!(TABLE_BYTES_MAX <= TRAJECTORY_BLOB_BYTES, "goes where an uploaded trajectory goes") };
+    const { assert!(TABLE_BYTES_MAX <= BLOB_BYTES_MAX, "a board has room for it") };
 }
 
 #[test]
@@ -62,24 +62,24 @@ fn a_kind_is_told_before_anything_is_read() {
 #[test]
 fn knots_and_their_spacing_are_possible_ones() {
     for found in [0, 1, 61, u16::MAX] {
-        assert_eq!(refusal(179, &found.to_le_bytes()), TableError::Knots { found });
+        assert_eq!(refusal(193, &found.to_le_bytes()), TableError::Knots { found });
         let gains = gains_over_time(usize::from(found));
         let rows = ScheduleRows { trajectory: 0, steps_per_knot: 1, gains: &gains };
         let written = GainTable::along(&mut [0; TABLE_BYTES_MAX], &head("along"), &rows).map(|_| ());
         assert_eq!(written, Err(TableError::Knots { found }));
     }
-    assert_eq!(refusal(181, &[0, 0]), TableError::KnotSpacing);
-    // Four knots have 767 bytes.
+    assert_eq!(refusal(195, &[0, 0]), TableError::KnotSpacing);
+    // Four knots have 781 bytes.
     for found in [2_u16, 3, 5, 60] {
-        let wanted = 191 + 144 * u32::from(found);
-        assert_eq!(refusal(179, &found.to_le_bytes()), TableError::Length { bytes: 767, wanted });
+        let wanted = 205 + 144 * u32::from(found);
+        assert_eq!(refusal(193, &found.to_le_bytes()), TableError::Length { bytes: 781, wanted });
     }
 }
 
 #[test]
 fn every_entry_of_every_knot_is_looked_at() {
     for (knot, row, column) in (0..4).flat_map(|k| (0..4).flat_map(move |row| (0..9).map(move |c| (k, row, c)))) {
-        let at = 187 + 4 * (36 * knot + 9 * row + column);
+        let at = 201 + 4 * (36 * knot + 9 * row + column);
         let knot = knot as u16;
         for bad in [f32::NAN, f32::INFINITY] {
             let fault = KnotFault::Gain(GainError::NonFinite { row, column });
@@ -104,9 +104,9 @@ fn every_entry_of_every_knot_is_looked_at() {
 
 #[test]
 fn head_and_frame_are_looked_at_as_in_every_table() {
-    assert_eq!(refusal(87, &[0; 32]), TableError::NoDesign);
-    assert_eq!(refusal(119, &[0; 32]), TableError::NoCertificate);
-    assert_eq!(refusal(63, &[0; 4]), TableError::Rate { hz: 0 });
+    assert_eq!(refusal(101, &[0; 32]), TableError::NoDesign);
+    assert_eq!(refusal(133, &[0; 32]), TableError::NoCertificate);
+    assert_eq!(refusal(77, &[0; 4]), TableError::Rate { hz: 0 });
     let bytes = schedule_bytes(&gains_over_time(4));
     for length in 0..bytes.len() {
         let refused = GainTable::from_bytes(&bytes[..length]);
@@ -114,7 +114,7 @@ fn head_and_frame_are_looked_at_as_in_every_table() {
         let gains = gains_over_time(4);
         let rows = ScheduleRows { trajectory: 0, steps_per_knot: 1, gains: &gains };
         let written = GainTable::along(&mut vec![0; length], &head("along"), &rows).map(|_| ());
-        assert_eq!(written, Err(TableError::Length { bytes: length as u32, wanted: 767 }));
+        assert_eq!(written, Err(TableError::Length { bytes: length as u32, wanted: 781 }));
     }
     for bit in 0..bytes.len() * 8 {
         let mut broken = bytes.clone();
@@ -184,14 +184,14 @@ fn an_uploaded_table_is_put_to_use_as_a_whole_and_gone_back_from() {
     assert_eq!(store.active().map(|table| table.kind()), Some(TableKind::Equilibrium));
 }
 
-/// What tells two tables in a store apart: the thrust of their last gain.
+/// The difference between two tables in a store: the thrust of their last gain.
 fn last_thrust(table: &quatrack::gains::table::AcceptedTable<'_>) -> u32 {
     let settings = Settings::new(Limits::NONE, rate());
     let controller = Controller::new(table.law(&settings).unwrap(), Limits::NONE);
     command(&controller, u32::MAX).command.thrust_m_s2.to_bits()
 }
 
-/// What holds for every table that comes out of any bytes.
+/// The properties of every table that comes out of any bytes.
 fn holds_for_a_table(bytes: &[u8]) -> Result<bool, TestCaseError> {
     let Ok(read) = GainTable::from_bytes(bytes) else { return Ok(false) };
     let Some(schedule) = read.schedule() else { return Ok(false) };
@@ -224,7 +224,7 @@ proptest! {
     #[test]
     fn gains_of_a_usual_size_are_a_table(entries in vec(1e-3_f32..50.0, 36 * 3)) {
         let mut bytes = schedule_bytes(&gains_over_time(3));
-        for (at, entry) in (187..).step_by(4).zip(entries) {
+        for (at, entry) in (201..).step_by(4).zip(entries) {
             bytes[at..at + 4].copy_from_slice(&entry.to_le_bytes());
         }
         prop_assert!(holds_for_a_table(&sealed(bytes))?);

@@ -29,7 +29,7 @@ fn decode<M: Message>(bytes: &[u8]) -> (Vec<Received<M>>, Counters) {
     (received, *decoder.counters())
 }
 
-/// The sequence numbers of what was received, each message checked against the frame that was sent under its number.
+/// The sequence numbers of the received messages, each message checked against the frame that was sent under its number.
 /// Compared as frames: a message with NaN in it is not equal to itself.
 fn numbers<M: Message>(received: &[Received<M>], sent: &[Vec<u8>]) -> Vec<usize> {
     let mut buffer = [0; FRAME_BYTES];
@@ -152,7 +152,7 @@ proptest! {
         let order: Vec<usize> = order.iter().map(|index| index.index(sent.len())).collect();
         let bytes: Vec<u8> = order.iter().flat_map(|i| sent[*i].clone()).collect();
         let (received, counters) = decode::<ToBoard>(&bytes);
-        // Taken is what is later than everything before it.
+        // A message is taken if it is later than everything before it.
         let (mut taken, mut duplicates) = (BTreeSet::new(), 0);
         let expected: Vec<usize> = order
             .iter()

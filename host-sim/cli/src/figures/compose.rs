@@ -73,7 +73,7 @@ pub(super) fn lines<'a>(figure: &TrackingFigure<'a>) -> Vec<Line<'a>> {
 /// How far from a reference that rests the axes reach at most, m.
 const STRAY_FROM_REST_M: f64 = 1.0;
 
-/// One range per coordinate, m: the reference and what of the flights stays near it.
+/// One range per coordinate, m: the reference and the parts of the flights near it.
 pub(super) fn axes(figure: &TrackingFigure<'_>) -> [Range; 3] {
     let range = |curve: &Curve<'_>, i: usize| Range::of(curve.position_m.iter().map(|p: &Vector3<f64>| p[i]));
     let reference: [Range; 3] =
@@ -91,7 +91,7 @@ pub(super) fn axes(figure: &TrackingFigure<'_>) -> [Range; 3] {
     })
 }
 
-/// What a reader must know about a flight that the axes do not hold.
+/// Notes on a flight that the axes do not show.
 pub(super) fn note(flight: &Curve<'_>, axes: &[Range; 3]) -> Option<String> {
     let samples = || flight.time_s.iter().zip(flight.position_m);
     let outside = |p: &Vector3<f64>| p.iter().zip(axes).any(|(v, axis)| *v < axis.low || *v > axis.high);
@@ -107,7 +107,7 @@ pub(super) fn note(flight: &Curve<'_>, axes: &[Range; 3]) -> Option<String> {
     }
 }
 
-/// `size`, or what is smaller and keeps the text on the sheet.
+/// `size`, or a smaller one that keeps the text on the sheet.
 pub(super) fn fitting(content: &str, size: f64) -> Result<f64, FigureError> {
     Ok(size.min((WIDTH - 2.0 * MARGIN) / width_em(content)?))
 }

@@ -1,4 +1,4 @@
-//! One flight with what happened in it: its path in space to the left, any quantities over time to the right.
+//! One flight and its quantities over time: its path in space to the left, any quantities over time to the right.
 
 use super::axis::{self, Range, Scale};
 use super::panels::Panel;
@@ -38,7 +38,7 @@ pub struct Quantity<'a> {
     pub traces: Vec<Trace<'a>>,
 }
 
-/// What to show.
+/// The contents of the figure.
 #[derive(Clone, Debug)]
 pub struct FlightFigure<'a> {
     /// The flight in space and its reference.

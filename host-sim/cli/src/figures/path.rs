@@ -1,4 +1,4 @@
-//! Samples of a curve in, what of it to draw out: the stretches inside the axes, with no more points than show.
+//! Samples of a curve in, the parts to draw out: the stretches inside the axes, with no more points than show.
 
 /// The stretches of the line through `samples` that lie in the box `low..=high`. A sample that is not finite breaks the
 /// line.

@@ -1,4 +1,5 @@
-//! What all parts of a figure share: the font, sizes of type, colours, strokes, and the curves with their strokes.
+//! The style that all parts of a figure share: the font, sizes of type, colours, strokes, and the curves with their
+//! strokes.
 
 use nalgebra::Vector3;
 

@@ -13,7 +13,7 @@ pub(super) enum Anchor {
     End,
 }
 
-/// A white sheet and what has been drawn on it.
+/// A white sheet and the shapes drawn on it.
 pub(super) struct Sheet {
     svg: String,
 }

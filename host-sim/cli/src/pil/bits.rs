@@ -1,4 +1,4 @@
-//! What the board is held to: commands in; their bits, and a hash of many out.
+//! The comparison of board and host: commands in; their bits, and a hash of many out.
 
 use std::fmt;
 

@@ -109,7 +109,7 @@ impl Client {
         result.map_err(|reason| PilError::Refused { request: format!("{parameter:?}"), reason: reason.to_string() })
     }
 
-    /// What the loop has been doing.
+    /// Counters of the loop.
     ///
     /// # Errors
     /// [`PilError`].

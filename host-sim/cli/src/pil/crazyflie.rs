@@ -44,7 +44,7 @@ const SETPOINTS: [(Setpoints, &str); 4] = [
     (Setpoints::FullStateTurning, "full-state, turning"),
 ];
 
-/// What a change of the table in flight is called, and which: LQR-E to the default one for motors of 20 ms.
+/// Name and tables of a change of the table in flight: LQR-E to the default one for motors of 20 ms.
 const CHANGE: &str = "a change";
 const CHANGED: [u8; 2] = [2, 0];
 
@@ -161,7 +161,7 @@ fn of(counts: &[u32]) -> Count {
 fn build_object(checkout: &Path) -> Result<PathBuf, PilError> {
     let object = checkout.join("target").join("quatrack-crazyflie.o");
     run(Command::new(checkout.join("crazyflie/build")).arg(&object).current_dir(checkout), "crazyflie/build")?;
-    // Cargo links again only where an argument changes: the name says what is in it.
+    // Cargo links again only where an argument changes: the name has a hash of its contents.
     let bytes = fs::read(&object).map_err(PilError::io("reading the object"))?;
     let named = object.with_file_name(format!("quatrack-crazyflie-{:08x}.o", crc32c(&bytes)));
     fs::rename(&object, &named).map_err(PilError::io("naming the object"))?;

@@ -43,7 +43,7 @@ pub fn connect(
     image::size(image)?;
     let folder = Folder::create()?;
     if let Some(log) = log {
-        // The image opens its log in the folder; what it finds there leads out of it.
+        // The image opens its log in the folder; the link that it finds there leads out of it.
         let log = absolute(log).map_err(PilError::io(format!("finding {}", log.display())))?;
         symlink(log, folder.path().join("log.defmt")).map_err(PilError::io("placing the log"))?;
     }
@@ -53,7 +53,8 @@ pub fn connect(
             (Line::create_pipes(&to_board, &from_board)?, &["-serial", "none"])
         }
         Transport::Usart => {
-            // QEMU reads what ends in `.in` and writes what ends in `.out`; USART2 is its second serial line.
+            // QEMU reads the file that ends in `.in` and writes the one that ends in `.out`; USART2 is its second
+            // serial line.
             let [to_board, from_board] = ["usart.in", "usart.out"].map(|name| folder.path().join(name));
             let line = Line::create_pipes(&to_board, &from_board)?;
             (line, &["-serial", "null", "-chardev", "pipe,id=usart2,path=usart", "-serial", "chardev:usart2"])

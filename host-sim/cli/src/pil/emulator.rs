@@ -64,7 +64,7 @@ impl Emulator {
     pub fn ended_early(&mut self, status: ExitStatus) -> PilError {
         let mut output = String::new();
         if let Some(stderr) = &mut self.child.stderr {
-            // What cannot be read is not shown.
+            // Bytes that cannot be read are not shown.
             let _ = stderr.read_to_string(&mut output);
         }
         PilError::EmulatorEnded { status: status.to_string(), output }

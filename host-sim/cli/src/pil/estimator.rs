@@ -38,7 +38,7 @@ const FILTERS: [(&str, EstimatorConfig); 3] = [
     ("as the Crazyflie's", EstimatorConfig::CRAZYFLIE),
 ];
 
-/// What the estimator costs.
+/// Costs of the estimator.
 #[derive(Clone, Debug, Serialize)]
 pub struct EstimatorReport {
     /// A prediction, by the filter: with drag along two axes, by all axes of the accelerometer, as the Crazyflie's.
@@ -51,7 +51,7 @@ pub struct EstimatorReport {
     pub update_stack_bytes: u32,
 }
 
-/// A sample: what is measured in a period, and where the craft is after it. A banked circle with a slow nod.
+/// A sample: the measurements of a period, and the craft's state after it. A banked circle with a slow nod.
 fn sample(step: u16) -> (Imu, Vector3<f32>) {
     let time = 0.01 * f64::from(step);
     let f32s = |x: f64, y: f64, z: f64| Vector3::new(x as f32, y as f32, z as f32);

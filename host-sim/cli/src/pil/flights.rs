@@ -41,7 +41,7 @@ pub(super) fn table(controller: Controller) -> Table {
     }
 }
 
-/// What one of several flights gets of a number of steps.
+/// The share of one of several flights in a number of steps.
 pub(super) fn share(limit: u32, index: u32, flights: u32) -> u32 {
     limit / flights + u32::from(index < limit % flights)
 }
@@ -74,7 +74,7 @@ impl Plans {
     }
 }
 
-/// The core on the host with what the board has stored.
+/// The core on the host with the board's stored table and trajectory.
 pub struct HostCore {
     controller: CoreController<'static>,
     player: Player<'static>,
@@ -84,7 +84,7 @@ impl HostCore {
     /// The core at the start of a flight.
     ///
     /// # Errors
-    /// [`PilError::Answer`] where the core refuses what is stored.
+    /// [`PilError::Answer`] where the core refuses them.
     pub fn new(course: PaperTrajectory, controller: Controller) -> Result<Self, PilError> {
         let trajectory = quatrack::Trajectory::new(stored::pieces(course))
             .map_err(|error| PilError::Answer(format!("the stored {course:?} trajectory: {error}")))?;

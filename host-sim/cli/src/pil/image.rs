@@ -87,7 +87,7 @@ pub fn build(checkout: &Path, image: Image) -> Result<PathBuf, PilError> {
     Ok(target_dir.join(TARGET).join("firmware").join(image.binary()))
 }
 
-/// What an image takes, bytes.
+/// Size of an image, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
     /// Flash: code, constants and the initial values of variables.

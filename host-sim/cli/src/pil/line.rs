@@ -74,7 +74,7 @@ impl Line {
         Ok(())
     }
 
-    /// Reads what comes within a time; 0 if nothing does.
+    /// Reads the bytes that come within a time; 0 if none do.
     ///
     /// # Errors
     /// [`PilError::Io`].

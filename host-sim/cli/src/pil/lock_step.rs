@@ -18,7 +18,7 @@ use super::client::Client;
 use super::flights::{COURSES, HostCore, PATIENCE_TICKS, Plans, RATE_HZ, fly, share, table, trajectory_id};
 use super::motors::{self, MotorReport};
 
-/// What came of all flights.
+/// The result of all flights.
 #[derive(Clone, Debug, Serialize)]
 pub struct LockStepReport {
     /// IAE of the flights that the target commanded, m s; nothing for a flight that was cut short.

@@ -1,7 +1,7 @@
 //! Instructions a step on the target: the paper's flights in; least, mean and most of each part out.
 //!
-//! Every state is counted as it was flown and at its worst (see `worst_case`), and every command that the target computes on the
-//! way is compared with the host's.
+//! Every state is counted as it was flown and at its worst (see `worst_case`), and every command that the target
+//! computes on the way is compared with the host's.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -68,7 +68,7 @@ impl Tally {
     }
 }
 
-/// What the control path costs.
+/// Costs of the control path.
 #[derive(Clone, Debug, Serialize)]
 pub struct InstructionReport {
     /// A step of each law, with validation, sign handling and saturation: each controller's, `any E table` for a gain
@@ -80,7 +80,7 @@ pub struct InstructionReport {
     /// The same on a trajectory that turns.
     #[serde(rename = "reference turning")]
     pub reference_turning: Count,
-    /// The reference down to motor forces and what commands them: polynomial to the fifth derivative, and the flat map
+    /// The reference down to motor forces and their commands: polynomial to the fifth derivative, and the flat map
     /// carried on.
     #[serde(rename = "reference to motor forces")]
     pub motor_reference: Count,
@@ -180,7 +180,7 @@ fn states_file(flights: &[Recorded]) -> Vec<u8> {
     bytes
 }
 
-/// What the target flies, in order: each flight as recorded and at its worst, and those of LQR-E once more at the worst of
+/// The target's flights, in order: each flight as recorded and at its worst, and those of LQR-E once more at the worst of
 /// the dense gain, which is no controller of the paper's.
 fn runs(flights: &[Recorded]) -> impl Iterator<Item = (&Recorded, Option<Controller>, bool)> {
     flights.iter().flat_map(|flight| {

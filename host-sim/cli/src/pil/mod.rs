@@ -8,12 +8,12 @@
 //! estimator        the same of the estimator, and its stack
 //!   worst_case     inputs with which a step costs most, on the host
 //!   flights        the paper's flights, flown by the core on the host
-//!     bits         what is compared, and its hash
+//!     bits         the compared bits, and their hash
 //!     emulated     a board in an emulator
 //!     client       a board behind its line
 //!       emulator   the process that runs an image
 //!       line       pipes or a serial port, with deadlines
-//!         image    built here, or given; what it takes in flash and RAM
+//!         image    built here, or given; its size in flash and RAM
 //! ```
 
 mod bits;
@@ -45,7 +45,7 @@ pub enum PilError {
     /// Cargo failed; it has said why.
     #[error("the image was not built: {command} ended with {status}; its own messages are above")]
     Build {
-        /// What was run.
+        /// The program that was run.
         command: String,
         /// How it ended.
         status: String,
@@ -66,7 +66,7 @@ pub enum PilError {
     EmulatorEnded {
         /// How.
         status: String,
-        /// What it said.
+        /// Its output.
         output: String,
     },
     /// The image does not get on.
@@ -74,7 +74,7 @@ pub enum PilError {
     Silent {
         /// How long.
         seconds: u64,
-        /// From what.
+        /// The answer that was waited for.
         waiting_for: String,
     },
     /// The emulator does not count as assumed.
@@ -82,15 +82,15 @@ pub enum PilError {
         "the emulated timer counts {counted} for {instructions} instructions; it cannot measure with this emulator"
     )]
     Miscounts {
-        /// What it counted.
+        /// Its count.
         counted: u32,
-        /// What was executed.
+        /// Instructions that were executed.
         instructions: u32,
     },
-    /// The board does not do what it is asked for.
+    /// The board refuses a request.
     #[error("the board refuses {request}: {reason}")]
     Refused {
-        /// What was asked.
+        /// The request.
         request: String,
         /// The board's words.
         reason: String,
@@ -108,7 +108,7 @@ pub enum PilError {
     /// A signal.
     #[error("interrupted")]
     Interrupted,
-    /// What the image wrote is not what was asked of it.
+    /// The image wrote another answer than the one expected.
     #[error("the image's answer does not fit: {0}; build the image from this checkout")]
     Answer(String),
     /// The planner failed on the paper's own plans.
@@ -117,9 +117,9 @@ pub enum PilError {
     /// The machine.
     #[error("{doing}: {source}")]
     Io {
-        /// At what.
+        /// The operation that failed.
         doing: String,
-        /// What it said.
+        /// The system's error.
         source: io::Error,
     },
 }

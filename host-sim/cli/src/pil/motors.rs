@@ -85,7 +85,7 @@ impl fmt::Display for MotorFlight {
     }
 }
 
-/// What came of all flights down to the motors.
+/// The result of all flights down to the motors.
 #[derive(Clone, Debug, Serialize)]
 pub struct MotorReport {
     /// IAE of the flights that the target drove, m s; nothing for a flight that was cut short.
@@ -112,7 +112,7 @@ pub struct MotorDifference {
     target: MotorForces,
 }
 
-/// The core on the host with what the board has.
+/// The core on the host with the board's tables.
 struct HostCore {
     flight: MotorFlight,
     limits: Limits,

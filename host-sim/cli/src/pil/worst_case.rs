@@ -1,7 +1,7 @@
-//! What makes a step cost most, computed on the host beside the target: a recorded state in; every command out.
+//! The inputs that make a step cost most, computed on the host beside the target: a recorded state in; every command out.
 //!
 //! The reference turns, errors are in its heading frame, the reference's input is left out and fed forward, the limits are
-//! off, below and above what is commanded, and the measured quaternion changes its sign every step.
+//! off, below and above the command, and the measured quaternion changes its sign every step.
 
 pub(super) mod motors;
 
@@ -42,7 +42,7 @@ fn dense() -> [[f32; 9]; 4] {
     paper::LQR_E.gain().rows().map(|row| row.map(|entry| if entry == 0.0 { 0.1 } else { entry }))
 }
 
-/// What the target is told before the flights: the dense gain, the limits and the dense gain to the motors.
+/// The target's settings before the flights: the dense gain, the limits and the dense gain to the motors.
 pub(super) fn head() -> Vec<u8> {
     let limits = LIMITS.iter().flat_map(|limits| {
         let [p, q, r] = limits.body_rates_max_rad_s;
@@ -52,7 +52,7 @@ pub(super) fn head() -> Vec<u8> {
     dense().into_iter().flatten().chain(limits).chain(to_motors).flat_map(f32::to_le_bytes).collect()
 }
 
-/// What the target is to answer.
+/// The answers expected of the target.
 pub(super) struct Expected {
     /// Of all commands of the law.
     pub(super) hash: u32,

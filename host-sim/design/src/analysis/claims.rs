@@ -1,4 +1,4 @@
-//! What Section III claims, each claim beside what the models say.
+//! The claims of Section III, each beside the models' answer.
 
 use serde::Serialize;
 
@@ -9,9 +9,9 @@ use super::{ModelAnalysis, SectionThree};
 pub struct Claim {
     /// Where the paper says it.
     pub source: &'static str,
-    /// What it says.
+    /// Its text.
     pub statement: &'static str,
-    /// What was computed.
+    /// The computed answer.
     pub computed: String,
     /// Whether the two agree.
     pub holds: bool,

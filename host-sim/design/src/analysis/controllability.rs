@@ -1,4 +1,4 @@
-//! What the input reaches: the controllability matrix (10), the orthogonal staircase (11), the PBH test.
+//! The states that the input reaches: the controllability matrix (10), the orthogonal staircase (11), the PBH test.
 //!
 //! In flows a pair (A, B); out flow ranks with their tolerances and the orthogonal T that separates the two parts. The
 //! staircase is Rosenbrock's: rank-revealing QR row compressions only, so `T A T'` and `T B` are exact for a pair
@@ -36,7 +36,7 @@ impl Staircase {
         self.a.view((0, 0), (size, size)).into_owned()
     }
 
-    /// `A_cu`, what the uncontrollable part does to the controllable one.
+    /// `A_cu`, the coupling from the uncontrollable part to the controllable one.
     pub fn coupling(&self) -> DMatrix<f64> {
         let split = self.uncontrollable;
         self.a.view((split, 0), (self.a.nrows() - split, split)).into_owned()
@@ -85,7 +85,8 @@ pub fn staircase(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Staircase, Matrix
     let (n, m) = b.shape();
     let tolerance = 10.0 * n.max(m) as f64 * f64::EPSILON;
     let (norm_a, norm_b) = (a.norm(), b.norm());
-    // Rows of `remaining` span what no step has reached yet; each step splits off what the last one drives of it.
+    // Rows of `remaining` span the states that no step has reached yet; each step splits off those that the last one
+    // drives.
     let mut remaining = DMatrix::<f64>::identity(n, n);
     let mut coupling = b.clone();
     let mut threshold = tolerance * norm_b;

@@ -1,9 +1,9 @@
-//! What makes a matrix unusable before any question about it can be answered.
+//! Faults of a matrix, found before any question about it is answered.
 
 use nalgebra::DMatrix;
 use thiserror::Error;
 
-/// A matrix that cannot be worked with: its name, what is wrong, what to do.
+/// A matrix that cannot be worked with: its name, its fault, a remedy.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MatrixError {
     /// Rows and columns differ where they must agree.
@@ -29,7 +29,7 @@ pub enum MatrixError {
         expected_rows: usize,
         /// Columns it must have.
         expected_columns: usize,
-        /// What it must fit.
+        /// The matrix that it must fit.
         fits: &'static str,
     },
     /// No rows or no columns.
@@ -78,7 +78,7 @@ pub(crate) fn require_finite(name: &'static str, m: &DMatrix<f64>) -> Result<(),
     Ok(())
 }
 
-/// Refuses what is not square, and what [`require_finite`] refuses.
+/// Refuses a matrix that is not square or that [`require_finite`] refuses.
 pub(crate) fn require_square(name: &'static str, m: &DMatrix<f64>) -> Result<(), MatrixError> {
     if m.nrows() != m.ncols() {
         return Err(MatrixError::NotSquare { name, rows: m.nrows(), columns: m.ncols() });

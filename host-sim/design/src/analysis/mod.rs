@@ -5,7 +5,7 @@
 //!
 //! - [`eigenvalues`]: balanced, bounded Francis QR.
 //! - [`jordan_blocks`]: from the ranks of the powers of `A - lambda I`.
-//! - [`controllability_matrix`] (10), [`Staircase`] (11), [`pbh_test`]: what the input reaches, three ways.
+//! - [`controllability_matrix`] (10), [`Staircase`] (11), [`pbh_test`]: the states that the input reaches, three ways.
 //! - [`SectionThree`]: all of it for (F-LTI) and (E-LTI), with the names of the states.
 
 mod balance;

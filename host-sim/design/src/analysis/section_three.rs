@@ -25,7 +25,7 @@ pub struct UncontrollableMode {
     pub combination: Vec<(String, f64)>,
 }
 
-/// What Section III asks of one linear model.
+/// The questions of Section III about one linear model.
 #[derive(Debug, Clone)]
 pub struct ModelAnalysis {
     /// Label of the model in the paper.

@@ -10,7 +10,7 @@ use serde::Serialize;
 /// Sweeps after which the columns are taken as they are: 5 to 10 are usual.
 const MAX_SWEEPS: usize = 60;
 
-/// A rank and what decided it.
+/// A rank and the singular values that decided it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NumericalRank {
     /// Singular values above `tolerance`.

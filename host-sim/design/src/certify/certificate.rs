@@ -13,7 +13,7 @@ const SAME: f64 = 1e-9;
 /// A figure counts as worse than another beyond this ratio: of equals the first one is named, on every processor the same.
 pub(super) const WORSE: f64 = 1.0 + 1e-9;
 
-/// What a gain promises, computed from it as rounded to f32.
+/// The figures of a gain, computed from it as rounded to f32.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Certificate {
     /// Control rate, Hz.
@@ -63,7 +63,7 @@ pub struct SampledLoopFigures {
     pub margins: LoopMargins,
 }
 
-/// What is particular to gains over time. The figures beside it are the worst of the knots.
+/// The figures of gains over time alone. The figures beside it are the worst of the knots.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AlongFigures {
     /// Knots.
@@ -72,7 +72,7 @@ pub struct AlongFigures {
     pub spacing_s: f64,
     /// Control steps at which the decrease was checked, with that of the hover behind the last knot.
     pub steps: usize,
-    /// What is left of V after the step that takes off least, as a share.
+    /// The share of V that is left after the step that takes off least.
     pub largest_ratio: f64,
     /// When that step is, s.
     pub largest_ratio_at_s: f64,

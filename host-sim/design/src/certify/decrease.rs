@@ -2,7 +2,7 @@
 //!
 //! In flows a stable closed loop; out flow the extreme eigenvalues of P and of the decrease. In coordinates balanced by
 //! powers of two, P solves the equation with the identity on its right; then the decrease is formed anew from the
-//! rounded P, and counts only where it exceeds what rounding could have made of it.
+//! rounded P, and counts only where it exceeds its rounding.
 
 use nalgebra::DMatrix;
 use serde::Serialize;
@@ -21,7 +21,7 @@ pub struct Decrease {
     /// Smallest eigenvalue of `-(A' P + P A)`, or of `P - A' P A`, over its largest; 1 but for rounding. Of gains over time
     /// the least share of V that a control step takes off.
     pub decrease_smallest_over_largest: f64,
-    /// What rounding can change an eigenvalue of the decrease by, over its largest.
+    /// Largest change of an eigenvalue of the decrease by rounding, over the largest eigenvalue.
     pub rounding: f64,
 }
 

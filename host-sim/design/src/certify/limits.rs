@@ -1,7 +1,7 @@
 //! The largest delay and the largest actuator lag up to which the sampled loop stays stable.
 //!
 //! In flow independent loops; out flow limits by channel and for all channels at once. The search walks outwards in steps
-//! of [`STEP`] until the loop is unstable and then bisects: what it returns is the first crossing, unless an interval of
+//! of [`STEP`] until the loop is unstable and then bisects: it returns the first crossing, unless an interval of
 //! instability narrower than a step comes before it. Delays are exact at any fraction of a sample: stability is decided
 //! by the principle of the argument, lags by the poles.
 
@@ -32,7 +32,7 @@ pub struct StabilityLimit {
     pub resolution_s: Option<f64>,
 }
 
-/// What is increased.
+/// The quantity that is increased.
 #[derive(Clone, Copy)]
 pub(super) enum Disturbance {
     /// A delay of the commands on top of the timing's.

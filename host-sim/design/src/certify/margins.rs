@@ -95,7 +95,7 @@ impl DiskMargin {
     }
 }
 
-/// From frequency to sensitivity, where to look, and what it is beyond.
+/// From frequency to sensitivity, the range to look in, and its bound beyond.
 struct Sensitivity<'a> {
     at: Box<dyn Fn(f64) -> Option<DMatrix<Complex64>> + 'a>,
     points_rad_s: Vec<f64>,
@@ -175,7 +175,7 @@ pub(super) fn sampled_grid(poles: &[Complex64], period_s: f64) -> Vec<f64> {
     grid((slowest * 1e-2).min(1e-2 * nyquist_rad_s), nyquist_rad_s, &poles)
 }
 
-/// Smallest and largest of what is positive; 1 where nothing is.
+/// Smallest and largest of the positive values; 1 where there are none.
 fn extremes(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) = values
         .filter(|value| *value > 0.0 && value.is_finite())

@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::Certificate;
 use super::limits::StabilityLimit;
 
-/// What a design demands of the sampled loop. What is absent is not asked for.
+/// The least figures that a design demands of the sampled loop; an absent one is not demanded.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Minimum {
     /// Balanced disk margin alpha of each channel alone.
@@ -29,7 +29,7 @@ pub struct Minimum {
     pub decay_1_s: Option<f64>,
 }
 
-/// What a figure is a number of.
+/// The unit of a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Quantity {
     /// No unit.
@@ -42,12 +42,12 @@ pub enum Quantity {
     Decay,
 }
 
-/// A figure of the certificate that a design may ask something of.
+/// A figure of the certificate that a design may put a least value to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
     /// Name of the figure, with its channel.
     pub figure: String,
-    /// What it is a number of.
+    /// Its unit.
     pub quantity: Quantity,
     /// Its value; infinite where there is no limit.
     pub found: f64,
@@ -61,11 +61,11 @@ pub struct Judged {
 pub struct MarginTooSmall {
     /// Name of the figure, with its channel.
     pub figure: String,
-    /// What it is a number of.
+    /// Its unit.
     pub quantity: Quantity,
     /// Its value.
     pub found: f64,
-    /// What was asked for.
+    /// The figure that was demanded.
     pub asked: f64,
 }
 
@@ -78,7 +78,7 @@ impl Quantity {
             Self::Duration => (value * 1e3, "ms"),
             Self::Decay => (value, "1/s"),
         };
-        // Millionths are more than anybody asks for; what is left of the conversion of units is less.
+        // Millionths are more than anybody asks for; the rounding of the conversion of units is less.
         (if value.is_finite() { (value * 1e6).round() / 1e6 } else { value }, unit)
     }
 
@@ -89,7 +89,7 @@ impl Quantity {
 }
 
 impl Judged {
-    /// Whether it reaches what was asked for; NaN on either side falls short.
+    /// Whether it reaches the demand; NaN on either side falls short.
     pub fn holds(&self) -> bool {
         self.asked.is_none_or(|asked| self.found >= asked)
     }
@@ -110,7 +110,7 @@ pub fn require(certificate: &Certificate, minimum: &Minimum) -> Result<(), Margi
     }
 }
 
-/// Every figure that a design can ask something of, beside what this one asks, always in the same order.
+/// Every figure that a design can ask something of, beside the demand of this one, always in the same order.
 pub fn judge(certificate: &Certificate, minimum: &Minimum) -> Vec<Judged> {
     let mut figures = Vec::new();
     let mut add = |figure: String, quantity: Quantity, found: f64, asked: Option<f64>| {

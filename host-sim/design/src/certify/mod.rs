@@ -1,4 +1,4 @@
-//! What a gain promises, as it will be flown: rounded to f32, at its control rate, behind its actuators.
+//! Certificates of a gain as it will be flown: rounded to f32, at its control rate, behind its actuators.
 //!
 //! In flow a plant, a controller, the timing of the loop and a model of the actuators' lag; out flows a [`Certificate`],
 //! or the reason why there is none. Every figure is computed from the rounded gain:
@@ -9,8 +9,8 @@
 //!
 //! A loop that decouples into independent chains, as those of hover do, is taken apart first: its figures are then
 //! exact for all channels at once, too. [`certify_along`] does the same for gains over time. [`certify_region`] holds an
-//! actuator-aware gain against a region of lags, masses, inertias and delays, [`mod@cascade`] the cascade with its observers and
-//! the air as well. [`require`] holds a certificate against the
+//! actuator-aware gain against a region of lags, masses, inertias and delays, [`mod@cascade`] the cascade with its
+//! observers and the air as well. [`require`] holds a certificate against the
 //! least that a design asks for.
 //!
 //! Reference: Seiler, Packard and Gahinet, An Introduction to Disk Margins, IEEE Control Systems Magazine 2020.

@@ -1,4 +1,4 @@
-//! What is certified: a plant, a controller for it, when it runs and what its commands pass through.
+//! The certified loop: a plant, a controller for it, its instants and the path of its commands.
 
 use nalgebra::DMatrix;
 
@@ -38,7 +38,7 @@ pub struct Controller {
 pub struct Predictor {
     /// K, m x m.
     pub gain: DMatrix<f64>,
-    /// d, what is left of a deviation after a period.
+    /// d, the share of a deviation that is left after a period.
     pub decay: f64,
 }
 
@@ -138,8 +138,8 @@ impl Plant {
         }
     }
 
-    /// Hover of a vehicle down to its motors, forces in parts: `[r v theta omega e]`, inputs thrust, roll, pitch and yaw part
-    /// of the commanded forces; under a controller that sums up the position error, gains 4 x 19.
+    /// Hover of a vehicle down to its motors, forces in parts: `[r v theta omega e]`, inputs thrust, roll, pitch and
+    /// yaw part of the commanded forces; under a controller that sums up the position error, gains 4 x 19.
     pub fn hover_with_motors(vehicle: &Vehicle, lag_s: f64, mass_factor: f64, inertia_factor: f64) -> Self {
         let (a, b) = hover_pair(vehicle, lag_s, mass_factor, inertia_factor);
         Self {

@@ -72,11 +72,11 @@ pub struct RegionBounds {
 }
 
 impl RegionBounds {
-    /// What a default table is held to: 50 to 126 ms of lag, with the mass off by 20 %, the inertia by 30 % and 10 ms of
+    /// The region of a default table: 50 to 126 ms of lag, with the mass off by 20 %, the inertia by 30 % and 10 ms of
     /// delay.
     pub const ANY_CRAZYFLIE: Self = Self { lag_s: [0.050, 0.126], mass_share: 0.2, inertia_share: 0.3, delay_s: 0.010 };
 
-    /// The grid of the region: seven lags, and ends and middle of what else varies.
+    /// The grid of the region: seven lags, and ends and middle of the other quantities.
     pub fn grid(&self) -> Region {
         let [shortest_s, longest_s] = self.lag_s;
         let around = |share: f64| if share > 0.0 { vec![1.0 - share, 1.0, 1.0 + share] } else { vec![1.0] };
@@ -89,7 +89,7 @@ impl RegionBounds {
     }
 }
 
-/// What was found over a region.
+/// The result over a region.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RegionCertificate {
     /// The region.
@@ -116,7 +116,7 @@ impl Region {
         RegionBounds::ANY_CRAZYFLIE.grid()
     }
 
-    /// What a table for a known lag is held to: half of it to one and a half of it.
+    /// The region of a table for a known lag: half of it to one and a half of it.
     pub fn around_lag(lag_s: f64) -> Self {
         Self::of_lags(0.5 * lag_s, 1.5 * lag_s)
     }
@@ -158,8 +158,8 @@ pub fn certify_region(
     for variation in region.points() {
         let radius = spectral_radius(vehicle, &controller, period_s, &variation)?;
         points += 1;
-        // Points that differ in what a chain does not feel are equal: the first of them counts, on every processor. A NaN is as
-        // bad as it gets.
+        // Points that differ only in quantities that a chain does not feel are equal: the first of them counts, on
+        // every processor. A NaN is as bad as it gets.
         if worst.is_none_or(|(_, held)| radius.is_nan() || radius > held * (1.0 + SAME)) {
             worst = Some((variation, radius));
         }

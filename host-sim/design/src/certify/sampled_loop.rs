@@ -33,7 +33,7 @@ pub(super) struct SampledLoop {
     motion: DMatrix<f64>,
     /// A path a channel, N long each.
     paths: Vec<Path>,
-    /// N x m, what the controller remembers of the command it gives.
+    /// N x m, the map from the command to the controller's memory.
     memory: DMatrix<f64>,
     /// m x N.
     gain: DMatrix<f64>,
@@ -153,7 +153,7 @@ impl SampledLoop {
         whole
     }
 
-    /// What a command does to the plant at z: N x m.
+    /// The plant's response to a command at z: N x m.
     fn plant_input(&self, z: Complex64) -> DMatrix<Complex64> {
         let inverse = z.inv();
         DMatrix::from_fn(self.motion.nrows(), self.paths.len(), |i, j| {

@@ -1,4 +1,4 @@
-//! The peak of a function of frequency: a grid first, then golden sections around what stands out.
+//! The peak of a function of frequency: a grid first, then golden sections around its largest values.
 
 use num_complex::Complex64;
 

@@ -193,7 +193,7 @@ fn changed_on_both_sides(in_parts: &DMatrix<f64>) -> DMatrix<f64> {
     to_parts().transpose() * in_parts * to_parts()
 }
 
-/// What commands in parts do to states in parts, of the motors' both.
+/// The map from commands in parts to states in parts, of the motors' both.
 fn of_motors_input(in_parts: &DMatrix<f64>) -> DMatrix<f64> {
     let h = parts();
     to_parts().transpose() * in_parts * DMatrix::from_fn(4, 4, |i, j| h[(i, j)])

@@ -13,7 +13,7 @@
 //!
 //! At hover this is (E-LTI). Over each control period the pair at its middle is held and discretised exactly, in the digits
 //! of an f64: there are thousands of periods, and the gain is not solved for but run towards. The Riccati recursion
-//! then runs backwards from the end, where the stationary solution for the last pair stands in for what follows:
+//! then runs backwards from the end, where the stationary solution for the last pair stands in for the rest:
 //! trajectories end at rest.
 
 use nalgebra::{DMatrix, Matrix3, Rotation3, SMatrix, Vector3};
@@ -36,7 +36,7 @@ pub struct GainsAlong {
     pub period_s: f64,
     /// K at the knots, 4 x 9, columns `[x y z q1 q2 q3 vx vy vz]`, rows `[T p q r]`.
     pub gains: Vec<SMatrix<f64, 4, 9>>,
-    /// P before each control step, `x' P x` being what is still to be paid; the last one is that of the hover behind them.
+    /// P before each control step, `x' P x` being the cost still to come; the last one is that of the hover behind them.
     pub p: Vec<SMatrix<f64, 9, 9>>,
     /// Largest distance of the interpolated gain from the gain at any control step, over the norm of that gain.
     pub interpolation_error: f64,
@@ -101,7 +101,7 @@ pub fn error_dynamics(point: &ReferencePoint) -> (DMatrix<f64>, DMatrix<f64>) {
 /// The table of gains along a reference of `duration_s`, with a knot every `steps_per_knot` control periods (at least 1).
 ///
 /// # Errors
-/// What [`super::sampled::sampled_lqr`] refuses about weights and sampling, and [`DesignError::Delay`] for a sampling with
+/// The errors of [`super::sampled::sampled_lqr`] about weights and sampling, and [`DesignError::Delay`] for a sampling with
 /// a delay: the table has no place for past commands.
 pub fn gains_along(
     reference: impl Fn(f64) -> ReferencePoint,

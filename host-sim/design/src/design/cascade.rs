@@ -1,8 +1,8 @@
 //! The cascade's gains: a vehicle, the lag of its motors and weights in; the gains of its four chains out.
 //!
-//! The LQR at hover of the rigid craft with motors that lag, on the model of [`mod@super::actuator_aware`] without the integral of
-//! the position: observers do in flight what the integral did, and without it a stiffer gain is far from its limits. The air is
-//! no part of the model: it is fed forward, and a certificate looks at what is left of it.
+//! The LQR at hover of the rigid craft with motors that lag, on the model of [`mod@super::actuator_aware`] without the
+//! integral of the position: observers take the place of the integral in flight, and without it a stiffer gain is far
+//! from its limits. The air is no part of the model: it is fed forward, and a certificate looks at its remainder.
 
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -30,7 +30,8 @@ pub struct CascadeWeights {
 }
 
 impl CascadeWeights {
-    /// For 500 Hz: about 10 1/s^2 and 5 1/s from position and velocity to acceleration, sideways, at every lag that Crazyflies have.
+    /// For 500 Hz: about 10 1/s^2 and 5 1/s from position and velocity to acceleration, sideways, at every lag that
+    /// Crazyflies have.
     pub const STANDARD: Self = Self {
         position: [2000.0, 2000.0, 4000.0],
         velocity: [100.0, 100.0, 500.0],
@@ -40,7 +41,7 @@ impl CascadeWeights {
     };
 
     /// Diagonal of Q, in the order of the states.
-    fn state(&self) -> Vec<f64> {
+    pub fn state(&self) -> Vec<f64> {
         let Self { position, velocity, rotation, body_rates, .. } = self;
         [position, velocity, rotation, body_rates].into_iter().flatten().copied().chain([0.0; 4]).collect()
     }
@@ -67,9 +68,9 @@ pub struct CascadeDesign {
 pub const GAINS: usize = 16;
 
 impl CascadeDesign {
-    /// The gains, chain by chain: height (position, velocity, force), roll and pitch (position, velocity, rotation, body rate,
-    /// force), yaw (rotation, body rate, force). Forces in parts that add up to a motor's, each half of an orthonormal
-    /// one.
+    /// The gains, chain by chain: height (position, velocity, force), roll and pitch (position, velocity, rotation,
+    /// body rate, force), yaw (rotation, body rate, force). Forces in parts that add up to a motor's, each half of an
+    /// orthonormal one.
     pub fn numbers(&self) -> [f64; GAINS] {
         let k = &self.gain_in_parts;
         // Of states, of which half goes to a part; of the part's own force.

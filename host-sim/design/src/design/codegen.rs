@@ -18,7 +18,7 @@ pub fn rounded<const M: usize, const N: usize>(gain: &SMatrix<f64, M, N>) -> [[f
     std::array::from_fn(|row| std::array::from_fn(|column| gain[(row, column)] as f32))
 }
 
-/// Gains over time as the core flies them: rounded, and what is smaller than [`ENTRY_MIN`] as zero. Entries
+/// Gains over time as the core flies them: rounded, and entries smaller than [`ENTRY_MIN`] as zero. Entries
 /// that couple the axes fade away where the trajectory rests.
 pub fn rounded_along(gains: &GainsAlong) -> Vec<[[f32; 9]; 4]> {
     let kept = |entry: f32| if entry.abs() < ENTRY_MIN { 0.0 } else { entry };

@@ -2,7 +2,7 @@
 //! `A' P A - P + Q - (A' P B + S) (R + B' P B)^-1 (B' P A + S') = 0`.
 //!
 //! In flow A (n x n), B (n x m), Q (n x n), R (m x m) and a cross weight S (n x m, zero where none is asked for); out flow
-//! P, `K = (R + B' P B)^-1 (B' P A + S')`, the poles of `A - B K` and what is known about their accuracy.
+//! P, `K = (R + B' P B)^-1 (B' P A + S')`, the poles of `A - B K` and bounds on their accuracy.
 //!
 //! **Method.**
 //! 1. R is factorised in 32 digits; with `F = B R^-1/2` and `S R^-1/2` the weight of the input becomes the identity.
@@ -12,7 +12,7 @@
 //! 4. Structured doubling (Chu, Fan, Lin and Wang 2004) in 32 digits gives a first P. Where Q does not see an unstable
 //!    mode doubling ends in a P that does not stabilise; then the start is the solution for `Q + |Q| I`, from which
 //!    Newton's method descends to the stabilising one (Hewer 1971).
-//! 5. Newton steps with residuals in 32 digits refine P until the corrections are below what an f64 can hold.
+//! 5. Newton steps with residuals in 32 digits refine P until the corrections are below the rounding of an f64.
 //! 6. The result counts only if the corrections have vanished and every pole lies inside the unit circle.
 //!
 //! [`dlqr`] demands Q >= 0 (with S: `Q - S R^-1 S' >= 0`), and then P >= 0; [`dare`] takes any symmetric Q.
@@ -113,7 +113,7 @@ struct Problem {
     cross: DoubleMatrix,
 }
 
-/// What belongs to a P.
+/// The gain, poles and residual of a P.
 struct Evaluated {
     residual: DoubleMatrix,
     /// `(I + F' P F)^-1 (F' P A + (S R^-1/2)')`, m x n.
@@ -320,7 +320,7 @@ fn require_stabilisable(a: &DMatrix<f64>, factor: &DMatrix<f64>) -> Result<(), D
     if n > MAX_PBH_STATES {
         return Ok(());
     }
-    // The size of B says nothing about what it reaches.
+    // The size of B says nothing about the states that it reaches.
     let input = factor * (a.norm().max(1.0) / factor.norm().max(f64::MIN_POSITIVE));
     for eigenvalue in eigenvalues(a)?.into_iter().filter(|value| value.norm() >= 1.0 - tolerance) {
         if !pbh_test(a, &input, eigenvalue)?.controllable {

@@ -26,7 +26,7 @@ pub(super) struct Equation {
     pub(super) scale: DVector<f64>,
 }
 
-/// What the residual of an X consists of.
+/// The terms of the residual of an X.
 pub(super) struct Residual {
     /// `A' X + X A + Q - X F F' X`.
     pub(super) value: DoubleMatrix,
@@ -96,8 +96,8 @@ impl Equation {
             let d2 = f64::from(2 * exponent).exp2();
             2.0 * (up * d2 + down / d2) + qii * qii * d2 * d2 + gii * gii / (d2 * d2)
         };
-        // What scaling does not change. Couplings below the diagonal entry are small enough: lowering them further
-        // would pull a triangular A apart without end.
+        // Quantities that scaling does not change. Couplings below the diagonal entry are small enough: lowering them
+        // further would pull a triangular A apart without end.
         let floor = least + 2.0 * aii * aii;
         let mut best = 0_i32;
         for direction in [1, -1] {
@@ -229,7 +229,7 @@ impl InputWeight {
         self.in_input_units(factor.transposed().times(x))
     }
 
-    /// `S L^-T W`: what acts through F as an input that acts through B, rounded once.
+    /// `S L^-T W`: the action through F as an input that acts through B, rounded once.
     pub(super) fn in_input_units(&self, mut gain: DoubleMatrix) -> DMatrix<f64> {
         let (m, n) = gain.hi.shape();
         for j in 0..n {

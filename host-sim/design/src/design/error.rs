@@ -1,4 +1,4 @@
-//! Why a design is refused or fails, in one line each: which matrix, which value, what to do.
+//! Why a design is refused or fails, in one line each: which matrix, which value, the remedy.
 
 use num_complex::Complex64;
 use thiserror::Error;

@@ -50,7 +50,7 @@ pub(super) fn require_stabilisable(equation: &Equation) -> Result<(), DesignErro
         return Ok(());
     }
     let tolerance = n as f64 * f64::EPSILON * norm;
-    // The size of B says nothing about what it reaches.
+    // The size of B says nothing about the states that it reaches.
     let size = if norm > 0.0 { norm } else { 1.0 };
     let input = &equation.factor.hi * (size / equation.factor.hi.norm().max(f64::MIN_POSITIVE));
     for eigenvalue in eigenvalues(&equation.a)?.into_iter().filter(|value| value.re >= -tolerance) {

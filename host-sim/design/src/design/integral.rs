@@ -62,7 +62,7 @@ pub fn integral_pair() -> (DMatrix<f64>, DMatrix<f64>) {
 /// The continuous LQI feedback.
 ///
 /// # Errors
-/// What [`lqr`] refuses about the weights.
+/// The errors of [`lqr`] about the weights.
 pub fn lqi(weights: &IntegralWeights) -> Result<IntegralDesign, DesignError> {
     let (a, b) = integral_pair();
     let state: Vec<f64> = weights.equilibrium.state.iter().chain(&weights.integral).copied().collect();
@@ -88,7 +88,7 @@ pub fn sampled_lqi(weights: &IntegralWeights, sampling: &Sampling) -> Result<Sam
 /// The pair per sample, with the sums as states, and the cost that [`sampled_lqi`] makes least.
 ///
 /// # Errors
-/// What [`zero_order_hold`] and [`sampled_cost`] refuse.
+/// The errors of [`zero_order_hold`] and [`sampled_cost`].
 pub fn sampled_integral_problem(
     weights: &IntegralWeights,
     sampling: &Sampling,

@@ -1,6 +1,6 @@
 //! Section IV of the paper: Lyapunov and Riccati equations, and the four gains.
 //!
-//! In flow a pair (A, B) and what is asked of it, a decay rate or weights; out flow gains with P, poles and residuals.
+//! In flow a pair (A, B) and a decay rate or weights; out flow gains with P, poles and residuals.
 //! All solvers are dense, bounded and end in an answer that has been checked or in a [`DesignError`]:
 //!
 //! - [`lyapunov()`]: `A' X + X A + Q = 0`; [`decay_rate_design`]: (15) and (17).

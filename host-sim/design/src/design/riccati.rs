@@ -10,7 +10,7 @@
 //!    of reach, or a mode on the imaginary axis out of sight.
 //! 4. The matrix sign function of the Hamiltonian gives a first P; where that fails, its ordered Schur form does, or for
 //!    up to 40 states the sign function in 32 digits.
-//! 5. Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below what an f64 can hold.
+//! 5. Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below the rounding of an f64.
 //! 6. The result counts only if the corrections have vanished and every pole of the closed loop is stable.
 //!
 //! **Conditions.** A stabilising solution exists and is unique if (A, B) is stabilisable and the Hamiltonian has no
@@ -165,7 +165,7 @@ fn solve(
         }
     };
     if !good || !relative_residual.is_finite() {
-        // Balancing may lift what is zero up to rounding: ask once more as given, to name the mode.
+        // Balancing may lift entries that are zero up to rounding: ask once more as given, to name the mode.
         require_stabilisable(&given)?;
         if accepted == Poles::Stable {
             require_detectable(&given)?;

@@ -19,7 +19,7 @@ use super::{DesignError, dlqr_with_cross, require_symmetric};
 use crate::model::linear::linearise;
 use crate::model::{hover_input, hover_state};
 
-/// What weights mean at a rate.
+/// The meaning of weights at a rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CostForm {
     /// Weights of an integral over time: the cost between the samples counts.
@@ -36,7 +36,7 @@ pub struct Sampling {
     pub period_s: f64,
     /// Whole samples by which a command acts late.
     pub delay_samples: usize,
-    /// What the weights mean.
+    /// The meaning of the weights.
     pub cost: CostForm,
 }
 
@@ -136,7 +136,7 @@ pub(super) fn motion_and_cost(a: &DMatrix<f64>, b: &DMatrix<f64>, q: &DMatrix<f6
 /// The optimal held feedback for a continuous pair and weights Q >= 0, R > 0.
 ///
 /// # Errors
-/// What [`zero_order_hold`], [`sampled_cost`] and [`dlqr_with_cross`] refuse.
+/// The errors of [`zero_order_hold`], [`sampled_cost`] and [`dlqr_with_cross`].
 pub fn sampled_lqr(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,

@@ -120,7 +120,7 @@ pub fn lyapunov_flat(mu: f64) -> Result<FlatDesign, DesignError> {
 /// (LQR-E): the optimal feedback on the reduced hover model (21).
 ///
 /// # Errors
-/// What [`lqr`] refuses about the weights.
+/// The errors of [`lqr`] about the weights.
 pub fn lqr_equilibrium(weights: &EquilibriumWeights) -> Result<EquilibriumDesign, DesignError> {
     let reduced = ReducedPair::hover()?;
     let q = &reduced.errors * diagonal(&weights.state) * reduced.errors.transpose();
@@ -131,7 +131,7 @@ pub fn lqr_equilibrium(weights: &EquilibriumWeights) -> Result<EquilibriumDesign
 /// (LQR-F): the optimal feedback on the flat chain (20).
 ///
 /// # Errors
-/// What [`lqr`] refuses about the weights.
+/// The errors of [`lqr`] about the weights.
 pub fn lqr_flat(weights: &FlatWeights) -> Result<FlatDesign, DesignError> {
     let (a, b) = dense_flat_chain();
     let design = lqr(&a, &b, &diagonal(&weights.state), &diagonal(&weights.input))?;

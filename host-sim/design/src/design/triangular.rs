@@ -1,6 +1,7 @@
-//! Linear matrix equations in the Schur basis of A, a column at a time: what the Lyapunov and the Stein equation share.
+//! Linear matrix equations in the Schur basis of A, a column at a time: the part that the Lyapunov and the Stein
+//! equation share.
 //!
-//! In flow the Schur form `A = U T U*`, the right-hand side, and for each column what the columns before it contribute;
+//! In flow the Schur form `A = U T U*`, the right-hand side, and for each column the contribution of the columns before it;
 //! out flows X, symmetric.
 
 use nalgebra::{DMatrix, DMatrixView, DVectorViewMut};
@@ -16,7 +17,7 @@ pub(super) struct Pencil {
 
 /// Solves for `Y = U* X U` from the right-hand side `-U* C U` and turns it back.
 ///
-/// `reduce` is given T, the columns that are known and the next one: it takes what they contribute off that column and
+/// `reduce` is given T, the columns that are known and the next one: it takes their contribution off that column and
 /// tells its equation. Not finite where a pencil is singular.
 pub(super) fn solve_by_columns(
     schur: &ComplexSchur,

@@ -24,7 +24,7 @@ pub struct FlatSample {
     pub heading_rate_rad_s: f64,
 }
 
-/// A point of a reference: what the laws compare the craft with, and what they may feed forward.
+/// A point of a reference: the state that the laws compare the craft with, and the input that they may feed forward.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferencePoint {
     /// State `x_r`, unit quaternion.

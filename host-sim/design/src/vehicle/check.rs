@@ -1,4 +1,4 @@
-//! Ranges of figures: each refusal names key, value, range and what the figure means.
+//! Ranges of figures: each refusal names key, value, range and the figure's meaning.
 
 use super::VehicleError;
 
@@ -29,8 +29,8 @@ pub(super) fn lag(field: &str, value: f64) -> Result<(), VehicleError> {
     within(field, value, least, most, "seconds: 67 ms are 0.067")
 }
 
-/// Mass, principal moments and arm have to be those of one body. Where they are not, one of them is in another unit, and that
-/// one is named: a mass in grams, which the motors would not lift; an arm in millimetres; or the inertia.
+/// Mass, principal moments and arm have to be those of one body. Where they are not, one of them is in another unit,
+/// and that one is named: a mass in grams, which the motors would not lift; an arm in millimetres; or the inertia.
 pub(super) fn one_body(mass_kg: f64, moments: [f64; 2], arm_m: f64, thrust_max_n: f64) -> Result<(), VehicleError> {
     let [least_arms, most_arms] = GYRATION_ARMS;
     let fits = |mass_kg: f64, arm_m: f64| {

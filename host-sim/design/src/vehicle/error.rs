@@ -18,7 +18,7 @@ pub enum VehicleError {
         field: String,
         /// The figure as read.
         value: f64,
-        /// What it must be.
+        /// The range that it must be in.
         must: String,
     },
 }

@@ -1,4 +1,4 @@
-//! What a vehicle file holds, in any format that serde reads; a [`Vehicle`] whose figures are in range out.
+//! The contents of a vehicle file, in any format that serde reads; a [`Vehicle`] whose figures are in range out.
 
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
@@ -15,7 +15,7 @@ const LONGEST_NAME: usize = 64;
 ///
 /// Its entries are described in `gains/vehicles` of the repository, where each built-in figure has its source beside it:
 /// `name`; `body` with `mass_kg` and `inertia_kg_m2`, by rows; `motors` with `arm_m`, `thrust_min_n`, `thrust_max_n`,
-/// `torque_per_thrust_m`, `lag_s` and `published_lag_s`; `limits` with `body_rates_rad_s`; and what is known of it in flight,
+/// `torque_per_thrust_m`, `lag_s` and `published_lag_s`; `limits` with `body_rates_rad_s`; and its figures in flight,
 /// each where somebody has measured it: `air`, `motors.flown`, `motors.force`, `propeller`, `battery`, with the keys of
 /// [`super::FlightFigures`].
 #[derive(Deserialize)]
@@ -64,7 +64,7 @@ impl TryFrom<VehicleFile> for Vehicle {
     fn try_from(file: VehicleFile) -> Result<Self, VehicleError> {
         let plain = |c: char| c.is_ascii_alphanumeric() || "-._".contains(c);
         if file.name.is_empty() || file.name.len() > LONGEST_NAME || !file.name.chars().all(plain) {
-            // What is printed stays on one line.
+            // Printed text stays on one line.
             let name = file.name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
             return Err(VehicleError::Name { name, longest: LONGEST_NAME });
         }

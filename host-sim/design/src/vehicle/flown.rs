@@ -1,4 +1,4 @@
-//! What is known of a vehicle in flight beyond what designs take: how the air acts on it, what its motors do with a command.
+//! Figures of a vehicle in flight beyond those that designs take: the air's action on it, its motors' answer to a command.
 //!
 //! All of it is optional, and none is part of a vehicle's identity: a table stays the table of its vehicle when somebody
 //! measures more.
@@ -8,7 +8,7 @@ use serde::Deserialize;
 use super::VehicleError;
 use super::check::{lag, positive, within};
 
-/// What has been measured; absent is what nobody has.
+/// The measured figures; those that nobody has measured are absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FlightFigures {
     /// Forces and moments of the air.
@@ -17,9 +17,9 @@ pub struct FlightFigures {
     pub motors: Option<MotorFigures>,
     /// Force of a motor by command and voltage.
     pub force: Option<ForceFigures>,
-    /// What turns on the motors.
+    /// The propellers.
     pub propeller: Option<PropellerFigures>,
-    /// What they run on.
+    /// The source of the motors' voltage.
     pub battery: Option<BatteryFigures>,
 }
 

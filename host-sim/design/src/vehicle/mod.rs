@@ -104,7 +104,7 @@ impl Vehicle {
         [self.motors.thrust_min_n, self.motors.thrust_max_n].map(|thrust_n| 4.0 * thrust_n / self.mass_kg)
     }
 
-    /// What is known of it in flight.
+    /// Its figures in flight.
     pub fn flown(&self) -> &FlightFigures {
         &self.flown
     }

@@ -1,4 +1,4 @@
-//! How far one reference is from another: two references in, the largest differences of what a craft is asked for out.
+//! How far one reference is from another: two references in, the largest differences of state and input out.
 
 use quatrack_design::model::{attitude, position, velocity};
 use serde::Serialize;

@@ -87,7 +87,7 @@ fn heading_error(state: &StateVector, target: &ReferencePoint) -> SVector<f64, 9
     )
 }
 
-/// `z` and `z_r` (6a) in the heading frame. The acceleration is what the reference's thrust gives in either attitude.
+/// `z` and `z_r` (6a) in the heading frame. The acceleration is that of the reference's thrust in either attitude.
 fn flat_states(state: &StateVector, target: &ReferencePoint) -> (SVector<f64, 10>, SVector<f64, 10>, Rotation3<f64>) {
     let to_heading = Rotation3::from_axis_angle(&Vector3::z_axis(), -target.heading_rad);
     let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), -target.heading_rad);

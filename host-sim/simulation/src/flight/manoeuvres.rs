@@ -27,7 +27,7 @@ const STILL_RAD_S: f64 = 3.0;
 /// How long it then brakes, s.
 const BRAKING_S: f64 = 3.0;
 
-/// What is flown.
+/// The manoeuvre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Manoeuvre {
     /// From the ground, motors off, to 1 m in 2 s.
@@ -60,7 +60,7 @@ impl Manoeuvre {
         }
     }
 
-    /// What it is, for the title of a figure.
+    /// Its name, for the title of a figure.
     pub fn title(self) -> &'static str {
         match self {
             Self::TakeOff => "take-off from the ground to 1 m in 2 s",
@@ -146,7 +146,7 @@ fn recover(vehicle: &Vehicle, craft: &Craft, table: &AwareTable) -> Result<Rigid
     ))
 }
 
-/// What a flight came to.
+/// The result of a flight.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Outcome {
     /// Largest position error, m.

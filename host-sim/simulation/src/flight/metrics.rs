@@ -1,4 +1,4 @@
-//! What a flight came to: its samples in, the paper's IAE and the figures a pilot asks for out.
+//! Results of a flight: its samples in, the paper's IAE and the figures a pilot asks for out.
 
 use quatrack_design::model::{attitude, position, thrust_axis};
 use serde::Serialize;

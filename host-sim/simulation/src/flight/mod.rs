@@ -9,7 +9,7 @@
 //!   motor_loop       the f32 core down to the motors in the loop
 //!     motor_laws     actuator-aware tables and the paper's laws on a vehicle's motors
 //!       robustness, manoeuvres   the flights they are judged by
-//! metrics, log       what a flight came to; its rows as CSV
+//! metrics, log       results of a flight; its rows as CSV
 //! ```
 
 pub mod closed_loop;

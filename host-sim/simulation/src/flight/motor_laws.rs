@@ -9,8 +9,8 @@ use quatrack::gains::table::AcceptedTable;
 use quatrack::law::ActuatorAwareGain;
 use quatrack::motor_lag::MotorLagError;
 use quatrack::{
-    Actuation, ActuatorAware, Airframe, Controller as CoreController, ControllerError, Equilibrium, ErrorForm,
-    FeedForward, Limits, ReferenceError, Settings,
+    Actuation, ActuatorAware, Airframe, Controller as CoreController, ControllerError, Equilibrium, Limits,
+    ReferenceError, Settings,
 };
 use quatrack_design::certify::{
     CertifyError, Controller, Plant, Region, RegionCertificate, Timing, certify, certify_region,
@@ -63,7 +63,7 @@ pub enum FlightError {
     Start(#[from] ReferenceError),
 }
 
-/// An actuator-aware table, as it is flown, with what it is certified for.
+/// An actuator-aware table, as it is flown, with its certified region.
 #[derive(Clone, Debug)]
 pub struct AwareTable {
     gain: ActuatorAwareGain,
@@ -78,8 +78,8 @@ pub fn default_lag_s(vehicle: &Vehicle) -> f64 {
     longest_s.max(DEFAULT_LAG_MIN_S)
 }
 
-/// The bandwidth that the core's body-rate loop has behind motors of a lag, rad/s: that of [`quatrack::BodyRateLoop::behind_lag`]
-/// below its bound.
+/// The bandwidth that the core's body-rate loop has behind motors of a lag, rad/s: that of
+/// [`quatrack::BodyRateLoop::behind_lag`] below its bound.
 pub fn body_rate_bandwidth_rad_s(lag_s: f64) -> f64 {
     0.5 / lag_s
 }
@@ -131,7 +131,7 @@ pub struct CraftLaw<'a> {
     actuation: Actuation,
 }
 
-/// What a controller is made of, on the craft.
+/// The parts of a controller on the craft.
 #[derive(Clone, Copy, Debug)]
 enum ControllerSource<'a> {
     Gain(&'a ActuatorAwareGain),
@@ -178,11 +178,8 @@ impl<'a> CraftLaw<'a> {
                 Ok(CoreController::new(*law, *limits).with_actuation(&self.actuation))
             }
             ControllerSource::Table(table) => table.controller(&Settings {
-                limits: Limits::NONE,
                 actuation: Some(&self.actuation),
-                feed_forward: FeedForward::Without,
-                error_form: ErrorForm::HeadingFrame,
-                player_rate: motor_loop::RATE,
+                ..Settings::new(Limits::NONE, motor_loop::RATE)
             }),
         }
     }

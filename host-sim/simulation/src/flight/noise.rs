@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::plant::RigidState;
 
-/// Standard deviations of white noise on each component of what is measured, at every control step.
+/// Standard deviations of white noise on each component of a measurement, at every control step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
     /// Of the position, m.
@@ -48,7 +48,7 @@ impl Source {
         Vector3::from_fn(|_, _| deviation * self.normal())
     }
 
-    /// What is measured of a state.
+    /// The measurement of a state.
     pub(crate) fn measured(&mut self, state: &RigidState, noise: &Noise) -> RigidState {
         RigidState {
             position_m: state.position_m + self.vector(noise.position_m),

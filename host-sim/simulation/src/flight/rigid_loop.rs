@@ -21,11 +21,11 @@ pub struct Conditions {
     pub steps_a_sample: u32,
     /// How late commands act, s.
     pub delay_s: f64,
-    /// What measurements are off by.
+    /// The errors of measurements.
     pub noise: Option<Noise>,
 }
 
-/// Commanded forces and whether they were cut to what the motors can do.
+/// Commanded forces and whether they were cut to the motors' range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorCommand {
     /// Of each motor, N.
@@ -118,7 +118,7 @@ impl Latency {
         }
     }
 
-    /// Takes a command; returns what acts for a first part of the step, how long that is, and what acts for the rest.
+    /// Takes a command; returns the forces of a first part of the step, its length, and the forces of the rest.
     fn pass(&mut self, command: Vector4<f64>) -> (Vector4<f64>, f64, Vector4<f64>) {
         self.given.rotate_right(1);
         self.given[0] = command;

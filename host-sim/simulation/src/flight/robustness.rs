@@ -3,7 +3,8 @@
 //!
 //! A law flies only where its certificate holds: an actuator-aware table for a known lag from half to one and a half of
 //! that lag, the default table over all of [`Region::of_any_crazyflie`], one of the paper's, fed forward, behind the core's
-//! body-rate loop only if it tolerates that lag. What does not fly is listed with the figure that keeps it on the ground.
+//! body-rate loop only if it tolerates that lag. Flights that are lost are listed with the figure that keeps it on the
+//! ground.
 //!
 //! The flight is `x = sin(w t)`, `y = 1/2 sin(2 w t)` at 1 m with `w = 1.485 rad/s` (2.1 m/s), 12 s, from a start on the
 //! reference; the fast one has `w = 2.19 rad/s` (3.1 m/s). The f32 core runs at 500 Hz on the rigid plant.
@@ -32,10 +33,10 @@ pub const RATE_RAD_S: f64 = 1.485;
 pub const FAST_RATE_RAD_S: f64 = 2.19;
 /// Length of the flights, s.
 pub const DURATION_S: f64 = 12.0;
-/// What an estimator with a motion capture system is off by.
+/// The errors of an estimator with a motion capture system.
 pub const NOISE: Noise = Noise { position_m: 1e-3, velocity_m_s: 1e-2, body_rates_rad_s: 0.02, seed: 1 };
 
-/// What is different from the design.
+/// The differences from the design.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
     /// Its name.
@@ -50,7 +51,7 @@ pub struct Case {
     pub delay_s: f64,
     /// Inertia over that of the vehicle.
     pub inertia_factor: f64,
-    /// What measurements are off by.
+    /// The errors of measurements.
     pub noise: Option<Noise>,
 }
 

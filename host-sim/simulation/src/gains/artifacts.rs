@@ -5,12 +5,16 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use nalgebra::DMatrix;
+use quatrack::cascade::Air;
+use quatrack::gains::table::{CascadeTable, TableKind};
 use quatrack_design::certify::{Judged, judge};
 use serde_json::{Value, json};
 
 use super::certified::Certified;
 use super::designed::Gains;
+use super::names::signals;
 use super::rounding::{rounded, without_dust};
+use super::table::Table;
 
 /// A file to be written or compared.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,9 +51,13 @@ pub fn artifacts(certified: &Certified, folder: &Path) -> Vec<Artifact> {
 pub(super) fn document(certified: &Certified) -> Value {
     let Certified { design, designed, .. } = certified;
     let past: Vec<Value> = designed.past_command_gains.iter().map(by_rows).collect();
+    let (rows, columns) = match designed.gains {
+        Gains::Cascade(_) => signals(TableKind::Cascade),
+        _ => (designed.model.inputs, designed.model.states),
+    };
     let mut gain = json!({
-        "rows": designed.model.inputs,
-        "columns": designed.model.states,
+        "rows": rows,
+        "columns": columns,
         "k": by_rows(&designed.gains.dense()),
         "past_command_gains": past,
         "relative_residual_of_p_below": residual_bound(designed.relative_residual),
@@ -75,6 +83,9 @@ pub(super) fn document(certified: &Certified) -> Value {
         "statement": certified.statement,
         "certificate_sha256": certified.statement.hash().to_string(),
     });
+    if let Some(region) = &certified.cascade_region {
+        document["region"] = json!(region);
+    }
     if let Some(region) = &certified.region {
         document["region"] = json!(region);
     }
@@ -125,6 +136,14 @@ pub fn rust_source(certified: &Certified) -> String {
         Gains::FlatOutput(_) => "FlatOutputGain",
         Gains::Integral(_) => "IntegralGain",
         Gains::ActuatorAware(_) => "ActuatorAwareGain",
+        Gains::Cascade(_) => {
+            let table = certified.table.as_ref().and_then(Table::cascade);
+            text += &table.map_or_else(String::new, |table| {
+                let kind = "quatrack::gains::table::CascadeTable";
+                format!("#[rustfmt::skip]\npub static {name}: {kind} = {};\n", cascade_source(table, "quatrack"))
+            });
+            return text;
+        }
         Gains::Along(_) => {
             let (trajectory, steps_per_knot) = design.problem.schedule().unwrap_or_default();
             let kind = "quatrack::gains::table::ScheduleRows";
@@ -151,6 +170,46 @@ pub fn rust_source(certified: &Certified) -> String {
     }
     text.push_str("]);\n");
     text
+}
+
+/// A table of the cascade as Rust writes it, with the paths of the crate that is called so, or of what is in scope.
+pub(super) fn cascade_source(table: &CascadeTable, of: &str) -> String {
+    let (tables, cascade) = match of {
+        "" => (String::new(), String::new()),
+        of => (format!("{of}::gains::table::"), format!("{of}::cascade::")),
+    };
+    let CascadeTable { gains, motor_lag_s, air, certified } = table;
+    let Air { drag_per_s, drag_along_share, moment_n_s, gust, learn } = air;
+    let range = certified;
+    format!(
+        "{tables}CascadeTable {{\n    \
+             gains: {cascade}CascadeGains::table({:?}),\n    \
+             motor_lag_s: {motor_lag_s:?},\n    \
+             air: {cascade}Air {{\n        \
+                 drag_per_s: {drag_per_s:?},\n        \
+                 drag_along_share: {drag_along_share:?},\n        \
+                 moment_n_s: {moment_n_s:?},\n        \
+                 gust: {gust:?},\n        \
+                 learn: {learn:?},\n    \
+             }},\n    \
+             certified: {tables}CascadeRange {{\n        \
+                 motor_lag_s: {:?},\n        \
+                 mass_share: {:?},\n        \
+                 inertia_share: {:?},\n        \
+                 force_share: {:?},\n        \
+                 delay_s: {:?},\n        \
+                 drag_per_s: {:?},\n        \
+                 moment_n_s: {:?},\n    \
+             }},\n}}",
+        gains.numbers(),
+        range.motor_lag_s,
+        range.mass_share,
+        range.inertia_share,
+        range.force_share,
+        range.delay_s,
+        range.drag_per_s,
+        range.moment_n_s,
+    )
 }
 
 /// `lqr-e` as `LQR_E`.

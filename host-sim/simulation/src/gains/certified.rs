@@ -1,6 +1,10 @@
 //! A design carried out: design in; gains, certificate and table out, or the figure that fails.
 
-use quatrack::gains::table::{Hash, Name, ScheduleRows, TableError, TableHead, Vehicle};
+use quatrack::cascade::{Air, CascadeGainError, CascadeGains};
+use quatrack::gains::table::{
+    CascadeFigure, CascadeRange, CascadeTable, Hash, Name, ScheduleRows, TableError, TableHead, TableKind, Vehicle,
+};
+use quatrack_design::certify::cascade::{CascadeCertificate, CascadeRegionCertificate, certify_cascade_region};
 use quatrack_design::certify::{Certificate, Minimum, RegionCertificate, certify_region, motor_lag_limit, require};
 use serde::Serialize;
 
@@ -24,6 +28,8 @@ pub struct Certified {
     pub certificate: Certificate,
     /// Over the region that an actuator-aware design asks for.
     pub region: Option<RegionCertificate>,
+    /// Over the region that a design of the cascade asks for.
+    pub cascade_region: Option<CascadeRegionCertificate>,
     /// What the table says of them.
     pub statement: BoardCertificate,
     /// The table; none where no law on board flies the gains, as those that remember past commands.
@@ -67,6 +73,7 @@ impl Design {
             // The plant has its motors' lag already: what is told is the whole of it, not what may come on top.
             certificate.lag = vec![motor_lag_limit(&self.vehicle, gain, *motor_lag_s, period_s)?];
         }
+        let cascade_region = self.cascade_region(&designed)?;
         require(&certificate, &self.minimum)?;
         let design_hash = sha256(&self.essence());
         let statement = BoardCertificate::new(self, &design_hash, &designed, &certificate);
@@ -83,17 +90,78 @@ impl Design {
         } else {
             None
         };
-        Ok(Certified { design: self.clone(), design_hash, designed, certificate, region, statement, table })
+        Ok(Certified {
+            design: self.clone(),
+            design_hash,
+            designed,
+            certificate,
+            region,
+            cascade_region,
+            statement,
+            table,
+        })
+    }
+
+    /// The region of a design of the cascade, stable all over.
+    fn cascade_region(&self, designed: &Designed) -> Result<Option<CascadeRegionCertificate>, GainsError> {
+        let (Problem::Cascade { motor_lag_s, air, region, .. }, Gains::Cascade(gains)) =
+            (&self.problem, &designed.gains)
+        else {
+            return Ok(None);
+        };
+        let period_s = 1.0 / f64::from(self.rate.hz());
+        let found = certify_cascade_region(&self.vehicle, **gains, *motor_lag_s, air, region, period_s)?;
+        let unstable = |chain: &&CascadeCertificate| chain.spectral_radius.is_nan() || chain.spectral_radius >= 1.0;
+        match found.seen.iter().chain(&found.unseen).find(unstable) {
+            Some(CascadeCertificate { chain, worst, spectral_radius, .. }) => Err(GainsError::CascadeRegion {
+                chain: *chain,
+                spectral_radius: *spectral_radius,
+                worst: Box::new(*worst),
+            }),
+            None => Ok(Some(found)),
+        }
     }
 
     fn table(&self, head: TableHead, gains: &Gains) -> Result<Table, TableError> {
         match gains.rows(self.problem.motor_lag_s().unwrap_or_default() as f32) {
             TableRows::Fixed(rows) => Table::new(head, &rows),
+            TableRows::Chains(gains) => Table::of_cascade(head, &self.cascade_table(gains)?),
             TableRows::OverTime(gains) => {
                 let (trajectory, steps_per_knot) = self.problem.schedule().unwrap_or_default();
                 Table::over_time(&head, &ScheduleRows { trajectory, steps_per_knot, gains: &gains })
             }
         }
+    }
+
+    fn cascade_table(&self, gains: [f32; 16]) -> Result<CascadeTable, TableError> {
+        let Problem::Cascade { motor_lag_s, air, region, .. } = &self.problem else {
+            return Err(TableError::Kind { found: TableKind::Cascade.number() });
+        };
+        let refused = |error: CascadeGainError| TableError::Cascade {
+            figure: CascadeFigure::Gain { index: error.index },
+            value: error.value,
+        };
+        let pair = |pair: [f64; 2]| pair.map(|value| value as f32);
+        Ok(CascadeTable {
+            gains: CascadeGains::from_numbers(gains).map_err(refused)?,
+            motor_lag_s: *motor_lag_s as f32,
+            air: Air {
+                drag_per_s: air.drag_per_s as f32,
+                drag_along_share: 1.0,
+                moment_n_s: pair(air.moment_n_s),
+                gust: air.gust as f32,
+                learn: air.learn,
+            },
+            certified: CascadeRange {
+                motor_lag_s: pair(region.lag_s),
+                mass_share: region.mass_share as f32,
+                inertia_share: region.inertia_share as f32,
+                force_share: pair(region.force_share),
+                delay_s: region.delay_s as f32,
+                drag_per_s: region.drag_per_s as f32,
+                moment_n_s: pair(region.moment_n_s),
+            },
+        })
     }
 
     pub(super) fn essence(&self) -> Essence<'_> {

@@ -3,9 +3,13 @@
 use nalgebra::{DMatrix, SMatrix};
 use num_complex::Complex64;
 use quatrack::gains::table::{Rows, TableKind};
+use quatrack_design::certify::cascade::certify_cascade;
 use quatrack_design::certify::{Certificate, CertifyError, Controller, Plant, Timing, certify, certify_along};
-use quatrack_design::design::actuator_aware::{ERRORS, actuator_aware, hover_pair_with_integral};
+use quatrack_design::design::actuator_aware::{
+    ERRORS, PLANT_STATES, actuator_aware, hover_pair, hover_pair_with_integral,
+};
 use quatrack_design::design::along::{GainsAlong, gains_along};
+use quatrack_design::design::cascade::{GAINS, cascade};
 use quatrack_design::design::codegen::{rounded, rounded_along};
 use quatrack_design::design::discretise::{Held, zero_order_hold};
 use quatrack_design::design::integral::{integral_pair, sampled_integral_problem, sampled_lqi};
@@ -24,7 +28,7 @@ use super::GainsError;
 use super::design::{Design, Method, Problem};
 use super::names::{
     EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, INTEGRAL_STATES, MOTOR_INPUTS, MOTOR_STATES,
-    Signal,
+    PART_INPUTS, PART_STATES, Signal,
 };
 
 /// A gain with all that it came from; of gains over time model, P and poles are those of the hover at their end.
@@ -103,6 +107,8 @@ pub enum Gains {
     Integral(Box<SMatrix<f64, 4, 12>>),
     /// 4 x 19, to the motors' forces.
     ActuatorAware(Box<SMatrix<f64, 4, 19>>),
+    /// 16, of the four chains.
+    Cascade(Box<[f64; GAINS]>),
     /// 4 x 9 at each knot, on the grid of [`GainsAlong::on_grid`].
     Along(Box<GainsAlong>),
 }
@@ -112,6 +118,8 @@ pub enum Gains {
 pub enum TableRows {
     /// One gain.
     Fixed(Box<Rows>),
+    /// The gains of the cascade.
+    Chains([f32; GAINS]),
     /// A gain at each knot.
     OverTime(Vec<[[f32; 9]; 4]>),
 }
@@ -124,6 +132,7 @@ impl Gains {
             Self::FlatOutput(_) => TableKind::FlatOutput,
             Self::Integral(_) => TableKind::Integral,
             Self::ActuatorAware(_) => TableKind::ActuatorAware,
+            Self::Cascade(_) => TableKind::Cascade,
             Self::Along(_) => TableKind::AlongTrajectory,
         }
     }
@@ -135,6 +144,7 @@ impl Gains {
             Self::FlatOutput(gain) => DMatrix::from_column_slice(7, 10, gain.as_slice()),
             Self::Integral(gain) => DMatrix::from_column_slice(4, 12, gain.as_slice()),
             Self::ActuatorAware(gain) => DMatrix::from_column_slice(4, 19, gain.as_slice()),
+            Self::Cascade(gains) => DMatrix::from_row_slice(1, GAINS, &gains[..]),
             Self::Along(along) => DMatrix::from_fn(4 * along.gains.len(), 9, |i, j| along.gains[i / 4][(i % 4, j)]),
         }
     }
@@ -148,6 +158,7 @@ impl Gains {
             Self::FlatOutput(gain) => Rows::FlatOutput(rounded(gain)),
             Self::Integral(gain) => Rows::Integral(rounded(gain)),
             Self::ActuatorAware(gain) => Rows::ActuatorAware { motor_lag_s, rows: rounded(gain) },
+            Self::Cascade(gains) => return TableRows::Chains(gains.map(|gain| gain as f32)),
             Self::Along(along) => return TableRows::OverTime(rounded_along(along)),
         }))
     }
@@ -157,6 +168,7 @@ impl Gains {
         let rows = self.rows(0.0);
         let entries = match &rows {
             TableRows::Fixed(rows) => rows.entries(),
+            TableRows::Chains(gains) => gains,
             TableRows::OverTime(knots) => knots.as_flattened().as_flattened(),
         };
         entries.chunks(usize::from(self.kind().dimensions().1)).map(<[f32]>::to_vec).collect()
@@ -213,6 +225,25 @@ impl Designed {
                     sampled: Some(SampledProblem { held: designed.held, cost }),
                 })
             }
+            Problem::Cascade { motor_lag_s, weights, .. } => {
+                let period_s = Sampling::at_rate(rate_hz).period_s;
+                let designed = cascade(&design.vehicle, *motor_lag_s, weights, period_s)?;
+                let (a, b) = hover_pair(&design.vehicle, *motor_lag_s, 1.0, 1.0);
+                let (q, r) = (diagonal(&weights.state()), diagonal(&[weights.command; 4]));
+                let cost = SampledCost { q: q.clone(), s: DMatrix::zeros(PLANT_STATES, 4), r: r.clone() };
+                Ok(Self {
+                    model: LinearModel { a, b, states: &PART_STATES, inputs: &PART_INPUTS },
+                    weights: Some(Weights { q, r }),
+                    gains: Gains::Cascade(Box::new(designed.numbers())),
+                    past_command_gains: Vec::new(),
+                    p: designed.p,
+                    poles: Poles::Sampled(designed.poles),
+                    relative_residual: designed.relative_residual,
+                    gain_in_parts: Some(designed.gain_in_parts),
+                    motors: None,
+                    sampled: Some(SampledProblem { held: designed.held, cost }),
+                })
+            }
             Problem::Along { weights, trajectory, steps_per_knot } => {
                 let sampling = sampling(rate_hz, 0);
                 let flown = trajectory.trajectory();
@@ -249,6 +280,10 @@ impl Designed {
             let controller = Controller::actuator_aware(gain, *lag_s, timing.period_s);
             return certify(&plant, &controller, &timing, design.rate_loop_gain_1_s);
         }
+        if let (Gains::Cascade(gains), Problem::Cascade { motor_lag_s, air, .. }) = (&self.gains, &design.problem) {
+            let period_s = Timing::at_rate(design.rate.hz()).period_s;
+            return certify_cascade(&design.vehicle, **gains, *motor_lag_s, air, period_s);
+        }
         let plant = match (&self.gains, &design.problem) {
             (Gains::Along(along), Problem::Along { trajectory, .. }) => {
                 let reference = |time_s: f64| reference_point(&trajectory.trajectory().at(time_s));
@@ -256,7 +291,9 @@ impl Designed {
             }
             (Gains::FlatOutput(_), _) => Plant::flat_chain(),
             (Gains::Integral(_), _) => Plant::equilibrium_with_integral(),
-            (Gains::Equilibrium(_) | Gains::ActuatorAware(_) | Gains::Along(_), _) => Plant::equilibrium(),
+            (Gains::Equilibrium(_) | Gains::ActuatorAware(_) | Gains::Cascade(_) | Gains::Along(_), _) => {
+                Plant::equilibrium()
+            }
         };
         let past_command_gains = self.past_command_gains.clone();
         let timing = Timing { delay_samples: past_command_gains.len(), ..Timing::at_rate(design.rate.hz()) };

@@ -1,6 +1,7 @@
 //! Why a design gives no table, in one line each: which key, its value, what to do.
 
 use quatrack::gains::table::{NameError, TableError};
+use quatrack_design::certify::cascade::{CascadeChain, CascadeVariation};
 use quatrack_design::certify::{CertifyError, MarginTooSmall};
 use quatrack_design::design::DesignError;
 use thiserror::Error;
@@ -85,6 +86,19 @@ pub enum GainsError {
         /// Where.
         worst: quatrack_design::certify::Variation,
     },
+    /// The loop of the cascade is not stable all over the region that the design asks for.
+    #[error(
+        "refused: in its region the spectral radius of {chain:?} reaches {spectral_radius:.6} at {worst}; it must stay below 1: \
+         change motor_lag_ms, lower the weights or narrow [region]"
+    )]
+    CascadeRegion {
+        /// Which chain.
+        chain: CascadeChain,
+        /// The largest spectral radius.
+        spectral_radius: f64,
+        /// Where.
+        worst: Box<CascadeVariation>,
+    },
     /// The core would refuse the table.
     #[error("the table would be refused on board: {0}")]
     Table(TableError),
@@ -98,6 +112,7 @@ impl GainsError {
             Self::Certify(CertifyError::Unstable { .. } | CertifyError::UnstableAtKnot { .. })
                 | Self::Minimum(_)
                 | Self::Region { .. }
+                | Self::CascadeRegion { .. }
                 | Self::Table(_)
         )
     }

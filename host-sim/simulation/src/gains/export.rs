@@ -83,7 +83,11 @@ impl Export {
             matrices.push(matrix("S_d", states, inputs, cost.s));
             matrices.push(matrix("R_d", inputs, inputs, cost.r));
         }
-        matrices.push(matrix("K", inputs, states, designed.gains.dense()));
+        let gain = match (&designed.gains, designed.gain_in_parts) {
+            (Gains::Cascade(_), Some(in_parts)) => in_parts,
+            (gains, _) => gains.dense(),
+        };
+        matrices.push(matrix("K", inputs, states, gain));
         for (number, past) in (1..).zip(&designed.past_command_gains) {
             matrices.push(matrix(&format!("K_past_{number}"), inputs, inputs, past.clone()));
         }

@@ -20,6 +20,7 @@ pub(super) struct DesignFile {
     pub(super) trajectory: Option<String>,
     pub(super) rate_loop_gain_1_s: Option<f64>,
     pub(super) motor_lag_ms: Option<f64>,
+    pub(super) air: Option<AirEntry>,
     pub(super) region: Option<RegionEntry>,
     pub(super) weights: Option<Weights>,
     #[serde(default)]
@@ -44,9 +45,21 @@ pub(super) enum MethodName {
     Lqi,
     Along,
     ActuatorAware,
+    Cascade,
 }
 
-/// Craft and links that an actuator-aware gain must be stable on, besides its own.
+/// What the cascade is told of the air.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AirEntry {
+    pub(super) drag_per_s: Option<f64>,
+    pub(super) moment_n_m_per_m_s: Option<[f64; 2]>,
+    pub(super) share_of_identified: Option<f64>,
+    pub(super) gust: Option<f64>,
+    pub(super) learn: Option<bool>,
+}
+
+/// Crafts, links and air that gains for motor forces must be stable on, besides their own.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RegionEntry {
@@ -57,6 +70,9 @@ pub(super) struct RegionEntry {
     pub(super) inertia_percent: f64,
     #[serde(default)]
     pub(super) delay_ms: f64,
+    pub(super) force_percent: Option<[f64; 2]>,
+    pub(super) drag_per_s: Option<f64>,
+    pub(super) moment_n_m_per_m_s: Option<[f64; 2]>,
 }
 
 /// Diagonal weights of errors and inputs, by group.
@@ -121,6 +137,7 @@ impl MethodName {
             Self::Lqi => "\"lqi\"",
             Self::Along => "\"along\"",
             Self::ActuatorAware => "\"actuator-aware\"",
+            Self::Cascade => "\"cascade\"",
         }
     }
 }

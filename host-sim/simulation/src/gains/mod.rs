@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! check          committed files against what their designs give today
+//!   built_in     the core's own tables of the cascade
 //!   artifacts    NAME.json, NAME.rs, NAME.bin
 //!     certified  gains, certificate, the table; the design's own minimum
 //!       board_certificate  the figures that a table carries, the same on every processor
@@ -17,6 +18,7 @@
 
 mod artifacts;
 mod board_certificate;
+mod built_in;
 mod certified;
 mod check;
 mod course;
@@ -31,6 +33,7 @@ mod table;
 
 pub use artifacts::{Artifact, artifacts, default_folder, json_document, rust_source};
 pub use board_certificate::BoardCertificate;
+pub use built_in::{BuiltInError, built_in_source};
 pub use certified::Certified;
 pub(crate) use check::Comparison;
 pub use check::{Checked, Failed, check_design, check_folder, designs};

@@ -115,6 +115,53 @@ pub(super) const MOTOR_STATES: [Signal; 19] = [
 pub(super) const MOTOR_INPUTS: [Signal; 4] =
     [signal("u1", "N"), signal("u2", "N"), signal("u3", "N"), signal("u4", "N")];
 
+/// States of the cascade's model: forces in orthonormal parts.
+pub(super) const PART_STATES: [Signal; 16] = [
+    signal("x", "m"),
+    signal("y", "m"),
+    signal("z", "m"),
+    signal("vx", "m/s"),
+    signal("vy", "m/s"),
+    signal("vz", "m/s"),
+    signal("theta_x", "rad"),
+    signal("theta_y", "rad"),
+    signal("theta_z", "rad"),
+    signal("p", "rad/s"),
+    signal("q", "rad/s"),
+    signal("r", "rad/s"),
+    signal("f_thrust", "N"),
+    signal("f_roll", "N"),
+    signal("f_pitch", "N"),
+    signal("f_yaw", "N"),
+];
+
+/// Commanded parts of the forces.
+pub(super) const PART_INPUTS: [Signal; 4] =
+    [signal("u_thrust", "N"), signal("u_roll", "N"), signal("u_pitch", "N"), signal("u_yaw", "N")];
+
+/// The gains of the cascade, chain by chain: of what they are, and to which part of a motor's force.
+pub(super) const CHAIN_GAINS: [Signal; 16] = [
+    signal("z", "N/m"),
+    signal("vz", "N s/m"),
+    signal("f_thrust", "1"),
+    signal("y", "N/m"),
+    signal("vy", "N s/m"),
+    signal("theta_x", "N/rad"),
+    signal("p", "N s/rad"),
+    signal("f_roll", "1"),
+    signal("x", "N/m"),
+    signal("vx", "N s/m"),
+    signal("theta_y", "N/rad"),
+    signal("q", "N s/rad"),
+    signal("f_pitch", "1"),
+    signal("theta_z", "N/rad"),
+    signal("r", "N s/rad"),
+    signal("f_yaw", "1"),
+];
+
+/// What the gains of the cascade give: a part of a motor's force.
+pub(super) const CHAIN_OUTPUT: [Signal; 1] = [signal("part", "N")];
+
 /// The signals of the rows and the columns of a table.
 pub fn signals(kind: TableKind) -> (&'static [Signal], &'static [Signal]) {
     match kind {
@@ -122,6 +169,7 @@ pub fn signals(kind: TableKind) -> (&'static [Signal], &'static [Signal]) {
         TableKind::Equilibrium | TableKind::AlongTrajectory => (&EQUILIBRIUM_INPUTS, &EQUILIBRIUM_STATES),
         TableKind::FlatOutput => (&FLAT_INPUTS, &FLAT_STATES),
         TableKind::ActuatorAware => (&MOTOR_INPUTS, &MOTOR_STATES),
+        TableKind::Cascade => (&CHAIN_OUTPUT, &CHAIN_GAINS),
         // A kind that the core has and no design makes.
         _ => (&[], &[]),
     }

@@ -1,6 +1,8 @@
 //! A table of any kind that a design gives: rows and head in, bytes out, and back.
 
-use quatrack::gains::table::{GainTable, Rows, ScheduleRows, TABLE_BYTES_MAX, TableError, TableHead, TableKind};
+use quatrack::gains::table::{
+    CascadeTable, GainTable, Rows, ScheduleRows, TABLE_BYTES_MAX, TableError, TableHead, TableKind,
+};
 
 /// A table as a board loads it: a file that has been read, of any kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +13,7 @@ pub struct Table {
     motor_lag_s: Option<f32>,
     /// Of a table along a trajectory.
     along: Option<Along>,
+    cascade: Option<CascadeTable>,
     by_rows: Vec<Vec<f32>>,
 }
 
@@ -42,7 +45,7 @@ impl Table {
         let by_rows = match (&along, table.rows()) {
             (Some(along), _) => listed(along.gains.as_flattened().as_flattened()),
             (None, Some(rows)) => listed(rows.entries()),
-            (None, None) => Vec::new(),
+            (None, None) => table.cascade().map_or_else(Vec::new, |cascade| listed(&cascade.gains.numbers())),
         };
         Ok(Self {
             bytes: bytes.to_vec(),
@@ -50,6 +53,7 @@ impl Table {
             kind: table.kind(),
             motor_lag_s: table.lag().map(quatrack::MotorLag::lag_s),
             along,
+            cascade: table.cascade().copied(),
             by_rows,
         })
     }
@@ -60,6 +64,15 @@ impl Table {
     /// [`TableError`].
     pub fn new(head: TableHead, rows: &Rows) -> Result<Self, TableError> {
         let table = GainTable::new(head, rows)?;
+        Self::from_bytes(table.to_bytes(&mut [0; TABLE_BYTES_MAX]).unwrap_or_default())
+    }
+
+    /// Writes one of the cascade.
+    ///
+    /// # Errors
+    /// [`TableError`].
+    pub fn of_cascade(head: TableHead, cascade: &CascadeTable) -> Result<Self, TableError> {
+        let table = GainTable::of_cascade(head, cascade)?;
         Self::from_bytes(table.to_bytes(&mut [0; TABLE_BYTES_MAX]).unwrap_or_default())
     }
 
@@ -96,6 +109,11 @@ impl Table {
     /// The gains over time, if that is its kind.
     pub fn along(&self) -> Option<&Along> {
         self.along.as_ref()
+    }
+
+    /// What it says of the cascade, if that is its kind.
+    pub fn cascade(&self) -> Option<&CascadeTable> {
+        self.cascade.as_ref()
     }
 
     /// Its gain, each row a list; of gains over time the rows of one knot after those of the other.

@@ -1,10 +1,10 @@
-//! What the air does to a craft that moves through it: velocity through the air in, force and torque out.
+//! The air's action on a craft that moves through it: velocity through the air in, force and torque out.
 
 use nalgebra::Vector3;
 
 use super::Wrench;
 
-/// Forces and torques of a craft as a whole, of the velocity through the air in the body frame `v`. What was identified on
+/// Forces and torques of a craft as a whole, of the velocity through the air in the body frame `v`. Figures identified on
 /// real Crazyflies and explains their flights: NanoBench (arXiv 2603.09908) and the IDSIA benchmark (arXiv 2512.14450).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Airflow {

@@ -13,13 +13,13 @@ pub(super) const STEP_MAX_S: f64 = 0.002;
 
 /// A rigid body with motors and loads.
 pub struct Craft {
-    /// What is moved.
+    /// The body that is moved.
     pub body: RigidBody,
-    /// What moves it.
+    /// The motors that move it.
     pub motors: MotorBank,
-    /// What the air does to it; absent: a vacuum.
+    /// The air's force and torque on it; absent: a vacuum.
     pub air: Option<Airflow>,
-    /// What else pushes it.
+    /// All other forces and torques on it.
     pub loads: Vec<Box<dyn Load>>,
 }
 
@@ -39,7 +39,7 @@ pub struct LinearWind {
 pub struct Motion {
     /// Of the centre of mass, world frame, m/s^2.
     pub acceleration_m_s2: Vector3<f64>,
-    /// What an accelerometer at the centre of mass feels: that plus g upwards, body frame, m/s^2.
+    /// Reading of an accelerometer at the centre of mass: that plus g upwards, body frame, m/s^2.
     pub specific_force_m_s2: Vector3<f64>,
     /// Body frame, rad/s^2.
     pub angular_acceleration_rad_s2: Vector3<f64>,
@@ -120,7 +120,7 @@ impl Craft {
             force_n += wrench.force_n;
             torque_n_m += wrench.torque_n_m;
         }
-        // Of the quaternion as it is: its length stays what it was.
+        // Of the quaternion as it is: its length is kept.
         let turning = Quaternion::new(x[6], x[7], x[8], x[9]) * Quaternion::from_imag(*rates) * 0.5;
         let mut rate = RigidVector::zeros();
         rate.fixed_rows_mut::<3>(0).copy_from(&state.velocity_m_s);

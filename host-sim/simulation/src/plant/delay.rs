@@ -13,7 +13,7 @@ pub(super) struct DelayLine {
     delay_s: f64,
     /// None before the first has arrived.
     acting: Option<Vector4<f64>>,
-    /// When each begins to act, s, and what it is; the oldest first.
+    /// The time at which each begins to act, s, and its forces; the oldest first.
     on_the_way: VecDeque<(f64, Vector4<f64>)>,
 }
 
@@ -31,8 +31,8 @@ impl DelayLine {
         }
     }
 
-    /// What acts from a time, s, and when that changes. Times less than a nanosecond apart are the same, so that sums of
-    /// steps and delays meet.
+    /// The commands that act from a time, s, and the time of their next change. Times less than a nanosecond apart are
+    /// the same, so that sums of steps and delays meet.
     pub(super) fn at(&mut self, time_s: f64) -> (Option<Vector4<f64>>, f64) {
         while let Some((from_s, command)) = self.on_the_way.front() {
             if *from_s > time_s + 1e-9 {

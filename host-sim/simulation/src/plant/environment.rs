@@ -1,4 +1,4 @@
-//! What a flight takes place in, and what the craft really is: plain figures, checked once.
+//! The surroundings of a flight and the true figures of its craft: plain figures, checked once.
 
 use nalgebra::{Matrix3, Vector3};
 use quatrack_design::vehicle::Vehicle;
@@ -9,7 +9,7 @@ use super::refused::{Checked, PlantError, positive, within};
 use super::supply::{Battery, ForceMap, Supply};
 use super::wind::Wind;
 
-/// Drag and what comes with it, by the vehicle's own mass.
+/// Drag, airflow moment and lift, by the vehicle's own mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Air {
     /// Linear drag along the body's axes over the mass that the vehicle has in its file, 1/s. A heavier craft of the same
@@ -31,7 +31,7 @@ impl Air {
     pub const VACUUM: Self =
         Self { drag_per_s: [0.0; 3], moment_n_m_per_m_s: [0.0; 2], lift_per_m: 0.0, wind_max_m_s: Self::WIND_MAX_M_S };
 
-    /// What is known of the vehicle: forces as they were identified, whatever the mass then. What is not known is 0.
+    /// The figures known of the vehicle: forces as they were identified, whatever the mass then. Unknown figures are 0.
     pub fn of(vehicle: &Vehicle) -> Option<Self> {
         let known = vehicle.flown().air.as_ref()?;
         let mass_ratio = known.mass_kg / vehicle.mass_kg();
@@ -45,12 +45,12 @@ impl Air {
     }
 }
 
-/// What surrounds a craft.
+/// The surroundings of a craft.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     /// The air.
     pub air: Air,
-    /// What it does.
+    /// Its motion.
     pub wind: Wind,
     /// Whether there is a floor at height 0.
     pub floor: bool,
@@ -121,7 +121,7 @@ impl Environment {
     }
 }
 
-/// What the craft really is, whatever the law believes.
+/// The true figures of the craft, whatever the law believes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
     /// Mass, kg.
@@ -144,16 +144,16 @@ pub struct Truth {
     pub centre_of_mass_m: Vector3<f64>,
     /// Thrust of each motor over that of a sound one: 0 is a dead one.
     pub motor_strength: [f64; 4],
-    /// What a command means; absent: a force in newtons that the motors give.
+    /// The map from command to force; absent: a force in newtons that the motors give.
     pub force_map: Option<ForceMap>,
-    /// What the motors run on; looked at where there is a force map.
+    /// The source of the motors' voltage; looked at where there is a force map.
     pub supply: Supply,
     /// The propellers, where their momentum counts.
     pub propeller: Option<Propeller>,
 }
 
 impl Truth {
-    /// Exactly what the vehicle's designs believe: their lag, no delay, thrust as commanded.
+    /// Exactly as the vehicle's designs believe: their lag, no delay, thrust as commanded.
     pub fn as_designed(vehicle: &Vehicle) -> Self {
         let lag_s = vehicle.motors().lag_s;
         Self {
@@ -173,8 +173,8 @@ impl Truth {
         }
     }
 
-    /// All that is known of the vehicle in flight: lags, delay, force by command and a battery that is full at first, momentum
-    /// of the rotors. What is not known is as designed.
+    /// All that is known of the vehicle in flight: lags, delay, force by command and a battery that is full at first,
+    /// momentum of the rotors. Unknown figures are as designed.
     pub fn as_flown(vehicle: &Vehicle) -> Self {
         let (flown, mut truth) = (vehicle.flown(), Self::as_designed(vehicle));
         if let Some(motors) = &flown.motors {

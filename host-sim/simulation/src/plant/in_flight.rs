@@ -1,4 +1,4 @@
-//! One flight's plant: a vehicle, its surroundings and what it really is in; state, wind and what the sensors feel out.
+//! One flight's plant: a vehicle, its surroundings and its true figures in; state, wind and ideal sensor readings out.
 
 use nalgebra::{Vector3, Vector4};
 use quatrack_design::vehicle::Vehicle;
@@ -124,8 +124,8 @@ impl Plant {
         self
     }
 
-    /// Gives commands, N, and flies on for a time, s: Runge-Kutta 4 in steps of at most 2 ms, between which the voltage, and
-    /// in which the slope of the wind stays the same. Steps end where delayed commands begin to act.
+    /// Gives commands, N, and flies on for a time, s: Runge-Kutta 4 in steps of at most 2 ms, between which the
+    /// voltage, and in which the slope of the wind stays the same. Steps end where delayed commands begin to act.
     pub fn advance(&mut self, commands_n: &Vector4<f64>, duration_s: f64) {
         self.line.give(self.time_s, commands_n);
         let end_s = self.time_s + duration_s;
@@ -205,7 +205,7 @@ impl Plant {
         self.converter.limits_n.map(|limit_n| self.goals_n(Some(self.converter.acting(&Vector4::repeat(limit_n)))))
     }
 
-    /// What is felt at the centre of mass under the commands that act now.
+    /// Specific force at the centre of mass under the commands that act now.
     pub fn motion(&mut self) -> Motion {
         let (commands_n, _) = self.line.at(self.time_s);
         let goals_n = self.goals_n(commands_n.map(|commands_n| self.converter.acting(&commands_n)));

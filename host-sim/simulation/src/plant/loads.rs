@@ -1,4 +1,4 @@
-//! What pushes a craft besides its motors: time and state in, force and torque out.
+//! Forces on a craft besides its motors': time and state in, force and torque out.
 
 use nalgebra::Vector3;
 use quatrack_design::vehicle::{ROTOR_SIDES, Vehicle};

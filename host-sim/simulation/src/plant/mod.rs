@@ -1,19 +1,19 @@
 //! Plants to fly against: commanded motor forces in, the motion of a craft out.
 //!
 //! A [`Craft`] is put together from parts that know nothing of each other: a [`RigidBody`] that turns forces and torques
-//! into motion, a [`MotorBank`] that turns commands into thrusts and their sum into force and torque, an [`Airflow`] for what
-//! the air does to it, and any number of [`Load`]s, whatever else pushes the body. Its state is position, velocity (world
-//! frame), attitude, body rates (body frame) and the four thrusts. A [`Plant`] is a craft in one flight: with a wind that
-//! blows, commands on their way, and a battery that empties. Sensors belong to the flight.
+//! into motion, a [`MotorBank`] that turns commands into thrusts and their sum into force and torque, an [`Airflow`]
+//! for what the air does to it, and any number of [`Load`]s, whatever else pushes the body. Its state is position,
+//! velocity (world frame), attitude, body rates (body frame) and the four thrusts. A [`Plant`] is a craft in one
+//! flight: with a wind that blows, commands on their way, and a battery that empties. Sensors belong to the flight.
 //!
 //! ```text
 //! in_flight                Plant: one flight's craft, wind, delay, battery
-//!   environment            what a flight takes place in, and what the craft really is; checked once
+//!   environment            the surroundings of a flight and the true figures of its craft; checked once
 //!   craft                  the equations of motion, and their steps
 //!     air, propeller       drag, moment, lift; momentum and speed of the rotors
 //!     motors, body         lag and limits; mass and inertia
 //!     loads, contact, ground_effect
-//!   wind, dryden, random   what the air does; turbulence; numbers that repeat
+//!   wind, dryden, random   motion of the air; turbulence; numbers that repeat
 //!   supply, delay          force by command and voltage, battery; transport delay
 //! ```
 

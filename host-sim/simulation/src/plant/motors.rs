@@ -27,7 +27,7 @@ pub struct Motor {
 pub struct MotorBank {
     /// Each motor.
     pub motors: [Motor; 4],
-    /// What turns on each, where its speed counts: for its momentum, its own torque and its drag.
+    /// The propeller on each, where its speed counts: for its momentum, its own torque and its drag.
     pub propeller: Option<Propeller>,
     /// Torque that is always there, body frame, N m.
     pub torque_bias_n_m: Vector3<f64>,
@@ -92,7 +92,7 @@ impl MotorBank {
         })
     }
 
-    /// What the speeds of the propellers add to force and torque, body frame: their torque where it is not in proportion to
+    /// The share of the propellers' speeds in force and torque, body frame: their torque where it is not in proportion to
     /// the thrust, `-h' z - omega x h z` of their momentum h, and the drag of each that moves through the air.
     pub(super) fn turning(
         &self,

@@ -22,8 +22,8 @@ pub struct SpeedResponse {
     pub fall: [f64; 2],
 }
 
-/// Speed below which a rotor is taken to idle, rad/s: hundredths of what lifts a small craft. Its momentum stays the same
-/// there, since its rate by thrust has no bound at rest.
+/// Speed below which a rotor is taken to idle, rad/s: hundredths of the speed that lifts a small craft. Its momentum
+/// stays the same there, since its rate by thrust has no bound at rest.
 const IDLE_RAD_S: f64 = 10.0;
 
 impl Propeller {

@@ -4,7 +4,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng as _;
 use rand_distr::{Distribution as _, StandardNormal};
 
-/// What draws numbers. Each has a stream of its own, so that a flight keeps its wind when a sensor is switched off.
+/// The parts of a flight that draw numbers. Each has a stream of its own, so that a flight keeps its wind when a sensor
+/// is switched off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Source {
@@ -26,7 +27,8 @@ pub enum Source {
     Timing = 7,
 }
 
-/// Normally distributed numbers of one source: ChaCha with eight rounds, whose key is the seed and whose nonce is the source.
+/// Normally distributed numbers of one source: ChaCha with eight rounds, whose key is the seed and whose nonce is the
+/// source.
 #[derive(Clone, Debug)]
 pub struct Stream(ChaCha8Rng);
 

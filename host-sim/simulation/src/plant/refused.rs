@@ -8,9 +8,9 @@ pub struct PlantError {
     pub key: &'static str,
     /// The figure.
     pub value: f64,
-    /// What it must be.
+    /// The range that it must be in.
     pub range: String,
-    /// What it means, or what to do.
+    /// Its meaning, or a remedy.
     pub remedy: &'static str,
 }
 

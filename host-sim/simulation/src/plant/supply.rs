@@ -1,12 +1,13 @@
-//! From a command to the force that a motor gives for it: a map by powers of command and voltage, and the battery behind it.
+//! From a command to the force that a motor gives for it: a map by powers of command and voltage, and the battery
+//! behind it.
 
 use quatrack_design::vehicle::{BatteryFigures, Vehicle};
 
 /// Ten equal shares of the charge lie between the voltages of a battery's curve.
 pub const CURVE_POINTS: usize = 11;
 
-/// `F = c u^p (V / V_0)^q`, with the command `u` from 0 to 1 as the share of the most that the law believes in. The most that a
-/// motor gives is F at u = 1: it falls with the voltage.
+/// `F = c u^p (V / V_0)^q`, with the command `u` from 0 to 1 as the share of the most that the law believes in. The
+/// most that a motor gives is F at u = 1: it falls with the voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceMap {
     /// Force at full command and the voltage `V_0`, N.
@@ -34,7 +35,7 @@ impl ForceMap {
 /// A battery: a voltage that falls with the charge that is taken and with the current.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Battery {
-    /// What it holds, A s.
+    /// Its charge, A s.
     pub capacity_a_s: f64,
     /// Open-circuit voltage from empty to full, at equal shares of the charge, V.
     pub open_circuit_v: [f64; CURVE_POINTS],
@@ -71,7 +72,7 @@ impl Battery {
     }
 }
 
-/// What the motors run on.
+/// The source of the motors' voltage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Supply {
     /// Always the same, V.

@@ -8,8 +8,8 @@ use super::random::{Source, Stream};
 /// Period of the turbulence's grid, s; between its points the wind is a straight line.
 const PERIOD_S: f64 = 0.002;
 
-/// A gust that rises as one minus a cosine, stays, and falls likewise. With no stay it is that of CS-25.341; with an endless
-/// one that of MIL-F-8785C, 3.7.3.
+/// A gust that rises as one minus a cosine, stays, and falls likewise. With no stay it is that of CS-25.341; with an
+/// endless one that of MIL-F-8785C, 3.7.3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gust {
     /// At its height, world frame, m/s.
@@ -32,7 +32,7 @@ impl Gust {
     }
 }
 
-/// What the air does.
+/// Motion of the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wind {
     /// Mean velocity of the air, world frame, m/s.

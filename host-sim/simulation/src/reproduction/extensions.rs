@@ -26,11 +26,11 @@ use crate::flight::core_loop::CoreLoop;
 use crate::flight::metrics::Metrics;
 use crate::flight::reference::{Exact, Reference as _};
 
-/// Rates at which the core is flown, and for which the sampled designs are made, Hz. At the slowest one a hold is longer than
-/// the paper's LQR-E bears.
+/// Rates at which the core is flown, and for which the sampled designs are made, Hz. At the slowest one a hold is
+/// longer than the paper's LQR-E bears.
 pub const RATES_HZ: [u32; 3] = [25, 100, 500];
 
-/// Weight of each integral in LQI-E, beside the paper's weights of the errors: half of what the position has.
+/// Weight of each integral in LQI-E, beside the paper's weights of the errors: half of the position's.
 const INTEGRAL_WEIGHT: f64 = 50.0;
 
 /// How a gain is designed, and with it the law.

@@ -1,5 +1,5 @@
 //! The paper's Table I: both trajectories, all four controllers, as published and as they should be; a table with a
-//! verdict per cell out. And what lies past it: more designs, feed-forward, held commands.
+//! verdict per cell out. And past it: more designs, feed-forward, held commands.
 
 pub mod extensions;
 mod extensions_report;

@@ -33,7 +33,7 @@ pub struct ReproductionReport<'a> {
 }
 
 impl<'a> ReproductionReport<'a> {
-    /// The same with what lies past the paper.
+    /// The same with the part past the paper.
     pub fn with(self, beyond: Option<&'a Extensions>) -> Self {
         Self { beyond, ..self }
     }
@@ -108,7 +108,7 @@ impl Reproduction {
     }
 }
 
-/// An IAE to four digits; below what an integrator can tell from zero it says so.
+/// An IAE to four digits; below an integrator's own error it says so.
 pub fn digits(iae: Option<f64>) -> String {
     const RESOLUTION: f64 = 1e-6;
     match iae {

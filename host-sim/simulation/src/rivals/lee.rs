@@ -1,9 +1,9 @@
 //! Lee, Leok and McClamroch, "Geometric tracking control of a quadrotor UAV on SE(3)" (CDC 2010), section III, equations
 //! (15) and (16).
 //!
-//! `F = a + g z - k_x e_x - k_v e_v` a unit of mass, the thrust its part along the craft's axis, the wanted attitude that of
-//! [`attitude_along`], `tau = -k_R e_R - k_W e_W + W x J W`. The firmware adds integrals of position and rotation error and
-//! leaves out the paper's last term, the wanted angular acceleration.
+//! `F = a + g z - k_x e_x - k_v e_v` a unit of mass, the thrust its part along the craft's axis, the wanted attitude
+//! that of [`attitude_along`], `tau = -k_R e_R - k_W e_W + W x J W`. The firmware adds integrals of position and
+//! rotation error and leaves out the paper's last term, the wanted angular acceleration.
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 
@@ -42,7 +42,7 @@ pub struct LeeConfig {
 }
 
 impl LeeConfig {
-    /// What `controller_lee.c` documents, for a mass that is known. Gains and inertia are the same for every craft there.
+    /// The gains that `controller_lee.c` documents, for a known mass. Gains and inertia are the same for every craft there.
     pub fn firmware(mass_kg: f64) -> Self {
         Self {
             mass_kg,
@@ -59,7 +59,7 @@ impl LeeConfig {
     }
 }
 
-/// The law with what it remembers.
+/// The law with its memory.
 #[derive(Clone, Debug)]
 pub struct Lee {
     config: LeeConfig,
@@ -165,8 +165,8 @@ mod tests {
 
     #[test]
     fn a_case_by_hand() {
-        // At rest, pitched by 0.3 rad and wanted upright, turning about all axes: thrust m g cos 0.3; e_R = sin 0.3 about y;
-        // W x J W = (W_y W_z (J_z - J_y), W_z W_x (J_x - J_z), W_x W_y (J_y - J_x)).
+        // At rest, pitched by 0.3 rad and wanted upright, turning about all axes: thrust m g cos 0.3; e_R = sin 0.3
+        // about y; W x J W = (W_y W_z (J_z - J_y), W_z W_x (J_x - J_z), W_x W_y (J_y - J_x)).
         let mut input = hover();
         input.estimate.attitude = attitude(0.0, 0.3);
         input.estimate.body_rates_rad_s = Vector3::new(1.0, 2.0, 3.0);

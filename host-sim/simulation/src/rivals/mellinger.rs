@@ -1,8 +1,8 @@
 //! Mellinger and Kumar, "Minimum snap trajectory generation and control for quadrotors" (ICRA 2011), section IV.
 //!
 //! `F = -K_p e_p - K_v e_v + m g z + m a`, the thrust its part along the craft's axis, the wanted attitude that of
-//! [`attitude_along`], `tau = -K_R e_R - K_w e_w`. The firmware adds integrals of position and rotation error, a term in the
-//! derivative of the rates' error, and limits.
+//! [`attitude_along`], `tau = -K_R e_R - K_w e_w`. The firmware adds integrals of position and rotation error, a term
+//! in the derivative of the rates' error, and limits.
 
 use nalgebra::{Matrix3, Vector3, Vector4};
 
@@ -18,8 +18,9 @@ const RATE_HZ: u32 = 500;
 pub struct MellingerConfig {
     /// Mass that the law reckons with, kg.
     pub mass_kg: f64,
-    /// Thrust that comes of 1 N asked for. It is 1 where the law knows the force of its motors. The firmware's own factor of
-    /// force to command, `massThrust = 132000` for every craft, makes it 0.967 with motors of 0.12 N, 1.450 with 0.18 N and
+    /// Thrust that comes of 1 N asked for. It is 1 where the law knows the force of its motors. The firmware's own
+    /// factor of force to command, `massThrust = 132000` for every craft, makes it 0.967 with motors of 0.12 N, 1.450
+    /// with 0.18 N and
     /// 1.611 with 0.2 N.
     pub thrust_factor: f64,
     /// `K_p`, N/m.
@@ -45,7 +46,7 @@ pub struct MellingerConfig {
 }
 
 impl MellingerConfig {
-    /// What `controller_mellinger.c` documents, for a mass that is known and motors whose force is.
+    /// The gains that `controller_mellinger.c` documents, for a known mass and a known motor force.
     ///
     /// Its rotation error is twice the paper's, so its gains and integrals of it are turned into those of the paper's.
     pub fn firmware(mass_kg: f64, actuation: &Actuation) -> Self {
@@ -68,7 +69,7 @@ impl MellingerConfig {
     }
 }
 
-/// The law with what it remembers.
+/// The law with its memory.
 #[derive(Clone, Debug)]
 pub struct Mellinger {
     config: MellingerConfig,
@@ -189,7 +190,8 @@ mod tests {
 
     #[test]
     fn integrals_end_where_the_firmware_ends_them() {
-        // 10 m too low for a second is an integral of 10 m s, ended at 0.4: 0.05 * 0.4 = 0.02 N. Ahead by 1 m for 3 s: 2 m s.
+        // 10 m too low for a second is an integral of 10 m s, ended at 0.4: 0.05 * 0.4 = 0.02 N. Ahead by 1 m for 3 s:
+        // 2 m s.
         let config = MellingerConfig::firmware(MASS_KG, &actuation());
         let unbounded = MellingerConfig { torque_max_n_m: Vector3::repeat(1.0), ..config };
         let mut law = Mellinger::new(unbounded, actuation());

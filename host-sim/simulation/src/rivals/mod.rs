@@ -1,9 +1,9 @@
-//! The field's control laws, written from their papers, as rivals for the same scenario: Mellinger and Kumar 2011, Lee, Leok
-//! and McClamroch 2010, and the cascaded PID.
+//! The field's control laws, written from their papers, as rivals for the same scenario: Mellinger and Kumar 2011, Lee,
+//! Leok and McClamroch 2010, and the cascaded PID.
 //!
 //! Each has the gains, the integral terms, the limits and the rates that the Crazyflie's firmware documents for it
-//! (bitcraze/crazyflie-firmware 2a18fc29, of 2026-08-21), turned into SI; its configuration is apart from its state. All end
-//! in a force and a torque, which [`Actuation::forces_n`] gives to the motors as the firmware does.
+//! (bitcraze/crazyflie-firmware 2a18fc29, of 2026-08-21), turned into SI; its configuration is apart from its state.
+//! All end in a force and a torque, which [`Actuation::forces_n`] gives to the motors as the firmware does.
 
 mod lee;
 mod mellinger;
@@ -29,7 +29,7 @@ pub struct ForceTorque {
     pub torque_n_m: Vector3<f64>,
 }
 
-/// Four equal motors in an X: what force and torque come from, and what commands in the firmware's numbers stand for.
+/// Four equal motors in an X: force and torque from commands in the firmware's numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Actuation {
     /// Distance of the rotors from the body's x and y axes, m.

@@ -15,17 +15,17 @@ use quatrack_design::vehicle::Vehicle;
 const RATE_HZ: u32 = 500;
 /// Control steps between two of position and velocity: `POSITION_RATE` is 100 Hz.
 const POSITION_STEPS: u32 = 5;
-/// What its outputs about the axes are cut to, in the firmware's numbers: those of 16 bits.
+/// Limit of its outputs about the axes, in the firmware's numbers: those of 16 bits.
 const TORQUE_MAX: f64 = 32_767.0;
 
-/// Gains and limits of one PID, output in units of its output, error in units of what is measured.
+/// Gains and limits of one PID, output in units of its output, error in units of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PidConfig {
     /// Of the error.
     pub proportional: f64,
     /// Of its integral.
     pub integral: f64,
-    /// Of the derivative of what is measured, taken off.
+    /// Of the derivative of the measurement, taken off.
     pub derivative: f64,
     /// Most of the integral, error times s.
     pub integral_max: f64,
@@ -33,7 +33,7 @@ pub struct PidConfig {
     pub output_max: f64,
 }
 
-/// A PID with what it remembers: `u = k_p e + k_i int e - k_d y'`.
+/// A PID with its memory: `u = k_p e + k_i int e - k_d y'`.
 #[derive(Clone, Copy, Debug)]
 pub struct Pid {
     config: PidConfig,
@@ -47,7 +47,7 @@ impl Pid {
         Self { config, integral: 0.0, measured_before: None }
     }
 
-    /// One step of `period_s`: from what is wanted and measured to the output.
+    /// One step of `period_s`: from target and measurement to the output.
     pub fn step(&mut self, wanted: f64, measured: f64, period_s: f64) -> f64 {
         self.step_by(wanted - measured, measured - self.measured_before.unwrap_or(measured), measured, period_s)
     }
@@ -94,7 +94,7 @@ pub struct CascadedPidConfig {
 }
 
 impl CascadedPidConfig {
-    /// What `platform_defaults_cf2.h` and `platform_defaults_cf21bl.h` document for a vehicle, with
+    /// The gains that `platform_defaults_cf2.h` and `platform_defaults_cf21bl.h` document for a vehicle, with
     /// `position_controller_pid.c` and `attitude_pid_controller.c`.
     ///
     /// The Brushless has its own gains of roll and pitch rates and its own base thrust, every other craft those of the
@@ -138,7 +138,7 @@ impl CascadedPidConfig {
     }
 }
 
-/// The law with what it remembers.
+/// The law with its memory.
 #[derive(Clone, Debug)]
 pub struct CascadedPid {
     config: CascadedPidConfig,
@@ -250,8 +250,8 @@ mod tests {
         let mut law = law();
         let output = law.force_torque(&hover());
         assert!((output.force_n - 36_000.0 * 0.48 / 65_535.0).abs() < 1e-15 && output.torque_n_m.norm() < 1e-18);
-        // 1 mm too low for 1 s, at rest: 2e-3 + 0.5e-3 m/s wanted at its end, 25 of it by proportion and 15 by integral, which
-        // is 2e-3 s + 0.25e-3 s; the sums of 100 steps of 10 ms are 1 % above the integral of the integral.
+        // 1 mm too low for 1 s, at rest: 2e-3 + 0.5e-3 m/s wanted at its end, 25 of it by proportion and 15 by
+        // integral, which is 2e-3 s + 0.25e-3 s; the sums of 100 steps of 10 ms are 1 % above the integral of the integral.
         let mut input = hover();
         input.estimate.position_m.z = -1e-3;
         let mut output = ForceTorque::default();

@@ -20,7 +20,7 @@ pub enum VehicleFileError {
     Unreadable {
         /// Which file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's message.
         reason: String,
     },
     /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
@@ -28,15 +28,15 @@ pub enum VehicleFileError {
     Syntax {
         /// Where, from 1.
         line: usize,
-        /// What the parser says, in one line.
+        /// The parser's message, in one line.
         reason: String,
     },
-    /// What is wrong in a file.
+    /// An error in a file.
     #[error("{}: {error}", path.display())]
     File {
         /// Which.
         path: PathBuf,
-        /// What is wrong.
+        /// The error.
         error: Box<VehicleFileError>,
     },
     /// A name or a figure that no vehicle has.

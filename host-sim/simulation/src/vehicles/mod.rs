@@ -1,4 +1,5 @@
-//! Vehicles by name or from TOML files, and what the core keeps of them: limits in f32 and a number that tells them apart.
+//! Vehicles by name or from TOML files, and the part that the core keeps of them: limits in f32 and a number that tells
+//! them apart.
 //!
 //! The built-in ones are in `gains/vehicles`, each figure with its source beside it.
 
@@ -12,12 +13,13 @@ use quatrack_design::vehicle::{Vehicle, VehicleError, VehicleFile};
 
 pub use error::VehicleFileError;
 
-/// The built-in vehicles: what they are asked for by, their own name, which is short enough for a table, and their file.
+/// The built-in vehicles: the name they are asked for by, their own name, which is short enough for a table, and their
+/// file.
 const BUILT_IN: [(&str, &str, &str); 4] = [
     ("crazyflie-2.1", "crazyflie-2.1", include_str!("../../../../gains/vehicles/crazyflie-2.1.toml")),
     (
         "crazyflie-2.1-upgrade-kit",
-        "crazyflie-2.1-upgrade",
+        "crazyflie-2.1-upgrade-kit",
         include_str!("../../../../gains/vehicles/crazyflie-2.1-upgrade-kit.toml"),
     ),
     (
@@ -52,7 +54,7 @@ pub fn by_name(name: &str) -> Result<Vehicle, VehicleFileError> {
 /// A vehicle from the text of a file.
 ///
 /// # Errors
-/// [`VehicleFileError::Syntax`] for what is not TOML of this form; [`VehicleFileError::Refused`] for a figure out of
+/// [`VehicleFileError::Syntax`] for a text that is not TOML of this form; [`VehicleFileError::Refused`] for a figure out of
 /// range.
 pub fn from_toml(text: &str) -> Result<Vehicle, VehicleFileError> {
     let file: VehicleFile = toml::from_str(text).map_err(|error| syntax(text, &error))?;
@@ -69,7 +71,7 @@ pub fn from_file(path: &Path) -> Result<Vehicle, VehicleFileError> {
     from_toml(&text).map_err(|error| VehicleFileError::File { path: path.to_owned(), error: Box::new(error) })
 }
 
-/// What commands of thrust and body rates are cut to on board.
+/// The limits of commands of thrust and body rates on board.
 ///
 /// # Errors
 /// [`VehicleError::Value`] where a limit vanishes in the rounding to f32.

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, Vector3};
 use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
 use quatrack::gains::cascade as tables;
+use quatrack::gains::table::{BuiltInCascade, CascadeTable};
 use quatrack::{FifthOrderSample, Heading, Quaternion, Rate, State};
 use quatrack_design::certify::cascade::{CascadeChain, CascadeCraft, CascadeRegion, CascadeVariation};
 use quatrack_design::design::cascade::{CascadeWeights, cascade};
@@ -36,7 +37,7 @@ fn the_gains_are_those_of_another_solver() {
 
 #[test]
 fn the_tables_in_the_core_are_the_designs() {
-    for (name, lag_s, table) in [
+    for (name, lag_s, built_in) in [
         ("crazyflie-2.1-brushless", 0.05, tables::BRUSHLESS_50_MS),
         ("crazyflie-2.1-brushless", 0.02, tables::BRUSHLESS_20_MS),
         ("crazyflie-2.1", 0.1, tables::CRAZYFLIE_2_1_100_MS),
@@ -46,8 +47,9 @@ fn the_tables_in_the_core_are_the_designs() {
         ("crazyflie-2.1-upgrade-kit", 0.0635, tables::UPGRADE_KIT_63_MS),
         ("crazyflie-2.1-upgrade-kit", 0.02, tables::UPGRADE_KIT_20_MS),
     ] {
-        let (_, numbers) = designed(name, lag_s);
-        for (designed, held) in numbers.into_iter().zip(table.numbers()) {
+        let (vehicle, numbers) = designed(name, lag_s);
+        assert_eq!(built_in.vehicle.id, vehicles::id(&vehicle), "{name}");
+        for (designed, held) in numbers.into_iter().zip(built_in.table.gains.numbers()) {
             // A rounding to f32, and one more where another processor's last bits differ.
             assert!((designed / f64::from(held) - 1.0).abs() < 1.3e-7, "{name}: {designed} {held}");
         }
@@ -166,16 +168,20 @@ fn the_certificates_loop_is_the_cores() {
     }
 }
 
-/// The default tables and those for a stated lag: vehicle, lag of the design, lags certified for, air told.
-const TABLES: [(&str, f64, [f64; 2], Air); 5] = [
-    ("crazyflie-2.1-brushless", 0.05, [0.025, 0.075], Air::BRUSHLESS),
-    ("crazyflie-2.1", 0.1, [0.05, 0.126], Air::BRUSHED),
-    ("crazyflie-2.1", 0.0635, [0.032, 0.095], Air::BRUSHED),
-    ("crazyflie-2.1", 0.02, [0.010, 0.030], Air::BRUSHED),
-    ("crazyflie-2.1-upgrade-kit", 0.1, [0.05, 0.126], Air::BRUSHED),
-];
+/// Every built-in table with its vehicle.
+fn built_in() -> Vec<(Vehicle, BuiltInCascade)> {
+    [
+        ("crazyflie-2.1-brushless", tables::BRUSHLESS),
+        ("crazyflie-2.1", tables::CRAZYFLIE_2_1),
+        ("crazyflie-2.1-upgrade-kit", tables::UPGRADE_KIT),
+    ]
+    .into_iter()
+    .flat_map(|(name, tables)| tables.map(|table| (vehicles::by_name(name).unwrap(), table)))
+    .collect()
+}
 
-fn craft_in_air(vehicle: &Vehicle, numbers: [f64; 16], lag_s: f64, air: &Air) -> CascadeCraft {
+fn craft_in_air(vehicle: &Vehicle, table: &CascadeTable) -> CascadeCraft {
+    let (numbers, lag_s, air) = (table.gains.numbers().map(f64::from), f64::from(table.motor_lag_s), &table.air);
     let told = air.moment_n_s.map(f64::from);
     CascadeCraft {
         // 80 % of the identified air are told.
@@ -189,9 +195,10 @@ fn craft_in_air(vehicle: &Vehicle, numbers: [f64; 16], lag_s: f64, air: &Air) ->
 
 #[test]
 fn every_table_is_stable_over_its_region_in_air() {
-    for (name, lag_s, [shortest_s, longest_s], air) in TABLES {
-        let (vehicle, numbers) = designed(name, lag_s);
-        let craft = craft_in_air(&vehicle, numbers, lag_s, &air);
+    for (vehicle, BuiltInCascade { table, .. }) in built_in() {
+        let (name, lag_s) = (vehicle.name(), table.motor_lag_s);
+        let [shortest_s, longest_s] = table.certified.motor_lag_s.map(f64::from);
+        let craft = craft_in_air(&vehicle, &table);
         // The ends of everything, of the lags the middle as well.
         let ends = |values: &[f64]| vec![values[0], values[values.len() - 1]];
         let all = CascadeRegion::in_air(shortest_s, longest_s);
@@ -219,9 +226,11 @@ fn every_table_is_stable_over_its_region_in_air() {
 
 #[test]
 fn every_table_has_margins_in_air() {
-    for (name, lag_s, _, air) in TABLES {
-        let (vehicle, numbers) = designed(name, lag_s);
-        let craft = craft_in_air(&vehicle, numbers, lag_s, &air);
+    for (vehicle, BuiltInCascade { table, margins: stated, delay_max_s, .. }) in built_in() {
+        let name = vehicle.name();
+        let craft = craft_in_air(&vehicle, &table);
+        let lag_s = craft.lag_s;
+        let (mut least_gain, mut least_delay) = (f64::INFINITY, f64::INFINITY);
         for chain in CascadeChain::ALL {
             let at = CascadeVariation {
                 drag_per_s: craft.told_drag_per_s / 0.8,
@@ -236,8 +245,13 @@ fn every_table_has_margins_in_air() {
             println!(
                 "{name}, {lag_s} s, {chain:?}: gain {gain:.2}, phase {phase_deg:.1} degrees, delay {delay_ms:.1} ms"
             );
+            (least_gain, least_delay) = (least_gain.min(gain), least_delay.min(margins.delay_s));
             let least = if matches!(chain, CascadeChain::X | CascadeChain::Y) { 1.8 } else { 2.0 };
             assert!(gain > least && phase_deg > 32.0 && margins.delay_s >= 0.02, "{name} {chain:?}: {margins:?}");
+        }
+        // The table states a little less: rounded down to four digits.
+        for (stated, found) in [(stated.gain_factor, least_gain), (delay_max_s, least_delay)] {
+            assert!((0.999..=1.0).contains(&(f64::from(stated) / found)), "{name} {lag_s}: {stated} {found}");
         }
     }
 }

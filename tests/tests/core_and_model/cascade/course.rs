@@ -1,4 +1,4 @@
-//! What is flown: position, velocity, acceleration, jerk and heading over time.
+//! The courses: position, velocity, acceleration, jerk and heading over time.
 
 use nalgebra::Vector3;
 /// Position and its derivatives to the jerk; heading, its rate and acceleration.

@@ -24,7 +24,7 @@ pub(crate) enum Estimates {
 pub(crate) const NOISE: Estimates = Estimates::Noisy([1e-3, 1e-2, 0.02, 0.0]);
 pub(crate) const EXACT: Estimates = Estimates::Noisy([0.0; 4]);
 
-/// What happens around a flight.
+/// The surroundings and faults of a flight.
 #[derive(Clone)]
 pub(crate) struct Flight<'a> {
     pub(crate) cascade: Cascade,

@@ -1,7 +1,7 @@
 //! Flights of identified crafts in air, of which the controller is told 80 %: position error integrated over 12 s.
 //!
-//! The bounds lie 10 to 30 % above what is measured with this seed; Bitcraze's best stock controllers leave 10 to 70 times as much on
-//! the same figures and plants.
+//! The bounds lie 10 to 30 % above the figures measured with this seed; Bitcraze's best stock controllers leave 10 to
+//! 70 times as much on the same figures and plants.
 
 use nalgebra::Vector3;
 use quatrack::cascade::{Air, Cascade, CascadeMemory};
@@ -16,7 +16,7 @@ const EIGHT: Course = Course::Eight { w: 1.485, turn: 0.0 };
 const FAST: Course = Course::Eight { w: 2.19, turn: 0.0 };
 const STEP: Course = Course::Step { to: Vector3::new(1.0, 0.0, 0.0), yaw: 0.0, at_s: 2.0 };
 
-/// Both crafts, with what they are told.
+/// Both crafts, with the figures that they are told.
 fn crafts() -> [(Craft, Cascade); 2] {
     [(BRUSHLESS, brushless(&Air::BRUSHLESS)), (BRUSHED, brushed(&Air::BRUSHED))]
 }

@@ -6,7 +6,7 @@ pub(crate) const GRAVITY: f64 = 9.81;
 /// Step of the integration, s.
 pub(crate) const STEP_S: f64 = 0.0005;
 
-/// What a craft really is.
+/// The true figures of a craft.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Craft {
     pub(crate) mass_kg: f64,

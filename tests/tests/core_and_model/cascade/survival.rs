@@ -14,17 +14,17 @@ fn goal(x: f64, z: f64, yaw_deg: f64) -> Course {
 
 #[test]
 fn a_goal_is_reached_within_its_limits_however_far() {
-    // Without a moment of the air, of which some is told: one centimetre.
+    // A centimetre beyond it at most, with a moment of the air of which 80 % are told, and told of one that is not there.
     let still = |craft: Craft| Craft { moment: [0.0; 2], ..craft };
-    for (craft, cascade, beyond) in [
-        (BRUSHLESS, brushless(&Air::BRUSHLESS), 0.032),
-        (BRUSHED, brushed(&Air::BRUSHED), 0.025),
-        (still(BRUSHLESS), brushless(&Air::BRUSHLESS), 0.01),
-        (still(BRUSHED), brushed(&Air::BRUSHED), 0.01),
+    for (craft, cascade) in [
+        (BRUSHLESS, brushless(&Air::BRUSHLESS)),
+        (BRUSHED, brushed(&Air::BRUSHED)),
+        (still(BRUSHLESS), brushless(&Air::BRUSHLESS)),
+        (still(BRUSHED), brushed(&Air::BRUSHED)),
     ] {
         for (distance, for_s) in [(0.1, 5.0), (1.0, 5.0), (4.5, 8.0), (50.0, 32.0)] {
             let across = Flight { for_s, ..Flight::of(cascade, craft, goal(distance, 0.0, 0.0)) }.fly();
-            assert!(!across.lost && across.beyond < beyond, "{distance}: {across:?}");
+            assert!(!across.lost && across.beyond < 0.01, "{distance}: {across:?}");
             assert!(across.tilt_deg < 55.0 && across.speed < 2.25 && across.lowest > 0.95, "{distance}: {across:?}");
             assert!(across.final_error < 0.02, "{distance}: {across:?}");
         }
@@ -40,7 +40,7 @@ fn a_turn_with_a_step_keeps_height() {
             for distance in [0.1, 1.0, 2.0] {
                 let found = Flight::of(cascade, craft, goal(distance, 0.0, yaw_deg)).fly();
                 assert!(!found.lost && found.final_error < 0.02, "{yaw_deg} {distance}: {found:?}");
-                assert!(found.tilt_deg < 46.0 && found.lowest > 0.95, "{yaw_deg} {distance}: {found:?}");
+                assert!(found.tilt_deg < 45.0 && found.lowest > 0.95, "{yaw_deg} {distance}: {found:?}");
             }
         }
     }

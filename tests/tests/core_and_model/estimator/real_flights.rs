@@ -139,7 +139,7 @@ fn rms(pairs: impl Iterator<Item = Vector3<f64>>) -> (Vector3<f64>, f64) {
     (mean.map(f64::sqrt), mean.sum().sqrt())
 }
 
-/// What came of a flight.
+/// The result of a flight.
 struct Found {
     /// Ours to that on board, after the shift at which they are nearest: each axis, and the distance, m.
     axes: Vector3<f64>,

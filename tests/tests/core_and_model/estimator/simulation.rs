@@ -1,4 +1,4 @@
-//! A craft in air, flown on an eight by a simple law that knows its true state, and what its sensors measure. f64, 1
+//! A craft in air, flown on an eight by a simple law that knows its true state, and its sensors' readings. f64, 1
 //! kHz.
 
 use nalgebra::{UnitQuaternion, Vector3};
@@ -102,7 +102,7 @@ impl Flight {
         Self { truth, noise: Normal::new(seed), steps: 0 }
     }
 
-    /// A millisecond on: what gyroscope and accelerometer measure in it.
+    /// A millisecond on: the readings of gyroscope and accelerometer in it.
     pub(crate) fn step(&mut self) -> Imu {
         let time = f64::from(self.steps) * STEP_S;
         self.steps += 1;

@@ -1,4 +1,4 @@
-//! The same filter in f64 with whole matrices of nine rows: what the blocks and f32 leave of it.
+//! The same filter in f64 with whole matrices of nine rows, beside the blocks in f32.
 
 use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use quatrack::estimator::{Estimate, Estimator, EstimatorConfig, Imu, ImuAverager};
@@ -77,7 +77,7 @@ impl Twin {
         let gain = self.covariance * h.transpose() * expected;
         let error: Vector9 = gain * difference;
         let left = Matrix9::identity() - gain * h;
-        // What the filter adds for its roundings, so that they stay without harm.
+        // The filter's allowance for its roundings.
         let widened = Matrix9::from_diagonal(&(self.covariance.diagonal() * 2e-6));
         self.covariance = left * self.covariance * left.transpose() + gain * noise * gain.transpose();
         self.position += error.fixed_rows::<3>(0);

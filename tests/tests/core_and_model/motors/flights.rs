@@ -49,7 +49,7 @@ fn the_figure_eight_at_two_metres_a_second_is_flown_within_a_twentieth_of_a_mill
             let start = on(&eight.reference(0.0, &airframe));
             let (errors, _) = fly(&craft, &controller, 12.0, start, |t| eight.reference(t, &airframe));
             let iae = errors.iter().sum::<f64>() / f64::from(RATE_HZ);
-            // 0.00026 to 0.00053 m s: what is left of the forces' curvature over a period of 2 ms. Commands that are not ahead
+            // 0.00026 to 0.00053 m s: the forces' curvature over a period of 2 ms. Commands that are not ahead
             // by half of it: 0.00074 to 0.0013.
             assert!(iae < 6e-4, "lag {lag_s}: {iae} m s");
         }

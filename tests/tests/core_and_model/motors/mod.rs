@@ -1,5 +1,5 @@
-//! From the laws to the motors: airframes, mixer, body-rate loop, references carried to the forces, and the actuator-aware law
-//! against the rigid plant.
+//! From the laws to the motors: airframes, mixer, body-rate loop, references carried to the forces, and the
+//! actuator-aware law against the rigid plant.
 
 mod airframes;
 mod flights;
@@ -84,7 +84,7 @@ fn on(reference: &MotorReference) -> plant::RigidState {
     }
 }
 
-/// What an ideal estimator says of the plant.
+/// An ideal estimate of the plant's state.
 fn measured(x: &plant::RigidState) -> RigidState {
     let q = x.attitude.quaternion();
     RigidState {

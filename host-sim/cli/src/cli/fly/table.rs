@@ -58,11 +58,9 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Descri
         }
     }
     let settings = Settings {
-        limits: Limits::NONE,
-        actuation: None,
         feed_forward: args.feed_forward(),
         error_form: args.error_form(),
-        player_rate: rate,
+        ..Settings::new(Limits::NONE, rate)
     };
     let law = accepted.law(&settings).map_err(|error| refused(path, &error))?;
     let limits = args

@@ -1,5 +1,7 @@
 //! `quatrack gains show`: a design, or a file made of one, in; its table and its figures, for a person, out.
 
+mod cascade;
+
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -75,10 +77,13 @@ fn of_document(document: &Value) -> String {
         let gains: Vec<_> = gain["k"].as_array().into_iter().flatten().map(entries).collect();
         let _ = writeln!(out, "  {}", told_knots(gains.len(), &knots["steps_per_knot"], &knots["trajectory"]));
         out += &over_time(&rows, &columns, &gains);
+    } else if design["method"] == "cascade" {
+        let gains: Vec<f64> = entries(&gain["k"]).concat();
+        out += &cascade::chains(&columns, &gains);
     } else {
         out += &matrix(&rows, &columns, &entries(&gain["k"]));
     }
-    out + "\n" + &figures(document)
+    out + "\n" + &cascade::of_document(document) + &figures(document)
 }
 
 fn told_knots(count: usize, steps_per_knot: &Value, trajectory: &Value) -> String {
@@ -132,8 +137,13 @@ fn of_table(table: &Table) -> String {
         let _ = writeln!(out, "  {}", told_knots(table.gains.len(), &table.steps_per_knot.into(), &trajectory));
         let gains: Vec<_> = entries.chunks(rows.len()).map(<[_]>::to_vec).collect();
         out += &over_time(&rows, &columns, &gains);
+    } else if table.cascade().is_some() {
+        out += &cascade::chains(&columns, &entries.concat());
     } else {
         out += &matrix(&rows, &columns, &entries);
+    }
+    if let Some(table) = table.cascade() {
+        out += &cascade::of_table(table);
     }
     let _ = write!(
         out,
@@ -180,6 +190,10 @@ fn table_json(table: &Table) -> Value {
         "motor_lag_s": table.motor_lag_s(),
         "k_f32": table.by_rows(),
     });
+    if let Some(table) = table.cascade() {
+        document["air"] = cascade::air_json(table);
+        document["certified"] = cascade::range_json(table);
+    }
     if let Some(table) = table.along() {
         document["k_f32"] = json!(table.gains);
         document["steps_per_knot"] = json!(table.steps_per_knot);

@@ -74,13 +74,7 @@ fn controller<'a>(law: impl Into<Law<'a>>) -> Controller<'a> {
 
 /// A loaded table as the board flies it.
 fn loaded<'t>(table: &'t GainTable<'_>) -> Controller<'t> {
-    let settings = Settings {
-        limits: limits(),
-        actuation: None,
-        feed_forward: FeedForward::Without,
-        error_form: ErrorForm::HeadingFrame,
-        player_rate: Rate::from_hz(TICK_HZ).unwrap(),
-    };
+    let settings = Settings::new(limits(), Rate::from_hz(TICK_HZ).unwrap());
     table.accept_for(&VEHICLE, rate()).unwrap().controller(&settings).unwrap()
 }
 

@@ -96,13 +96,8 @@ fn a_table_for_motor_forces_flies_bit_for_bit() {
     let accepted = table.accept_for(&vehicle, rate).unwrap();
     let actuation = accepted.actuation(&Actuation::new(&Airframe::CRAZYFLIE_2_1, rate).unwrap());
     assert_eq!(actuation.lag().lag_s(), 0.0635);
-    let controller = accepted.controller(&Settings {
-        limits: Limits::NONE,
-        actuation: Some(&actuation),
-        feed_forward: FeedForward::Without,
-        error_form: ErrorForm::HeadingFrame,
-        player_rate: ticks,
-    });
+    let controller =
+        accepted.controller(&Settings { actuation: Some(&actuation), ..Settings::new(Limits::NONE, ticks) });
     let controller = controller.unwrap();
 
     let mut client = connected();

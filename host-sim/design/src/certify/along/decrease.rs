@@ -17,10 +17,10 @@ use crate::model::flat::ReferencePoint;
 const LONGEST_PART_S: f64 = 2.6e-3;
 
 type Square = SMatrix<f64, 9, 9>;
-/// `[A B]`, and what a state and a held command become.
+/// `[A B]`, and the map of a state and a held command.
 type Motion = SMatrix<f64, 9, 13>;
 
-/// What was found along a trajectory and behind it.
+/// The result along a trajectory and behind it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovingDecrease {
     /// Whether every P > 0 and V falls by more than rounding at every step.
@@ -33,7 +33,7 @@ pub struct MovingDecrease {
     pub largest_ratio_at_s: f64,
     /// Least of the smallest eigenvalues of P over its largest.
     pub p_smallest_over_largest: f64,
-    /// What rounding can change a ratio by.
+    /// Largest change of a ratio by rounding.
     pub rounding: f64,
 }
 

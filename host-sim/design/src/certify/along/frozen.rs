@@ -94,7 +94,7 @@ pub(super) fn knots(
     flown.iter().enumerate().map(at_knot).collect()
 }
 
-/// What is looked at over frequency.
+/// The function that is swept over frequency.
 #[derive(Clone, Copy)]
 enum Measure {
     /// `|S_ii - 1/2|`.

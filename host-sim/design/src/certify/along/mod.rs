@@ -1,15 +1,15 @@
 //! Gains over time: a reference, and a design along it; a certificate of the gains as they are flown out.
 //!
-//! The gains are those of the table, rounded and interpolated as on board. What is promised of them has two parts:
+//! The gains are those of the table, rounded and interpolated as on board. Their certificate has two parts:
 //!
 //! - of the loop as it moves, exactly to first order in the error: `V = e' P_k e`, with P of the design's Riccati equation,
 //!   falls at every control step and behind the last one, where the hover's P covers all time that follows;
 //! - of the loop with the gain of each knot, frozen: spectral radius, disk margins of each channel and of all at once,
-//!   largest delay and largest lag. What is stated is the worst of the knots.
+//!   largest delay and largest lag. The table states the worst of the knots.
 //!
 //! Frozen loops off hover hang together in all four channels. The margin of all at once is therefore taken from an upper
-//! bound of mu that is quick and not tight ([`super::AllChannels::alpha_at_most`] tells how far it may be off), and delay and
-//! lag are tried at four even parts of the limit found so far instead of in small steps.
+//! bound of mu that is quick and not tight ([`super::AllChannels::alpha_at_most`] tells how far it may be off), and
+//! delay and lag are tried at four even parts of the limit found so far instead of in small steps.
 
 mod decrease;
 mod flown;

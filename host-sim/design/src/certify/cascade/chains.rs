@@ -1,14 +1,15 @@
-//! The closed loop of the cascade, chain by chain, at hover: what the core's step computes where nothing is limited, in f64, on a
-//! plant that differs from what it is told.
+//! The closed loop of the cascade, chain by chain, at hover: the core's step where nothing is limited, in f64, on a
+//! plant that differs from the told one.
 //!
-//! A chain is a linear map of its states over a control period; its matrix is found by sending unit vectors through it. The states
-//! are the plant's, the commands that wait, and what the controller remembers.
+//! A chain is a linear map of its states over a control period; its matrix is found by sending unit vectors through it.
+//! The states are the plant's, the commands that wait, and the controller's memory.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::held::HeldChain;
 use super::observers::{
-    ACROSS, ACROSS_PERIOD_S, AIR_LOW_PASS, ALONG, DRAG_LEAST_PER_S, HELD_RAD_S, TORQUE_DAMPING, TORQUE_RAD_S,
+    ACROSS, ACROSS_PERIOD_S, AIR_LOW_PASS, ALONG, APPROACH_SHARE, DRAG_LEAST_PER_S, HELD_RAD_S, TORQUE_DAMPING,
+    TORQUE_RAD_S,
 };
 use super::{CascadeCraft, CascadeVariation};
 use crate::model::GRAVITY_M_S2;
@@ -62,6 +63,9 @@ pub(super) struct TiltChain {
     drag_felt: f64,
     /// Part of the moment per felt force.
     wind: f64,
+    /// Part of the moment per velocity of the approach, as it is believed, N s/m, and the lead of its rate, s.
+    moment: f64,
+    lead_s: f64,
 }
 
 impl TiltChain {
@@ -97,13 +101,16 @@ impl TiltChain {
             drag: at.believed_drag_per_s,
             drag_felt: at.drag_per_s,
             wind: craft.gust * at.believed_ratio_factor * ratio / (4.0 * craft.lever_m),
+            moment: APPROACH_SHARE * at.believed_ratio_factor * ratio * at.believed_drag_per_s.max(DRAG_LEAST_PER_S)
+                / (4.0 * craft.lever_m),
+            lead_s: craft.lag_s + 0.5 * h,
         }
     }
 }
 
 impl Chain for TiltChain {
     fn states(&self) -> usize {
-        self.plant.states() + 15
+        self.plant.states() + 16
     }
 
     fn advance(&self, x: &mut [f64], added: f64, looks: bool) -> f64 {
@@ -111,7 +118,7 @@ impl Chain for TiltChain {
         let (plant, memory) = x.split_at_mut(self.plant.states());
         let [p, v, tilt, w] = [plant[0], plant[1], plant[2], plant[3]];
         let (held, rest) = memory.split_at_mut(3);
-        let [d, s, v_seen, w_seen, t, force, mean_force, tilt_before, v_before, answer_before, low, answer] =
+        let [d, s, v_seen, w_seen, t, force, mean_force, tilt_before, v_before, answer_before, low, wind, approach] =
             std::array::from_fn(|i| rest[i]);
         let v_held = held_velocity(held, p, v, h);
 
@@ -120,10 +127,16 @@ impl Chain for TiltChain {
         let [k_p, k_v] = self.outer;
         let tilt_d = tilt_r - (k_p * p + k_v * v_held) / GRAVITY_M_S2;
         let [k_th, k_w, k_f] = self.inner;
-        let u = answer - (k_th * (tilt - tilt_d) + k_w * (w - w_r) + k_f * (force + t - answer)) - t;
+        // The velocity that the position error asks for, and the moment that the air has on it.
+        let speeding = k_v * (-k_p / k_v * p - approach);
+        let approach = approach + h * speeding;
+        let answer = wind + self.moment * approach;
+        let u = answer + self.lead_s * self.moment * speeding
+            - (k_th * (tilt - tilt_d) + k_w * (w - w_r) + k_f * (force + t - answer))
+            - t;
         let next_force = u + (force - u) * self.decay;
 
-        // What follows it.
+        // The observers.
         let expected =
             v_seen + h * (GRAVITY_M_S2 * 0.5 * (tilt_before + tilt) - self.drag * 0.5 * (v_before + v_held) + d);
         let e = v_held - expected;
@@ -136,9 +149,9 @@ impl Chain for TiltChain {
             let low = low + AIR_LOW_PASS * (-self.drag_felt * v - low);
             (low, -self.wind * low)
         } else {
-            (low, answer)
+            (low, wind)
         };
-        rest[..12].copy_from_slice(&[
+        rest[..13].copy_from_slice(&[
             d + h * s + l2 * e,
             s + l3 * e,
             expected + l1 * e,
@@ -151,6 +164,7 @@ impl Chain for TiltChain {
             answer,
             low,
             wind,
+            approach,
         ]);
         self.plant.advance(plant, u + added);
         u

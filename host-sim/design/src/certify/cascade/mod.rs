@@ -1,22 +1,30 @@
-//! Certificates of the cascade, with everything in the loop: observers, the accelerometer's share, delay, motors of another lag that
-//! give less than told, another mass and inertia, air that is not the told one and air that is believed.
+//! Certificates of the cascade, with everything in the loop: observers, the accelerometer's share, delay, motors of
+//! another lag that give less than told, another mass and inertia, air that is not the told one and air that is believed.
 //!
-//! At hover the loop is four chains. Each is a linear map over a control period (`chains`); the accelerometer is looked at every fifth
-//! one, so that its spectral radius is that of five periods. Between the points of a region nothing is promised.
+//! At hover the loop is four chains. Each is a linear map over a control period (`chains`); the accelerometer is looked
+//! at every fifth one, so that its spectral radius is that of five periods. Between the points of a region nothing is
+//! promised.
 
 mod chains;
 mod held;
 mod margins;
 mod observers;
 mod region;
+mod table;
+
+use std::fmt;
 
 use nalgebra::DMatrix;
 use serde::Serialize;
 
 use self::chains::{Chain, HeightChain, TiltChain, YawChain};
-pub use self::margins::ChainMargins;
+pub use self::margins::{ChainLoop, ChainMargins};
 use self::observers::AIR_TICK_S;
 pub use self::region::{CascadeCertificate, CascadeRegion};
+pub use self::table::{
+    CascadeAir, CascadeBounds, CascadeRegionCertificate, cascade_craft, certify_cascade, certify_cascade_region,
+    in_identified_air,
+};
 use super::CertifyError;
 use crate::analysis::eigenvalues;
 use crate::vehicle::Vehicle;
@@ -38,7 +46,7 @@ pub struct CascadeCraft {
     pub lag_s: f64,
     /// Control period, s.
     pub period_s: f64,
-    /// Moment of the air about x and y that is identified, N s: what the region's factors are of.
+    /// Moment of the air about x and y that is identified, N s: the region's factors multiply it.
     pub moment_n_s: [f64; 2],
     /// Drag and moment that are told, 1/s and N s.
     pub told_drag_per_s: f64,
@@ -89,6 +97,25 @@ pub struct CascadeVariation {
     pub believed_drag_per_s: f64,
     /// Moment over drag that it has learned, over that told.
     pub believed_ratio_factor: f64,
+}
+
+impl fmt::Display for CascadeVariation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{:.1} ms of motor lag, {:.2} times the mass, {:.2} times the inertia, {:.2} times the force, {:.1} ms of delay, drag of \
+             {:.2} 1/s and {:.2} times the moment, believed {:.2} 1/s and {:.2} times the ratio",
+            1e3 * self.lag_s,
+            self.mass_factor,
+            self.inertia_factor,
+            self.command_factor,
+            1e3 * self.delay_s,
+            self.drag_per_s,
+            self.moment_factor,
+            self.believed_drag_per_s,
+            self.believed_ratio_factor
+        )
+    }
 }
 
 impl CascadeVariation {
@@ -144,19 +171,21 @@ impl CascadeChain {
         self.of(craft, at).matrices(looks).0
     }
 
+    /// The matrix from one look at the accelerometer to the next.
+    fn of_tick(self, craft: &CascadeCraft, at: &CascadeVariation) -> DMatrix<f64> {
+        let chain = self.of(craft, at);
+        let steps = (AIR_TICK_S / craft.period_s).round().max(1.0) as usize;
+        let without = chain.matrices(false).0;
+        (1..steps).fold(chain.matrices(true).0, |all, _| &without * all)
+    }
+
     /// The largest modulus of the poles, per period.
     ///
     /// # Errors
     /// [`CertifyError`] where eigenvalues are not found.
     pub fn spectral_radius(self, craft: &CascadeCraft, at: &CascadeVariation) -> Result<f64, CertifyError> {
-        let chain = self.of(craft, at);
         let steps = (AIR_TICK_S / craft.period_s).round().max(1.0);
-        let without = chain.matrices(false).0;
-        let mut all = chain.matrices(true).0;
-        for _ in 1..steps as usize {
-            all = &without * all;
-        }
-        let poles = eigenvalues(&all)?;
+        let poles = eigenvalues(&self.of_tick(craft, at))?;
         Ok(poles.iter().map(|pole| pole.norm()).fold(0.0, f64::max).powf(1.0 / steps))
     }
 }

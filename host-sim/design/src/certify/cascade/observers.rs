@@ -22,3 +22,6 @@ pub(super) const AIR_LOW_PASS: f64 = 8.0 * AIR_TICK_S / (1.0 + 4.0 * AIR_TICK_S)
 
 /// Least drag by which a felt force is taken for a wind, 1/s.
 pub(super) const DRAG_LEAST_PER_S: f64 = 0.2;
+
+/// Share of the moment on the way to a reference that is answered.
+pub(super) const APPROACH_SHARE: f64 = 0.4;

@@ -4,9 +4,11 @@ use std::path::Path;
 
 use quatrack::Rate;
 use quatrack_design::design::integral::IntegralWeights;
+use quatrack_design::vehicle::Vehicle;
 
 use super::actuator_aware::{actuator_aware, not_of_motors};
 use super::along::along;
+use super::cascade::cascade;
 use super::entry::{check, misplaced, missing, positive};
 use super::problem::{Method, Problem};
 use super::weights::{equilibrium_weights, flat_weights};
@@ -16,7 +18,7 @@ use crate::gains::file::{DesignFile, Linearisation, MethodName};
 /// Most samples of known delay.
 const MOST_DELAY_SAMPLES: u32 = 20;
 
-pub(super) fn problem(file: &DesignFile, folder: &Path, rate: Rate) -> Result<Problem, GainsError> {
+pub(super) fn problem(file: &DesignFile, vehicle: &Vehicle, folder: &Path, rate: Rate) -> Result<Problem, GainsError> {
     let lyapunov = file.method == MethodName::Lyapunov;
     if let (Some(mu), false) = (file.mu_1_s, lyapunov) {
         return Err(misplaced("mu_1_s", &mu, &file.method));
@@ -37,6 +39,12 @@ pub(super) fn problem(file: &DesignFile, folder: &Path, rate: Rate) -> Result<Pr
             Linearisation::Equilibrium => Problem::Equilibrium(Method::Lyapunov { mu_1_s }),
             Linearisation::FlatOutput => Problem::FlatOutput(Method::Lyapunov { mu_1_s }),
         });
+    }
+    if file.method == MethodName::Cascade {
+        return cascade(file, vehicle);
+    }
+    if file.air.is_some() {
+        return Err(misplaced("[air]", &"...", &file.method));
     }
     let weights = file.weights.as_ref().ok_or_else(|| missing("[weights]", &file.method, "[weights]"))?;
     let integrates = matches!(file.method, MethodName::Lqi | MethodName::ActuatorAware);

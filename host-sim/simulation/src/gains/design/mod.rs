@@ -2,6 +2,7 @@
 
 mod actuator_aware;
 mod along;
+mod cascade;
 mod entry;
 mod method;
 mod problem;
@@ -74,7 +75,7 @@ impl Design {
         Ok(Self {
             name,
             description: file.description.trim().to_owned(),
-            problem: method::problem(&file, folder, rate)?,
+            problem: method::problem(&file, &vehicle, folder, rate)?,
             limits: limits(&file.limits, &vehicle, &file.vehicle)?,
             vehicle,
             rate,

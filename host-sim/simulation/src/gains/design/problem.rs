@@ -1,7 +1,9 @@
 //! What a design asks for: a linearisation, a method that is defined for it, and the method's numbers.
 
 use quatrack_design::certify::RegionBounds;
+use quatrack_design::certify::cascade::{CascadeAir, CascadeBounds};
 use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
+use quatrack_design::design::cascade::CascadeWeights;
 use quatrack_design::design::integral::IntegralWeights;
 use quatrack_design::design::synthesis::{EquilibriumWeights, FlatWeights};
 use serde::Serialize;
@@ -29,6 +31,17 @@ pub enum Problem {
         weights: ActuatorAwareWeights,
         /// Where the gain must be stable, too.
         region: RegionBounds,
+    },
+    /// The same without an integral, factored into nested loops with observers, in air.
+    Cascade {
+        /// Lag of the motors that it is designed for, s.
+        motor_lag_s: f64,
+        /// Weights of a sum over the samples.
+        weights: CascadeWeights,
+        /// The air that is told.
+        air: CascadeAir,
+        /// Where the loop must be stable, too.
+        region: CascadeBounds,
     },
     /// The error of the hover model about each point of a trajectory, under held commands: gains over time.
     Along {
@@ -72,6 +85,7 @@ impl Problem {
             Self::FlatOutput(method) => ("flat-output", method.named()),
             Self::Integral { .. } => ("equilibrium", "lqi"),
             Self::ActuatorAware { .. } => ("equilibrium", "actuator-aware"),
+            Self::Cascade { .. } => ("equilibrium", "cascade"),
             Self::Along { .. } => ("equilibrium", "along"),
         }
     }
@@ -79,7 +93,7 @@ impl Problem {
     /// The lag of the motors that a design for their forces reckons with, s.
     pub fn motor_lag_s(&self) -> Option<f64> {
         match self {
-            Self::ActuatorAware { motor_lag_s, .. } => Some(*motor_lag_s),
+            Self::ActuatorAware { motor_lag_s, .. } | Self::Cascade { motor_lag_s, .. } => Some(*motor_lag_s),
             _ => None,
         }
     }

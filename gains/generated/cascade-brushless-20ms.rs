@@ -1,0 +1,26 @@
+// cascade-brushless-20ms for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
+// Design 4643ab13c461b5e6ad4d6990b1fd1c0841817b77183e3fa06d27e287abc69cc7
+// Certificate 5e4e61fd3fdc1178e7af9f76fa4cac77e071be2da4cc0dbe1389e9c38c7ee8de
+
+/// For a Crazyflie 2.1 Brushless whose motors are known to lag about 20 ms.
+#[rustfmt::skip]
+pub static CASCADE_BRUSHLESS_20MS: quatrack::gains::table::CascadeTable = quatrack::gains::table::CascadeTable {
+    gains: quatrack::cascade::CascadeGains::table([0.31218943, 0.14101066, 0.2553912, -0.21327254, -0.101396486, 0.18415067, 0.015704136, 0.9242351, 0.21375038, 0.10205452, 0.18657702, 0.016106745, 0.8815099, 0.011146897, 0.007981466, 0.05982313]),
+    motor_lag_s: 0.02,
+    air: quatrack::cascade::Air {
+        drag_per_s: 0.353,
+        drag_along_share: 1.0,
+        moment_n_s: [0.00056, 0.00073],
+        gust: 0.55,
+        learn: true,
+    },
+    certified: quatrack::gains::table::CascadeRange {
+        motor_lag_s: [0.01, 0.032],
+        mass_share: 0.2,
+        inertia_share: 0.3,
+        force_share: [0.7, 1.05],
+        delay_s: 0.01,
+        drag_per_s: 0.6,
+        moment_n_s: [0.00084, 0.001095],
+    },
+};

@@ -1,0 +1,26 @@
+// cascade-brushless-50ms for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
+// Design 359b6a991b891efdf54d353d0ecec0404c6c752b12e60e7a85d8a629d11e869d
+// Certificate d20d7a009dc29410463eaa4887a947688f8129b4434080ecc6d84133488e0269
+
+/// The default for a Crazyflie 2.1 Brushless.
+#[rustfmt::skip]
+pub static CASCADE_BRUSHLESS_50MS: quatrack::gains::table::CascadeTable = quatrack::gains::table::CascadeTable {
+    gains: quatrack::cascade::CascadeGains::table([0.3125298, 0.14812583, 0.58468807, -0.2146692, -0.105255775, 0.20049259, 0.018660415, 1.998529, 0.21501802, 0.10595838, 0.20338172, 0.019181836, 1.9205307, 0.011147015, 0.008298051, 0.14903374]),
+    motor_lag_s: 0.05,
+    air: quatrack::cascade::Air {
+        drag_per_s: 0.353,
+        drag_along_share: 1.0,
+        moment_n_s: [0.00056, 0.00073],
+        gust: 0.55,
+        learn: true,
+    },
+    certified: quatrack::gains::table::CascadeRange {
+        motor_lag_s: [0.025, 0.075],
+        mass_share: 0.2,
+        inertia_share: 0.3,
+        force_share: [0.7, 1.05],
+        delay_s: 0.01,
+        drag_per_s: 0.6,
+        moment_n_s: [0.00084, 0.001095],
+    },
+};

@@ -1,0 +1,164 @@
+//! A design of the cascade: its entries in; lag, weights, air and region out.
+
+use quatrack::cascade::Air;
+use quatrack_design::certify::cascade::{CascadeAir, CascadeBounds};
+use quatrack_design::design::cascade::CascadeWeights;
+use quatrack_design::vehicle::Vehicle;
+
+use super::entry::{check, misplaced, missing};
+use super::problem::Problem;
+use super::weights::weight;
+use crate::gains::GainsError;
+use crate::gains::file::{AirEntry, DesignFile, Linearisation, RegionEntry, Weights};
+
+/// Longest lag of motors, ms.
+const LONGEST_LAG_MS: f64 = 1e3;
+/// Delays in a region, ms: each period of it is a state.
+const LONGEST_DELAY_MS: f64 = 50.0;
+/// Most that mass or inertia may be off, percent.
+const MOST_PERCENT: f64 = 90.0;
+/// Of the identified air, as much as is told where a design states none.
+const TOLD_SHARE: f64 = 0.8;
+/// Share of the wind's moment that is fed forward where a design states none.
+const GUST: f64 = 0.55;
+/// Most drag of the region where a design states none, 1/s.
+const MOST_DRAG_PER_S: f64 = 0.6;
+/// Most moment of the region over the identified one where a design states none.
+const MOST_MOMENT: f64 = 1.2;
+/// Off-diagonal inertia over the least moment that is taken for none.
+const PRINCIPAL: f64 = 1e-6;
+
+pub(super) fn cascade(file: &DesignFile, vehicle: &Vehicle) -> Result<Problem, GainsError> {
+    let here = &file.method;
+    if file.linearisation == Linearisation::FlatOutput {
+        return Err(misplaced("method", &here.quoted(), &file.linearisation));
+    }
+    if let Some(gain) = file.rate_loop_gain_1_s {
+        return Err(misplaced("rate_loop_gain_1_s", &gain, here));
+    }
+    principal_axes(vehicle)?;
+    // The core wants two control periods at least.
+    let least = 2e3 / f64::from(file.control_rate_hz.max(1));
+    let lag = |key: &str, value: f64| {
+        check((least..=LONGEST_LAG_MS).contains(&value), key, value, format!("from {least} to {LONGEST_LAG_MS} ms"))
+    };
+    let lag_ms = file.motor_lag_ms.ok_or_else(|| missing("motor_lag_ms", here, "motor_lag_ms = 100.0"))?;
+    lag("motor_lag_ms", lag_ms)?;
+    let air = air(file.air.as_ref(), vehicle)?;
+    let region = file.region.ok_or_else(|| missing("[region]", here, "[region] with motor_lag_ms = [50.0, 126.0]"))?;
+    let [shortest, longest] = region.motor_lag_ms;
+    let holds = shortest > 0.0 && shortest <= lag_ms;
+    check(holds, "region.motor_lag_ms", shortest, format!("above 0, up to motor_lag_ms = {lag_ms}"))?;
+    let holds = (lag_ms..=LONGEST_LAG_MS).contains(&longest);
+    check(holds, "region.motor_lag_ms", longest, format!("from motor_lag_ms = {lag_ms} to {LONGEST_LAG_MS} ms"))?;
+    Ok(Problem::Cascade {
+        motor_lag_s: 1e-3 * lag_ms,
+        weights: weights(file.weights.as_ref(), here)?,
+        air,
+        region: bounds(&region, &air)?,
+    })
+}
+
+fn principal_axes(vehicle: &Vehicle) -> Result<(), GainsError> {
+    let inertia = vehicle.inertia_kg_m2();
+    let least = inertia.diagonal().min();
+    let off = [inertia.m12, inertia.m13, inertia.m23].into_iter().fold(0.0, |most: f64, off| most.max(off.abs()));
+    if off <= PRINCIPAL * least {
+        return Ok(());
+    }
+    Err(GainsError::Vehicle {
+        vehicle: vehicle.name().to_owned(),
+        reason: format!("its products of inertia reach {off:e} kg m^2; the cascade is for principal axes: give 0"),
+    })
+}
+
+/// As written, and for the rest a part of what was identified of the vehicle; none where nothing was.
+fn air(entry: Option<&AirEntry>, vehicle: &Vehicle) -> Result<CascadeAir, GainsError> {
+    let none = AirEntry::default();
+    let entry = entry.unwrap_or(&none);
+    let share_of_identified = entry.share_of_identified.unwrap_or(TOLD_SHARE);
+    let holds = share_of_identified > 0.0 && share_of_identified <= 1.0;
+    check(holds, "air.share_of_identified", share_of_identified, "above 0, up to 1")?;
+    let identified = vehicle.flown().air;
+    let drag_per_s = entry.drag_per_s.unwrap_or_else(|| {
+        identified.map_or(0.0, |air| share_of_identified * 0.5 * (air.drag_per_s[0] + air.drag_per_s[1]))
+    });
+    let moment_n_s = entry
+        .moment_n_m_per_m_s
+        .unwrap_or_else(|| identified.map_or([0.0; 2], |air| air.moment_n_m_per_m_s.map(|c| share_of_identified * c)));
+    let most_drag = f64::from(Air::DRAG_MAX_PER_S);
+    check((0.0..=most_drag).contains(&drag_per_s), "air.drag_per_s", drag_per_s, format!("from 0 to {most_drag} 1/s"))?;
+    let most = f64::from(Air::MOMENT_MAX_N_S);
+    for moment in moment_n_s {
+        let must = format!("from 0 to {most} N m per m/s");
+        check((0.0..=most).contains(&moment), "air.moment_n_m_per_m_s", moment, must)?;
+    }
+    let gust = entry.gust.unwrap_or(GUST);
+    check((0.0..=1.0).contains(&gust), "air.gust", gust, "from 0 to 1")?;
+    Ok(CascadeAir { drag_per_s, moment_n_s, share_of_identified, gust, learn: entry.learn.unwrap_or(true) })
+}
+
+fn bounds(region: &RegionEntry, air: &CascadeAir) -> Result<CascadeBounds, GainsError> {
+    let percent = |key: &str, value: f64| {
+        check((0.0..=MOST_PERCENT).contains(&value), key, value, format!("from 0 to {MOST_PERCENT}"))
+    };
+    percent("region.mass_percent", region.mass_percent)?;
+    percent("region.inertia_percent", region.inertia_percent)?;
+    let must = format!("from 0 to {LONGEST_DELAY_MS}");
+    check((0.0..=LONGEST_DELAY_MS).contains(&region.delay_ms), "region.delay_ms", region.delay_ms, must)?;
+    let [least, most] = region.force_percent.unwrap_or([100.0; 2]);
+    check((10.0..=100.0).contains(&least), "region.force_percent", least, "from 10 to 100 percent")?;
+    check((100.0..=1000.0).contains(&most), "region.force_percent", most, "from 100 to 1000 percent")?;
+    let told = [air.drag_per_s, air.moment_n_s[0], air.moment_n_s[1]];
+    let identified = told.map(|told| told / air.share_of_identified);
+    let drag_per_s = region.drag_per_s.unwrap_or_else(|| MOST_DRAG_PER_S.max(identified[0]));
+    let moments = [identified[1], identified[2]];
+    let moment_n_s = region.moment_n_m_per_m_s.unwrap_or_else(|| moments.map(|moment| MOST_MOMENT * moment));
+    let must = |told: f64| format!("from {told}, which is told, to 10");
+    check((told[0]..=10.0).contains(&drag_per_s), "region.drag_per_s", drag_per_s, must(told[0]))?;
+    for (moment, told) in moment_n_s.into_iter().zip(air.moment_n_s) {
+        check((told..=10.0).contains(&moment), "region.moment_n_m_per_m_s", moment, must(told))?;
+    }
+    Ok(CascadeBounds {
+        lag_s: region.motor_lag_ms.map(|lag_ms| 1e-3 * lag_ms),
+        mass_share: 1e-2 * region.mass_percent,
+        inertia_share: 1e-2 * region.inertia_percent,
+        force_share: [1e-2 * least, 1e-2 * most],
+        delay_s: 1e-3 * region.delay_ms,
+        drag_per_s,
+        moment_n_s,
+    })
+}
+
+/// The standard ones with what is written.
+fn weights(weights: Option<&Weights>, here: &dyn ToString) -> Result<CascadeWeights, GainsError> {
+    let Some(weights) = weights else { return Ok(CascadeWeights::STANDARD) };
+    let foreign: [(&str, bool); 9] = [
+        ("attitude", weights.attitude.is_some()),
+        ("acceleration", weights.acceleration.is_some()),
+        ("q3", weights.q3.is_some()),
+        ("position_integral", weights.position_integral.is_some()),
+        ("thrust_input", weights.thrust_input.is_some()),
+        ("body_rate_input", weights.body_rate_input.is_some()),
+        ("acceleration_input", weights.acceleration_input.is_some()),
+        ("jerk_input", weights.jerk_input.is_some()),
+        ("q3_rate_input", weights.q3_rate_input.is_some()),
+    ];
+    if let Some((key, _)) = foreign.iter().find(|(_, given)| *given) {
+        return Err(misplaced(&format!("weights.{key}"), &"...", here));
+    }
+    let group = |key: &str, value: Option<[f64; 3]>, standard: [f64; 3]| {
+        let value = value.unwrap_or(standard);
+        value.iter().try_for_each(|entry| weight(key, *entry)).map(|()| value)
+    };
+    let standard = CascadeWeights::STANDARD;
+    let command = weights.force_input.unwrap_or(standard.command);
+    weight("force_input", command)?;
+    Ok(CascadeWeights {
+        position: group("position", weights.position, standard.position)?,
+        velocity: group("velocity", weights.velocity, standard.velocity)?,
+        rotation: group("rotation", weights.rotation, standard.rotation)?,
+        body_rates: group("body_rates", weights.body_rates, standard.body_rates)?,
+        command,
+    })
+}
