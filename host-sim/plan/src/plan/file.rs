@@ -100,8 +100,7 @@ pub(super) fn read(text: &str) -> Result<Plan, PlanError> {
 fn syntax(text: &str, error: &toml::de::Error) -> PlanError {
     let start = error.span().map_or(0, |span| span.start);
     let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
-    let words: Vec<&str> = error.message().split_whitespace().collect();
-    PlanError::Syntax { line, reason: words.join(" ") }
+    PlanError::Syntax { line, reason: crate::quote::one_line(error.message()) }
 }
 
 /// `Ok` if `holds`; a NaN makes every comparison false and so never passes.
