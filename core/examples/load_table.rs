@@ -19,11 +19,12 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
     let accepted = table.accept_for(&head.vehicle, head.rate)?;
     let airframe = Airframe::CRAZYFLIE_2_1;
     let actuation = accepted.actuation(&Actuation::new(&airframe, head.rate)?);
+    // The tighter of the board's limits and the table's hold.
+    let limits = Limits::of(&airframe, Vector3::new(20.0, 20.0, 10.0));
     let controller = accepted.controller(&Settings {
-        // The tighter of the board's limits and the table's hold.
         actuation: Some(&actuation),
         feed_forward: FeedForward::With,
-        ..Settings::new(Limits::of(&airframe, Vector3::new(20.0, 20.0, 10.0)), head.rate)
+        ..Settings::new(limits, head.rate)
     })?;
     let mut memory = Memory::hovering(&airframe);
     let reference = MotorReference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0, actuation.airframe())?;

@@ -58,8 +58,12 @@ mod app {
         }
         let board = board::start(context.device, &mut context.core.SYST);
         let line = crate::line(UsartLine::new(board.usart, consumer));
+        let mut flight = Flight::new(context.local.store, fault.map(|report| report.fault));
+        if board.gyro.is_ok() {
+            flight.motors.set_gyroscope();
+        }
         let shared = Shared {
-            flight: Flight::new(context.local.store, fault.map(|report| report.fault)),
+            flight,
             timing: Timing::new(board.clocks.counts_per_tick),
             counter: board.counter,
         };

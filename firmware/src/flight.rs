@@ -13,13 +13,17 @@ use quatrack::gains::table::AcceptedTable;
 use quatrack::link::{
     CommandOut, ForcesOut, FromBoard, GainStore, LawChoice, LimitsSetting, NoCommand, RigidStateIn, StateIn,
 };
-use quatrack::supervisor::{ArmError, Conditions, Config, Fault, Mode, StepReport, Supervisor, Verdict};
-use quatrack::{Command, Limits, MotorForces, Output, Rate, RigidState, Tick};
+use quatrack::mixer::MotorLimited;
+use quatrack::supervisor::{
+    ArmError, Circumstances, Config, Fault, Guard, Mode, MonitorConfig, Order, Preflight, Reason, ReferenceReport,
+    Rescue, Sample,
+};
+use quatrack::{Command, Limits, MotorForces, Output, Rate, RigidState, State, Tick};
 
 use crate::craft::BodyRates;
 use crate::laws::{FADE_STEPS, Laws, Refused};
 use crate::playback::{self, Playback};
-use crate::vehicle::{AIRFRAME, BODY_RATES_MAX_RAD_S, STOPPED};
+use crate::vehicle::{AIRFRAME, BODY_RATES_MAX_RAD_S, START_MAX_M, STOPPED};
 
 pub use self::motors::ToMotors;
 #[cfg(feature = "motors")]
@@ -27,7 +31,10 @@ pub use crate::laws::table;
 pub use crate::rates::{DECIMATION, LOCK_STEP, TICK_RATE, TICK_RATE_HZ};
 
 /// Bounds of a flight unless they are set otherwise: 50 ms without a state, half a second without a frame.
-pub const CONFIG: Config = Config { state_age_max_ticks: 50, link_silence_max_ticks: 500, overruns_tolerated: 2 };
+pub const CONFIG: Config = Config::STANDARD;
+
+/// What is flown on. After the link is lost the gyroscope carries the attitude on for as long as a descent from a few metres takes.
+pub const MONITOR: MonitorConfig = MonitorConfig { attitude_ticks: 15_000, ..MonitorConfig::STANDARD };
 
 /// The newest state and when it came.
 struct Arrived {
@@ -73,9 +80,11 @@ pub struct Flight {
     pub config: Config,
     /// What is known of the motors.
     pub motors: ToMotors,
-    supervisor: Supervisor,
+    guard: Guard,
     decimation: u32,
-    last_report: StepReport,
+    /// What the last look at the reference found.
+    reference: ReferenceReport,
+    limited: MotorLimited,
     fault: Option<Fault>,
     /// The command that passes.
     passed: Command,
@@ -91,19 +100,16 @@ impl Flight {
     #[cold]
     pub fn new(store: &'static mut Store, fault: Option<Fault>) -> Self {
         let limits = Limits::of(&AIRFRAME, BODY_RATES_MAX_RAD_S);
-        let mut supervisor = Supervisor::new();
-        let step = StepReport::NoReference;
-        let at_start = Conditions { link_silence_ticks: None, state_age_ticks: None, step, overrun: false, fault };
-        supervisor.tick(&CONFIG, &at_start);
         Self {
             laws: Laws::new(&mut store.gains, limits, step_rate(DECIMATION)),
             arrived: None,
             heard_at: None,
             playback: Playback::new(&mut store.trajectories),
             config: CONFIG,
-            supervisor,
+            guard: fault.map_or(Guard::new(), Guard::faulted),
             decimation: DECIMATION,
-            last_report: StepReport::NoReference,
+            reference: ReferenceReport::Sound,
+            limited: MotorLimited::NOTHING,
             fault,
             motors: ToMotors::new(),
             passed: Command::ZERO,
@@ -117,6 +123,11 @@ impl Flight {
     /// Takes the word that a frame was accepted.
     pub fn hear(&mut self, now: Tick) {
         self.heard_at = Some(now);
+    }
+
+    /// Whether no frame has come for longer than a flight tolerates; not before the first one.
+    pub fn is_link_silent(&self, now: Tick) -> bool {
+        age(self.heard_at, now).is_some_and(|ticks| ticks > self.config.link_silence_max_ticks)
     }
 
     /// Takes a state. In lock-step it is to be stepped on at once.
@@ -223,29 +234,57 @@ impl Flight {
         Ok(())
     }
 
-    /// Takes an arm request.
+    /// Takes an arm request. In lock-step, where no motor turns, only faults and the link are looked at.
     ///
     /// # Errors
-    /// As [`Supervisor::arm`].
+    /// [`ArmError`]: why the craft is not to take off.
     #[cold]
     pub fn arm(&mut self, now: Tick) -> Result<(), ArmError> {
-        self.last_report = StepReport::NoReference;
         // Asked again in flight, nothing changes.
-        if !self.mode().motors_allowed() {
-            self.laws.begin();
+        if self.mode().motors_allowed() {
+            return Ok(());
         }
-        self.supervisor.arm(&self.config, age(self.heard_at, now))
+        self.laws.choose_default(self.motors.are_driven());
+        let link_silence_ticks = age(self.heard_at, now);
+        let Config { link_silence_max_ticks, state_age_max_ticks, .. } = self.config;
+        let preflight = Preflight {
+            fault: self.fault,
+            link_silence_ticks,
+            tolerated_ticks: [link_silence_max_ticks, state_age_max_ticks],
+            state: self.fresh_state(now).copied(),
+            reference_m: self.playback.begins_at_m(),
+            start_max_m: START_MAX_M,
+            law: self.laws.covers(self.motors.are_driven()),
+            lag_s: AIRFRAME.figures().motor_lag_s,
+            mass_kg: AIRFRAME.figures().mass_kg,
+            rate_hz: step_rate(self.decimation).map_or(0, Rate::hz),
+            limits: *self.laws.limits(),
+            battery_v: self.motors.battery().volts(),
+        };
+        if self.is_lock_step() { preflight.check_link() } else { preflight.check() }?;
+        self.laws.begin();
+        (self.reference, self.limited) = (ReferenceReport::Sound, MotorLimited::NOTHING);
+        self.guard.arm(now);
+        Ok(())
     }
 
     /// Takes a disarm request.
     pub fn disarm(&mut self) {
-        self.supervisor.disarm();
+        self.guard.disarm(0);
         self.stop();
     }
 
     /// The supervisor's mode.
     pub fn mode(&self) -> Mode {
-        self.supervisor.mode()
+        self.guard.mode()
+    }
+
+    /// The newest state, if it is not too old.
+    #[inline]
+    fn fresh_state(&self, now: Tick) -> Option<&State> {
+        let arrived = self.arrived.as_ref()?;
+        let is_fresh = now.wrapping_sub(arrived.at) <= self.config.state_age_max_ticks;
+        is_fresh.then_some(&arrived.state.state)
     }
 
     /// The command that passes; zero under a law that gives none.
@@ -267,7 +306,7 @@ impl Flight {
     /// Whether the next step is to be given the craft's own body rates.
     #[inline]
     pub fn takes_body_rates(&self) -> bool {
-        !self.is_lock_step() && self.supervisor.mode().motors_allowed()
+        !self.is_lock_step() && self.guard.mode().motors_allowed()
     }
 
     /// The answer to the last state, once.
@@ -306,35 +345,24 @@ impl Flight {
     #[cold]
     pub fn fail(&mut self, fault: Fault, now: Tick) {
         self.fault = Some(fault);
-        self.supervise(now, StepReport::Failed, false);
+        self.guard.fail(fault, now);
         self.stop();
     }
 
-    /// One control step at a tick of the board: step, supervise, gate, and answer the state if it is new.
+    /// One control step at a tick of the board: supervise, do what that orders, and answer the state if it is new.
     #[inline]
     pub fn step(&mut self, now: Tick, overrun: bool, rates: BodyRates) {
         self.steps = self.steps.wrapping_add(1);
         let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
         let tick = if self.is_lock_step() { state_tick } else { now };
-        self.motors.look_at(rates);
-        self.answer.result = if self.supervisor.mode().motors_allowed() {
-            let state = self.arrived.as_ref().map(|arrived| &arrived.state.state);
-            self.motors.step(&mut self.laws, &mut self.playback, tick, state, rates)
-        } else {
-            Err(NoCommand::Mode(self.supervisor.mode()))
-        };
-        let report = match &self.answer.result {
-            Ok(_) => StepReport::Command,
-            Err(NoCommand::NoReference | NoCommand::Mode(_)) => StepReport::NoReference,
-            Err(NoCommand::Reference(_) | NoCommand::Step(_) | NoCommand::NoBodyRates) => StepReport::Failed,
-        };
-        let verdict = self.supervise(now, report, overrun);
+        self.answer.result = self.supervised(now, tick, overrun, rates);
         match &self.answer.result {
-            Ok(output) if verdict.mode.command_passes() => {
+            Ok(output) => {
+                self.limited = output.limited();
                 self.passed = output.command().map_or(Command::ZERO, |step| step.command);
                 self.motors.pass(output);
             }
-            _ => self.stand_still(verdict.mode),
+            Err(_) => self.stand_still(),
         }
         (self.answer.tick, self.answer.state_tick) = (now, state_tick);
         if let Some(arrived) = &mut self.arrived {
@@ -343,11 +371,72 @@ impl Flight {
         }
     }
 
+    /// What passes in this step.
+    #[inline]
+    fn supervised(&mut self, now: Tick, tick: Tick, overrun: bool, rates: BodyRates) -> Result<Output, NoCommand> {
+        let is_fresh = self.fresh_state(now).is_some();
+        self.motors.look_at(rates);
+        // Rates that came with a state are as old as it is.
+        let body_rates = self.motors.body_rates(rates, is_fresh);
+        let around = Circumstances {
+            link_silence_ticks: age(self.heard_at, now),
+            reference: if self.playback.is_there() { self.reference } else { ReferenceReport::Missing },
+            limited: self.limited,
+            levels: body_rates.is_some() && self.motors.can_level(),
+            starts_near: self.guard.mode() != Mode::Armed || self.starts_near(now),
+            battery_v: Some(self.motors.battery().volts()),
+            overrun,
+            fault: self.fault,
+        };
+        let sample = Sample {
+            now: tick,
+            state: if is_fresh { self.arrived.as_ref().map(|arrived| &arrived.state.state) } else { None },
+            body_rates_rad_s: body_rates.as_ref(),
+            specific_force_m_s2: None,
+            thrust_m_s2: self.laws.thrust_m_s2(),
+        };
+        let Self { guard, laws, playback, motors, reference, .. } = self;
+        let looked = match guard.order((&self.config, &MONITOR), &sample, &around) {
+            Order::Fly(looked) => looked,
+            // What is to be followed is looked at meanwhile: once it is sound again the flight goes on.
+            Order::Brake(looked, sample, heading) => {
+                *reference = looked_at(playback, tick);
+                return laws.brake(&looked, &sample, heading).map_err(NoCommand::Step);
+            }
+            Order::Level(levelled) => {
+                *reference = looked_at(playback, tick);
+                return laws.level(&levelled).map_err(NoCommand::Step);
+            }
+            Order::Off => return Err(NoCommand::Mode(guard.mode())),
+        };
+        let stepped = motors.step(laws, playback, tick, &looked, body_rates.is_some());
+        let Err(failure) = stepped else { return stepped };
+        let rescue = Rescue::of(&looked);
+        let levels = around.levels;
+        let instead = match failure {
+            NoCommand::Reference(_) => {
+                *reference = ReferenceReport::Bad;
+                let brake = guard.reference_failed(tick, &rescue, MONITOR.tick_s, levels);
+                brake.and_then(|(sample, heading)| laws.brake_from(&rescue, &sample, heading))
+            }
+            _ => {
+                guard.step_failed(tick, &rescue, MONITOR.tick_s, levels).and_then(|levelled| laws.level(&levelled).ok())
+            }
+        };
+        instead.ok_or(failure)
+    }
+
+    /// Whether the reference begins near enough to where the craft is.
     #[cold]
-    fn stand_still(&mut self, mode: Mode) {
-        if self.answer.result.is_ok() {
-            self.answer.result = Err(NoCommand::Mode(mode));
-        }
+    fn starts_near(&mut self, now: Tick) -> bool {
+        let begins_at = self.playback.begins_at_m();
+        let (Some(begins_at), Some(state)) = (begins_at, self.fresh_state(now)) else { return true };
+        let way = begins_at - state.position_m;
+        way.dot(&way) <= START_MAX_M * START_MAX_M
+    }
+
+    #[cold]
+    fn stand_still(&mut self) {
         self.steps_failed = self.steps_failed.wrapping_add(1);
         self.stop();
     }
@@ -359,25 +448,28 @@ impl Flight {
         self.motors.stop();
     }
 
-    /// A tick without a step: looks at the ages, and stops the motors where they are too high.
+    /// A tick without a step. In lock-step, where none comes by itself, it looks at the ages, and stops where they are too high.
     pub fn watch(&mut self, now: Tick, overrun: bool) {
-        if !self.supervise(now, self.last_report, overrun).mode.command_passes() {
-            self.stop();
+        if !(self.is_lock_step() && self.guard.mode().motors_allowed()) {
+            return;
         }
-    }
-
-    #[inline]
-    fn supervise(&mut self, now: Tick, step: StepReport, overrun: bool) -> Verdict {
-        self.last_report = step;
-        let conditions = Conditions {
-            link_silence_ticks: age(self.heard_at, now),
-            state_age_ticks: age(self.arrived.as_ref().map(|arrived| arrived.at), now),
-            step,
-            overrun,
-            fault: self.fault,
+        let is_silent = age(self.heard_at, now).is_none_or(|ticks| ticks > self.config.link_silence_max_ticks);
+        let is_old = self.guard.mode().is_in_air() && self.fresh_state(now).is_none();
+        let reason = match (overrun && self.config.overruns_tolerated == 0, is_silent, is_old) {
+            (true, ..) => Reason::Overrun,
+            (_, true, _) => Reason::LinkLost,
+            (.., true) => Reason::StateLost,
+            _ => return,
         };
-        self.supervisor.tick(&self.config, &conditions)
+        self.guard.stop(reason, now);
+        self.stop();
     }
+}
+
+/// Whether what is to be followed can be flown.
+#[cold]
+fn looked_at(playback: &mut Playback, tick: Tick) -> ReferenceReport {
+    if playback.reference(tick).is_ok() { ReferenceReport::Sound } else { ReferenceReport::Bad }
 }
 
 /// The rate of the steps at so many ticks each, if it is a whole number of Hz.

@@ -10,6 +10,8 @@
 mod motors;
 #[cfg(feature = "motors")]
 mod motors;
+#[cfg(feature = "motors")]
+mod rescue;
 
 use quatrack::gains::paper;
 use quatrack::gains::table::{AcceptError, AcceptedTable};
@@ -21,7 +23,7 @@ use quatrack::{Controller, Equilibrium, Handover, Limits, Measured, Memory, Outp
 pub use self::motors::Actuations;
 #[cfg(feature = "motors")]
 pub use self::motors::table;
-use self::motors::{BUILT_IN_CASCADE, BUILT_IN_TO_MOTORS, loaded, step};
+use self::motors::{BUILT_IN_TO_MOTORS, cascade, loaded, step};
 use crate::vehicle::{STEP_RATE, VEHICLE};
 
 /// Steps from one law to another in flight: a tenth of a second at 500 Hz.
@@ -51,10 +53,14 @@ pub struct Laws {
     handover: Handover,
     /// What carries commands to the motors.
     pub actuations: Actuations,
+    /// Somebody has chosen the law.
+    is_chosen: bool,
+    /// Another law has taken over from the one in force.
+    is_rescued: bool,
     store: &'static mut GainStore,
 }
 
-/// What a board flies that is told nothing.
+/// What a board flies that is told nothing and knows no body rates; where it does, the cascade.
 const DEFAULT: LawChoice = LawChoice::new(Table::LqrE);
 
 impl Laws {
@@ -71,6 +77,8 @@ impl Laws {
             before: DEFAULT,
             handover: Handover::OVER,
             actuations: Actuations::new(),
+            is_chosen: false,
+            is_rescued: false,
             store,
         }
     }
@@ -121,7 +129,19 @@ impl Laws {
             return Ok(());
         }
         self.controller_of(&choice).ok_or(Refused::NoTable)?;
+        self.is_chosen = true;
         self.change(choice, self.choice, steps)
+    }
+
+    /// Before arming, where nobody has chosen: the cascade where there are body rates to fly it on.
+    #[cold]
+    pub fn choose_default(&mut self, has_body_rates: bool) {
+        let table = if has_body_rates { Table::Cascade } else { DEFAULT.table };
+        let choice = LawChoice::new(table);
+        if !self.is_chosen && self.controller_of(&choice).is_some() {
+            // It is on board.
+            let _ = self.change(choice, choice, 0);
+        }
     }
 
     /// Puts an accepted table in the place of the uploaded one, which becomes the one before. Where it is flown, the flight
@@ -155,6 +175,7 @@ impl Laws {
     #[cold]
     pub fn begin(&mut self) {
         self.settle();
+        self.is_rescued = false;
         self.memory = Memory::at_rest();
     }
 
@@ -196,34 +217,20 @@ impl Laws {
         self.controller.law().follows_forces() || (!self.is_alone && self.is_any_to_motors())
     }
 
+    /// Whether the law that is stepped takes the flat output itself, and no other beside it.
+    #[cfg(feature = "motors")]
+    #[inline]
+    pub fn follows_samples(&self) -> bool {
+        self.is_alone && self.controller.law().follows_samples()
+    }
+
     #[cfg(feature = "motors")]
     #[cold]
     #[inline(never)]
     fn is_any_to_motors(&self) -> bool {
         let gives_forces =
-            |choice| self.controller_of(choice).is_some_and(|controller| controller.law().follows_forces());
+            |choice| self.controller_of(choice).is_some_and(|c| c.law().follows_forces() || c.law().follows_samples());
         gives_forces(&self.choice) || (!self.handover.is_over() && gives_forces(&self.before))
-    }
-
-    /// Whether a law that is stepped makes a reference of its own, and is to be given targets with the flat output.
-    #[cfg(feature = "motors")]
-    #[inline]
-    pub fn follows_samples(&self) -> bool {
-        if self.is_alone { self.controller.law().follows_samples() } else { self.is_any_of_samples() }
-    }
-
-    #[cfg(feature = "motors")]
-    #[cold]
-    #[inline(never)]
-    fn is_any_of_samples(&self) -> bool {
-        let follows = |choice| self.controller_of(choice).is_some_and(|controller| controller.law().follows_samples());
-        follows(&self.choice) || (!self.handover.is_over() && follows(&self.before))
-    }
-
-    /// Whether another law is on its way out.
-    #[cfg(feature = "motors")]
-    pub fn is_changing(&self) -> bool {
-        !self.handover.is_over()
     }
 
     /// The craft as the law in force reckons with it, for targets with motor forces.
@@ -238,6 +245,7 @@ impl Laws {
     /// As [`Controller::step`].
     #[inline]
     pub fn step(&mut self, measured: Measured<'_>, target: Target<'_>) -> Result<Output, StepError> {
+        self.is_rescued = false;
         if self.is_alone {
             step(&self.controller, &mut self.memory, measured, target)
         } else {
@@ -288,7 +296,7 @@ impl Laws {
     fn built_in(&self, choice: &LawChoice) -> Option<Controller<'static>> {
         let law = match choice.table {
             Table::ActuatorAware if self.rate() == Some(STEP_RATE) => BUILT_IN_TO_MOTORS?.into(),
-            Table::Cascade if self.rate() == Some(STEP_RATE) => BUILT_IN_CASCADE?,
+            Table::Cascade if self.rate() == Some(STEP_RATE) => cascade()?,
             _ => choice.built_in()?,
         };
         Some(Controller::new(law, self.limits))

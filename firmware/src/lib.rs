@@ -17,6 +17,7 @@
 //!             rates, timing     how often the loop ticks and steps; overruns, jitter, the longest step
 //!       craft                   a flight's gyroscope and motors
 //!         drivers               BMI088, brushed motors, battery, against the traits of `embedded-hal`
+//!         storage               what survives a loss of power, against those of `embedded-storage`
 //! ```
 //!
 //! From `session` and `craft` down nothing knows the hardware, and all of it is tested on the host.
@@ -31,6 +32,7 @@ pub mod playback;
 pub mod rates;
 #[cfg(feature = "motors")]
 pub mod session;
+pub mod storage;
 pub mod stored;
 pub mod timing;
 pub mod vehicle;

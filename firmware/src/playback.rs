@@ -125,6 +125,20 @@ impl Playback {
         !matches!(self.source, Source::Nothing)
     }
 
+    /// Where the next step would find what is followed, m, if there is anything.
+    #[cold]
+    pub fn begins_at_m(&mut self) -> Option<Vector3<f32>> {
+        let elapsed = self.elapsed;
+        Some(match &mut self.source {
+            Source::Nothing => return None,
+            Source::Link(sample) => sample.position_m,
+            Source::Flash(player) => player.at(elapsed).position_m,
+            Source::Uploaded(bookmark) => {
+                Player::resume(self.store.active().trajectory()?, *bookmark)?.at(elapsed).position_m
+            }
+        })
+    }
+
     /// The reference at a tick of the clock.
     ///
     /// # Errors

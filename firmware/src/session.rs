@@ -4,9 +4,9 @@ use heapless::Vec;
 use quatrack::Tick;
 use quatrack::gains::table::{GainTable, LoadError};
 use quatrack::link::{
-    BLOB_BYTES_MAX, BlobError, BlobKind, BlobReceiver, Decoder, Encoder, FRAME_BYTES, FaultReport, FromBoard, Identity,
-    LoopStatistics, Parameter, ParameterId, Received, Refusal, TRAJECTORY_PIECES, Telemetry, ToBoard,
-    TrajectoryCommand, TrajectoryId, UploadBegin, Version,
+    Admission, BLOB_BYTES_MAX, BlobError, BlobKind, BlobReceiver, DELIMITER, Decoder, Encoder, FRAME_BYTES,
+    FaultReport, FromBoard, Identity, LoopStatistics, Parameter, ParameterId, Received, Refusal, TRAJECTORY_PIECES,
+    Telemetry, ToBoard, TrajectoryCommand, TrajectoryId, UploadBegin, Version,
 };
 
 use crate::drivers::battery::CellVoltage;
@@ -80,8 +80,11 @@ impl Session {
 
     /// Takes a byte from the line; where it ends a sound frame, carries it out and gives the answers.
     pub fn push(&mut self, byte: u8, flight: &mut impl Shared, vitals: &impl Vitals) -> Option<Answers> {
-        let received = self.decoder.push(byte)?.ok()?;
         let now = vitals.now();
+        if byte == DELIMITER {
+            self.decoder.admit(flight.with(|flight| admission(flight, now)));
+        }
+        let received = self.decoder.push(byte)?.ok()?;
         flight.with(|flight| flight.hear(now));
         let mut answers = Answers::new();
         let first = match received.message {
@@ -297,6 +300,17 @@ impl From<Refused> for Refusal {
     }
 }
 
+/// Who is flown keeps who flies it, until that one has been silent for too long.
+fn admission(flight: &Flight, now: Tick) -> Admission {
+    if flight.is_link_silent(now) {
+        Admission::Anybody
+    } else if flight.mode().motors_allowed() {
+        Admission::Nobody
+    } else {
+        Admission::Later
+    }
+}
+
 fn answer(sequence: u32, done: Result<FromBoard, Refusal>) -> FromBoard {
     done.unwrap_or_else(|reason| FromBoard::Nack { sequence, reason })
 }
@@ -333,5 +347,106 @@ fn version() -> Version {
         major: number(env!("CARGO_PKG_VERSION_MAJOR")),
         minor: number(env!("CARGO_PKG_VERSION_MINOR")),
         patch: number(env!("CARGO_PKG_VERSION_PATCH")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use quatrack::State;
+    use quatrack::link::StateIn;
+    use quatrack::nalgebra::Vector3;
+    use quatrack::supervisor::Mode;
+
+    use super::*;
+    use crate::flight::{CONFIG, Flight};
+
+    struct Here(Flight);
+
+    impl Shared for Here {
+        fn with<R>(&mut self, access: impl FnOnce(&mut Flight) -> R) -> R {
+            access(&mut self.0)
+        }
+    }
+
+    struct At(Tick);
+
+    impl Vitals for At {
+        fn now(&self) -> Tick {
+            self.0
+        }
+
+        fn statistics(&self) -> LoopStatistics {
+            LoopStatistics::default()
+        }
+
+        fn set_decimation(&self, _decimation: u32) {}
+    }
+
+    struct Board {
+        flight: Here,
+        session: Session,
+        now: Tick,
+    }
+
+    impl Board {
+        fn new() -> Self {
+            let flight = Flight::new(Box::leak(Box::default()), None);
+            let session = Session::new(Box::leak(Box::new(Uploads::new())), None);
+            Self { flight: Here(flight), session, now: 0 }
+        }
+
+        /// Whether somebody's message was taken.
+        fn hears(&mut self, from: &mut Encoder, message: &ToBoard) -> bool {
+            let mut buffer = [0; FRAME_BYTES];
+            let frame = from.encode(message, &mut buffer).unwrap().to_vec();
+            let at = At(self.now);
+            frame.iter().any(|byte| self.session.push(*byte, &mut self.flight, &at).is_some())
+        }
+
+        /// Armed by a pilot.
+        fn armed() -> (Self, Encoder) {
+            let (mut board, mut pilot) = (Self::new(), Encoder::new(1000));
+            let state = StateIn { tick: 0, state: State::at_rest(Vector3::new(0.0, 0.0, 0.0)) };
+            for message in [ToBoard::Hello, ToBoard::State(state), ToBoard::Arm] {
+                assert!(board.hears(&mut pilot, &message));
+            }
+            assert_eq!(board.flight.0.mode(), Mode::Armed);
+            (board, pilot)
+        }
+    }
+
+    #[test]
+    fn nobody_takes_over_an_armed_craft_but_the_pilot_goes_on() {
+        let (mut board, mut pilot) = Board::armed();
+        for number in [1001, 2000, 999, u32::MAX] {
+            let mut thief = Encoder::new(number);
+            assert!(!board.hears(&mut thief, &ToBoard::Hello) && !board.hears(&mut thief, &ToBoard::Disarm));
+        }
+        assert_eq!(board.flight.0.mode(), Mode::Armed);
+        assert!(board.hears(&mut pilot, &ToBoard::Disarm));
+        assert!(board.hears(&mut Encoder::new(1001), &ToBoard::Hello), "a later session, on the ground");
+        assert!(!board.hears(&mut Encoder::new(999), &ToBoard::Hello), "an earlier one has been replayed");
+    }
+
+    #[test]
+    fn after_silence_a_hello_is_taken_whatever_its_number() {
+        for number in [0, 999, 1001, 1000_u32.wrapping_sub(1 << 31)] {
+            let (mut board, _) = Board::armed();
+            board.now = CONFIG.link_silence_max_ticks;
+            assert!(!board.hears(&mut Encoder::new(number), &ToBoard::Hello), "not yet");
+            board.now += 1;
+            assert!(board.hears(&mut Encoder::new(number), &ToBoard::Hello));
+        }
+    }
+
+    #[test]
+    fn a_frame_is_not_taken_twice() {
+        let (mut board, mut pilot) = Board::armed();
+        let mut buffer = [0; FRAME_BYTES];
+        let frame = pilot.encode(&ToBoard::Disarm, &mut buffer).unwrap().to_vec();
+        let at = At(0);
+        let hear =
+            |board: &mut Board| frame.iter().any(|byte| board.session.push(*byte, &mut board.flight, &at).is_some());
+        assert!(hear(&mut board) && !hear(&mut board));
     }
 }

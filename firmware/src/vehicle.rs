@@ -15,6 +15,9 @@ pub const AIRFRAME: Airframe = Airframe::CRAZYFLIE_2_1;
 /// Largest body rates that its rate loop follows, rad/s.
 pub const BODY_RATES_MAX_RAD_S: Vector3<f32> = Vector3::new(20.0, 20.0, 10.0);
 
+/// Farthest that a flight begins from its reference, m: what the linear laws are good for.
+pub const START_MAX_M: f32 = 1.0;
+
 /// Forces that stop the motors.
 pub const STOPPED: MotorForces = [0.0; 4];
 

@@ -34,6 +34,7 @@ mod gains;
 mod ground;
 mod inner;
 mod jerk_fit;
+mod level;
 mod limits;
 mod memory;
 mod outer;

@@ -4,8 +4,12 @@ use nalgebra::Vector3;
 
 use crate::airframe::Airframe;
 #[cfg(feature = "cascade")]
-use crate::cascade::CascadeMemory;
+use crate::cascade::{Cascade, CascadeMemory};
+#[cfg(feature = "cascade")]
+use crate::mixer::MotorLimited;
 use crate::motor_lag::MotorForces;
+#[cfg(feature = "cascade")]
+use crate::supervisor::Levelled;
 
 /// What is remembered from step to step: one record for every law, so that another law can take over.
 ///
@@ -81,6 +85,19 @@ impl Memory {
     /// What the cascade remembers.
     pub const fn cascade(&self) -> &CascadeMemory {
         &self.cascade
+    }
+
+    #[cfg(feature = "cascade")]
+    /// The cascade takes over in flight from a law that does not keep its memory; the motors' forces stay.
+    pub fn begin_cascade_in_flight(&mut self) {
+        self.cascade.begin_in_flight();
+    }
+
+    #[cfg(feature = "cascade")]
+    /// Flies an attitude alone: forces, N, and what was given up; nothing where what is given is no number.
+    pub fn level(&mut self, cascade: &Cascade, levelled: &Levelled) -> Option<(MotorForces, MotorLimited)> {
+        let Levelled { attitude, body_rates_rad_s, acceleration_m_s2 } = levelled;
+        cascade.level(&mut self.cascade, &mut self.forces_n, (*attitude, body_rates_rad_s), acceleration_m_s2)
     }
 
     /// Forgets the integral: before another trajectory that begins elsewhere.

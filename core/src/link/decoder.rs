@@ -7,7 +7,7 @@ use core::marker::PhantomData;
 
 use super::counters::{Counters, Rejected};
 use super::size::RAW_FRAME_BYTES;
-use super::window::Window;
+use super::window::{Admission, Window};
 use super::{DELIMITER, Message, PROTOCOL_VERSION};
 use crate::checksum::Crc32c;
 
@@ -27,6 +27,7 @@ pub struct Received<M> {
 pub struct Decoder<M> {
     frame: Unstuffer,
     window: Window,
+    admission: Admission,
     counters: Counters,
     message: PhantomData<fn() -> M>,
 }
@@ -43,12 +44,23 @@ impl<M: Message> Decoder<M> {
     }
 
     const fn with(window: Window) -> Self {
-        Self { frame: Unstuffer::new(), window, counters: Counters::NONE, message: PhantomData }
+        Self {
+            frame: Unstuffer::new(),
+            window,
+            admission: Admission::Later,
+            counters: Counters::NONE,
+            message: PhantomData,
+        }
     }
 
     /// The open session.
     pub const fn session(&self) -> Option<u32> {
         self.window.session()
+    }
+
+    /// Says which hellos open another session from here on.
+    pub const fn admit(&mut self, admission: Admission) {
+        self.admission = admission;
     }
 
     /// What has been seen so far.
@@ -63,7 +75,7 @@ impl<M: Message> Decoder<M> {
             return None;
         }
         let result = match self.frame.end()? {
-            Ok(bytes) => Self::read(bytes, &mut self.window),
+            Ok(bytes) => Self::read(bytes, &mut self.window, self.admission),
             Err(rejected) => Err(rejected),
         };
         self.frame.reset();
@@ -92,7 +104,7 @@ impl<M: Message> Decoder<M> {
     }
 
     /// Reads a frame whose checksum is right and which has been cut off.
-    fn read(bytes: &[u8], window: &mut Window) -> Result<(Received<M>, u32), Rejected> {
+    fn read(bytes: &[u8], window: &mut Window, admission: Admission) -> Result<(Received<M>, u32), Rejected> {
         let (version, rest) = bytes.split_first().ok_or(Rejected::Malformed)?;
         if *version != PROTOCOL_VERSION {
             return Err(Rejected::Version { version: *version });
@@ -107,7 +119,7 @@ impl<M: Message> Decoder<M> {
         if !left.is_empty() {
             return Err(Rejected::Malformed);
         }
-        let skipped = window.take(session, sequence, message.opens_session())?;
+        let skipped = window.take(session, sequence, message.opens_session(), admission)?;
         Ok((Received { session, sequence, message }, skipped))
     }
 }

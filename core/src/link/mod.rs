@@ -18,8 +18,9 @@
 //! Session and sequence rule: within a session only a sequence number above the last accepted one is taken, so that
 //! duplicates, late and replayed frames are rejected; gaps are counted as lost. The board opens a session on
 //! [`ToBoard::Hello`] with a session number ahead of the current one (in serial-number arithmetic), the host on its own
-//! choice: a restarted host takes a later number, the seconds since 1970 say, and is not locked out. A session ends with
-//! its last sequence number, after 49 days at 1 kHz. None of this authenticates: anybody with access to the line can fly.
+//! choice: a restarted host takes a later number, the seconds since 1970 say, and is not locked out. What opens another session
+//! is the receiver's to say ([`Admission`]): nothing while a craft is armed, anything once its link has been silent. A session
+//! ends with its last sequence number, after 49 days at 1 kHz. None of this authenticates: anybody with access to the line can fly.
 //!
 //! On the target, [`BlobReceiver`] and [`TrajectoryStore`] are best statics of their own: they start as zeros and take
 //! no flash.
@@ -55,6 +56,7 @@ pub use trajectory_store::{
     BlobError, TRAJECTORY_BLOB_BYTES, TRAJECTORY_PIECES, TrajectorySlot, TrajectoryStore, encode_trajectory,
 };
 pub use upload::{BlobKind, Chunk, Progress, UploadBegin, UploadError};
+pub use window::Admission;
 
 /// Version of the frame layout and of every message in it. A changed message is a changed version.
 pub const PROTOCOL_VERSION: u8 = 3;

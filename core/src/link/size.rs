@@ -47,7 +47,7 @@ mod tests {
     use super::*;
     use crate::link::{Chunk, Counters, FromBoard, LoopStatistics, Message, StateIn, Telemetry, ToBoard};
     use crate::nalgebra::Vector3;
-    use crate::supervisor::{Mode, StopReason};
+    use crate::supervisor::{Fault, Mode, Reason};
     use crate::{FlatSample, State};
 
     fn length<M: Message>(message: &M) -> usize {
@@ -87,7 +87,7 @@ mod tests {
             stale: m,
             lost: m,
         };
-        let mode = Mode::Disarmed(Some(StopReason::StepFailed));
+        let mode = Mode::Stopped(Reason::Fault(Fault::ClockStopped));
         assert_eq!(length(&FromBoard::Telemetry(Telemetry { tick: m, mode, statistics, link })), TELEMETRY);
     }
 

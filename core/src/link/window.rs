@@ -2,6 +2,18 @@
 
 use super::counters::Rejected;
 
+/// Which hellos open another session than the one that is open.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Admission {
+    /// Those with a later number: late and replayed ones are none.
+    #[default]
+    Later,
+    /// None: what is flown keeps its master.
+    Nobody,
+    /// All of them, whatever their number: the master has fallen silent, and may come back with a clock of another time.
+    Anybody,
+}
+
 /// The open session of a receiver, if any.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Window {
@@ -24,9 +36,20 @@ impl Window {
     }
 
     /// Takes a frame, which `opens` a session or not, and says how many sequence numbers before it were skipped.
-    pub(crate) fn take(&mut self, session: u32, sequence: u32, opens: bool) -> Result<u32, Rejected> {
+    pub(crate) fn take(
+        &mut self,
+        session: u32,
+        sequence: u32,
+        opens: bool,
+        admission: Admission,
+    ) -> Result<u32, Rejected> {
         if self.session != Some(session) {
-            if !(opens && self.is_ahead(session)) {
+            let is_admitted = match admission {
+                Admission::Later => self.is_ahead(session),
+                Admission::Nobody => self.session.is_none(),
+                Admission::Anybody => true,
+            };
+            if !(opens && is_admitted) {
                 return Err(Rejected::ForeignSession { session });
             }
             // What the sender sent before its hello was for nobody.
@@ -50,45 +73,66 @@ impl Window {
 
 #[cfg(test)]
 mod tests {
+    use super::Admission::{Anybody, Later, Nobody};
     use super::*;
 
     #[test]
     fn only_later_numbers_are_taken() {
         let mut window = Window::open(7);
-        assert_eq!(window.take(7, 0, false), Ok(0));
-        assert_eq!(window.take(7, 0, false), Err(Rejected::Duplicate { sequence: 0 }));
-        assert_eq!(window.take(7, 5, false), Ok(4), "1 to 4 were skipped");
-        assert_eq!(window.take(7, 4, false), Err(Rejected::Stale { sequence: 4 }), "late");
-        assert_eq!(window.take(7, 5, true), Err(Rejected::Duplicate { sequence: 5 }), "a hello counts like any other");
-        assert_eq!(window.take(7, 6, true), Ok(0), "a hello may be repeated within its session");
+        assert_eq!(window.take(7, 0, false, Later), Ok(0));
+        assert_eq!(window.take(7, 0, false, Later), Err(Rejected::Duplicate { sequence: 0 }));
+        assert_eq!(window.take(7, 5, false, Later), Ok(4), "1 to 4 were skipped");
+        assert_eq!(window.take(7, 4, false, Later), Err(Rejected::Stale { sequence: 4 }), "late");
+        assert_eq!(
+            window.take(7, 5, true, Later),
+            Err(Rejected::Duplicate { sequence: 5 }),
+            "a hello counts like any other"
+        );
+        assert_eq!(window.take(7, 6, true, Later), Ok(0), "a hello may be repeated within its session");
     }
 
     #[test]
     fn a_session_ends_with_its_last_number() {
         let mut window = Window::open(0);
-        assert_eq!(window.take(0, u32::MAX, false), Ok(u32::MAX));
-        assert_eq!(window.take(0, u32::MAX, false), Err(Rejected::Duplicate { sequence: u32::MAX }));
-        assert_eq!(window.take(0, 0, false), Err(Rejected::Stale { sequence: 0 }), "numbers never start over");
-        assert_eq!(window.take(1, 0, true), Ok(0), "a new session does");
+        assert_eq!(window.take(0, u32::MAX, false, Later), Ok(u32::MAX));
+        assert_eq!(window.take(0, u32::MAX, false, Later), Err(Rejected::Duplicate { sequence: u32::MAX }));
+        assert_eq!(window.take(0, 0, false, Later), Err(Rejected::Stale { sequence: 0 }), "numbers never start over");
+        assert_eq!(window.take(1, 0, true, Later), Ok(0), "a new session does");
     }
 
     #[test]
     fn only_a_hello_with_a_later_number_opens_a_session() {
         let mut window = Window::closed();
-        assert_eq!(window.take(100, 0, false), Err(Rejected::ForeignSession { session: 100 }));
-        assert_eq!(window.take(100, 3, true), Ok(0));
+        assert_eq!(window.take(100, 0, false, Later), Err(Rejected::ForeignSession { session: 100 }));
+        assert_eq!(window.take(100, 3, true, Later), Ok(0));
         for earlier in [99, 0, 100_u32.wrapping_sub(1 << 30), 100 + (1 << 31)] {
-            let replayed = window.take(earlier, 0, true);
+            let replayed = window.take(earlier, 0, true, Later);
             assert_eq!(replayed, Err(Rejected::ForeignSession { session: earlier }), "{earlier} is not ahead of 100");
         }
-        assert_eq!(window.take(100, 4, false), Ok(0), "the session is still open");
-        assert_eq!(window.take(100 + (1 << 30), 0, true), Ok(0));
-        assert_eq!(window.take(100, 5, false), Err(Rejected::ForeignSession { session: 100 }), "and now it is closed");
+        assert_eq!(window.take(100, 4, false, Later), Ok(0), "the session is still open");
+        assert_eq!(window.take(100 + (1 << 30), 0, true, Later), Ok(0));
+        assert_eq!(
+            window.take(100, 5, false, Later),
+            Err(Rejected::ForeignSession { session: 100 }),
+            "and now it is closed"
+        );
     }
 
     #[test]
     fn session_numbers_wrap() {
         let mut window = Window::open(u32::MAX);
-        assert_eq!(window.take(0, 0, true), Ok(0));
+        assert_eq!(window.take(0, 0, true, Later), Ok(0));
+    }
+
+    #[test]
+    fn who_may_open_a_session_is_the_receivers_to_say() {
+        let mut window = Window::closed();
+        assert_eq!(window.take(100, 0, true, Nobody), Ok(0), "there is nobody whose it could be");
+        let foreign = |session| Err(Rejected::ForeignSession { session });
+        assert_eq!(window.take(101, 0, true, Nobody), foreign(101));
+        assert_eq!(window.take(100, 1, false, Nobody), Ok(0));
+        assert_eq!(window.take(7, 0, false, Anybody), foreign(7), "no hello");
+        assert_eq!(window.take(7, 0, true, Anybody), Ok(0), "an earlier number");
+        assert_eq!(window.take(100, 2, false, Anybody), foreign(100));
     }
 }

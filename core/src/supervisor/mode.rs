@@ -1,4 +1,4 @@
-//! The supervisor's modes, what leads to them, and what follows from them.
+//! What a craft is doing as the supervisor has it, why it stopped doing something else, and what reaches its motors.
 
 use core::fmt;
 
@@ -15,49 +15,109 @@ pub enum Fault {
     ClockStopped,
 }
 
-/// Why a flight, or readiness for one, ended.
+/// Why a flight does not go on as it was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum StopReason {
-    /// A disarm request.
-    Requested,
+#[non_exhaustive]
+pub enum Reason {
+    /// A fault that only a restart mends.
+    Fault(Fault),
     /// More overruns in a row than tolerated.
     Overrun,
-    /// No accepted frame for longer than allowed.
-    LinkLost,
-    /// The last state is older than allowed.
-    StaleState,
-    /// There was nothing to follow while flying.
-    NoReference,
+    /// No attitude for longer than the gyroscope can carry one on.
+    AttitudeLost,
+    /// No body rates for longer than a craft flies without.
+    BodyRatesLost,
     /// State, reference or law gave no command.
     StepFailed,
+    /// No position or velocity for longer than they are bridged.
+    StateLost,
+    /// No accepted frame for longer than allowed.
+    LinkLost,
+    /// What is to be followed makes no sense.
+    BadReference,
+    /// There was nothing to follow, or it is too old.
+    NoReference,
+    /// What is to be followed begins farther from the craft than the law is good for.
+    StartTooFar,
+    /// The craft has left the space that it is allowed.
+    Geofence,
+    /// The battery is empty.
+    Battery,
+    /// The motors have been at their limits for longer than allowed.
+    Saturated,
+    /// It has come down.
+    Landed,
+    /// It has been going down for longer than allowed.
+    NoGround,
 }
 
-/// What the supervisor is in.
+/// What a craft that cannot fly any more does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Tumble {
+    /// Tilted beyond 60 degrees for longer than allowed.
+    Tilted,
+    /// Upside down for longer than allowed.
+    UpsideDown,
+    /// At rest while its motors give all that they have.
+    NoClimb,
+}
+
+/// What the craft is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Mode {
-    /// Motors off; why, if it was ever armed since start-up.
-    Disarmed(Option<StopReason>),
-    /// Motors may turn, the command is zero until there is one.
+    /// Motors off, as asked.
+    OnGround,
+    /// Motors may turn, and do with the first command.
     Armed,
-    /// Commands pass.
+    /// Flown as it is asked to.
     Flying,
-    /// Motors off until a restart.
-    Faulted(Fault),
+    /// Brakes to a standstill and stays there.
+    Holding(Reason),
+    /// Goes down: above its place where it knows one, else level by attitude.
+    LevelAndDown(Reason),
+    /// Motors off until it is armed anew.
+    Stopped(Reason),
+    /// Motors off until it is armed anew, upright.
+    Tumbled(Tumble),
 }
 
-/// Why an arm request is refused.
+/// What reaches the motors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum ArmError {
-    /// A fault that only a restart mends.
-    Faulted(Fault),
-    /// The link has been silent for too long; the request that came over it is too old.
-    LinkSilent,
+pub enum Action {
+    /// Nothing: they are off.
+    Off,
+    /// The law, towards what it is asked to follow.
+    Fly,
+    /// The law, towards a standstill and then downwards.
+    Brake,
+    /// The attitude alone: level, and down.
+    Level,
+}
+
+impl Mode {
+    /// Whether the motors may turn.
+    pub const fn motors_allowed(self) -> bool {
+        matches!(self, Self::Armed) || self.is_in_air()
+    }
+
+    /// Whether it flies, in whichever way.
+    pub const fn is_in_air(self) -> bool {
+        matches!(self, Self::Flying | Self::Holding(_) | Self::LevelAndDown(_))
+    }
+
+    /// Why it does not fly as it was asked to.
+    pub const fn reason(self) -> Option<Reason> {
+        match self {
+            Self::Holding(reason) | Self::LevelAndDown(reason) | Self::Stopped(reason) => Some(reason),
+            Self::OnGround | Self::Armed | Self::Flying | Self::Tumbled(_) => None,
+        }
+    }
 }
 
 impl fmt::Display for Fault {
@@ -70,15 +130,34 @@ impl fmt::Display for Fault {
     }
 }
 
-impl fmt::Display for StopReason {
+impl fmt::Display for Reason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Requested => "by request",
+            Self::Fault(fault) => return write!(f, "{fault}; restart the board"),
             Self::Overrun => "a tick overran",
-            Self::LinkLost => "link lost",
-            Self::StaleState => "state too old",
-            Self::NoReference => "no reference",
+            Self::AttitudeLost => "no attitude",
+            Self::BodyRatesLost => "no body rates",
             Self::StepFailed => "no command from the step",
+            Self::StateLost => "no position or velocity",
+            Self::LinkLost => "link lost",
+            Self::BadReference => "reference that cannot be flown",
+            Self::NoReference => "no reference",
+            Self::StartTooFar => "start too far from the reference",
+            Self::Geofence => "outside the geofence",
+            Self::Battery => "battery empty",
+            Self::Saturated => "motors at their limits",
+            Self::Landed => "landed",
+            Self::NoGround => "no ground found",
+        })
+    }
+}
+
+impl fmt::Display for Tumble {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Tilted => "tilted beyond 60 degrees",
+            Self::UpsideDown => "upside down",
+            Self::NoClimb => "no climb at full thrust",
         })
     }
 }
@@ -86,34 +165,13 @@ impl fmt::Display for StopReason {
 impl fmt::Display for Mode {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Disarmed(None) => f.write_str("disarmed"),
-            Self::Disarmed(Some(reason)) => write!(f, "disarmed ({reason})"),
+            Self::OnGround => f.write_str("on the ground"),
             Self::Armed => f.write_str("armed"),
             Self::Flying => f.write_str("flying"),
-            Self::Faulted(fault) => write!(f, "faulted ({fault}; restart the board)"),
+            Self::Holding(reason) => write!(f, "holding ({reason})"),
+            Self::LevelAndDown(reason) => write!(f, "going down ({reason})"),
+            Self::Stopped(reason) => write!(f, "stopped ({reason})"),
+            Self::Tumbled(tumble) => write!(f, "tumbled ({tumble})"),
         }
-    }
-}
-
-impl fmt::Display for ArmError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Faulted(fault) => write!(f, "arm: {fault} since start-up; restart the board"),
-            Self::LinkSilent => f.write_str("arm: the link is silent; send states first"),
-        }
-    }
-}
-
-impl core::error::Error for ArmError {}
-
-impl Mode {
-    /// Whether the motors may turn.
-    pub const fn motors_allowed(self) -> bool {
-        matches!(self, Self::Armed | Self::Flying)
-    }
-
-    /// Whether the step's command reaches the motors.
-    pub const fn command_passes(self) -> bool {
-        matches!(self, Self::Flying)
     }
 }

@@ -251,6 +251,8 @@ mod image {
             self.flight.set_limits(limits).ok()?;
             self.flight.select(law).ok()?;
             self.flight.playback.start(stored::player(course.id)?);
+            let start = State::at_rest(self.flight.playback.begins_at_m()?);
+            self.flight.accept(StateIn { tick: 0, state: start }, self.timing.now());
             self.flight.hear(self.timing.now());
             self.flight.arm(self.timing.now()).ok()
         }

@@ -3,7 +3,8 @@
 
 use quatrack::link::NoCommand;
 use quatrack::nalgebra::Vector3;
-use quatrack::{Measured, MotorForces, Output, State, Target, Tick};
+use quatrack::supervisor::Looked;
+use quatrack::{Measured, MotorForces, Output, Target, Tick};
 
 use crate::craft::BodyRates;
 use crate::drivers::battery::CellVoltage;
@@ -36,6 +37,21 @@ impl ToMotors {
     #[inline(always)]
     pub(super) fn look_at(&mut self, _rates: BodyRates) {}
 
+    #[inline(always)]
+    pub(super) fn body_rates(&self, _rates: BodyRates, _is_fresh: bool) -> Option<Vector3<f32>> {
+        None
+    }
+
+    #[inline(always)]
+    pub(super) const fn are_driven(&self) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    pub(super) const fn can_level(&self) -> bool {
+        false
+    }
+
     /// A step down to its command.
     #[inline(always)]
     pub(super) fn step(
@@ -43,13 +59,12 @@ impl ToMotors {
         laws: &mut Laws,
         playback: &mut Playback,
         tick: Tick,
-        state: Option<&State>,
-        _rates: BodyRates,
+        looked: &Looked<'_>,
+        _has_body_rates: bool,
     ) -> Result<Output, NoCommand> {
-        let Some(state) = state.filter(|_| playback.is_there()) else { return Err(NoCommand::NoReference) };
         // Looked at where it lies: to move a reference out costs as many instructions as the product with a gain.
         match &playback.reference(tick) {
-            Ok(reference) => laws.step(Measured::new(state), Target::new(reference)).map_err(NoCommand::Step),
+            Ok(reference) => laws.step(Measured::new(looked.state), Target::new(reference)).map_err(NoCommand::Step),
             Err(error) => Err(NoCommand::Reference(*error)),
         }
     }

@@ -2,7 +2,8 @@
 
 use quatrack::link::NoCommand;
 use quatrack::nalgebra::Vector3;
-use quatrack::{Heading, Measured, MotorForces, MotorReference, Output, State, StepError, Target, Tick};
+use quatrack::supervisor::Looked;
+use quatrack::{Measured, MotorForces, Output, StepError, Target, Tick};
 
 use crate::craft::BodyRates;
 use crate::drivers::battery::CellVoltage;
@@ -19,12 +20,20 @@ pub struct ToMotors {
     passed_n: MotorForces,
     /// The last step had body rates, or should have had: forces answer the state.
     answers_by_forces: bool,
+    /// The board has a gyroscope, in order or not.
+    has_gyroscope: bool,
 }
 
 impl ToMotors {
     /// Motors off.
     pub(super) const fn new() -> Self {
-        Self { battery: CellVoltage::NOMINAL, sent_rad_s: None, passed_n: STOPPED, answers_by_forces: false }
+        Self {
+            battery: CellVoltage::NOMINAL,
+            sent_rad_s: None,
+            passed_n: STOPPED,
+            answers_by_forces: false,
+            has_gyroscope: false,
+        }
     }
 
     /// What the duties are reckoned with.
@@ -51,53 +60,66 @@ impl ToMotors {
     /// Looks at whether there are body rates, or should be: forces then answer the state, or why there are none.
     #[inline]
     pub(super) fn look_at(&mut self, rates: BodyRates) {
-        self.answers_by_forces = self.sent_rad_s.is_some() || rates != BodyRates::NoGyroscope;
+        self.has_gyroscope |= rates != BodyRates::NoGyroscope;
+        self.answers_by_forces = self.are_driven();
     }
 
-    /// A step, down to the motors if there are body rates or should be. The gyroscope's count before those that came with the
-    /// state.
+    /// The body rates of a step: the gyroscope's count before those that came with the state. One that has failed gives no
+    /// numbers, and neither do those of a state that is too old.
+    #[inline]
+    pub(super) fn body_rates(&self, rates: BodyRates, is_fresh: bool) -> Option<Vector3<f32>> {
+        const NONE: Vector3<f32> = Vector3::new(f32::NAN, f32::NAN, f32::NAN);
+        match rates {
+            BodyRates::Measured(rates) => Some(rates),
+            BodyRates::NoGyroscope if is_fresh => self.sent_rad_s,
+            BodyRates::NoGyroscope => self.sent_rad_s.map(|_| NONE),
+            BodyRates::Failed => Some(NONE),
+        }
+    }
+
+    /// Takes the word that the board has a gyroscope.
+    pub fn set_gyroscope(&mut self) {
+        self.has_gyroscope = true;
+    }
+
+    /// Whether steps end in motor forces.
+    #[inline]
+    pub(super) const fn are_driven(&self) -> bool {
+        self.has_gyroscope || self.sent_rad_s.is_some()
+    }
+
+    /// There are motors.
+    #[inline]
+    pub(super) const fn can_level(&self) -> bool {
+        true
+    }
+
+    /// A step, down to the motors if there are body rates or should be.
     #[inline]
     pub(super) fn step(
         &mut self,
         laws: &mut Laws,
         playback: &mut Playback,
         tick: Tick,
-        state: Option<&State>,
-        rates: BodyRates,
+        looked: &Looked<'_>,
+        has_body_rates: bool,
     ) -> Result<Output, NoCommand> {
-        let Some(state) = state else { return Err(NoCommand::NoReference) };
-        let rates = match rates {
-            BodyRates::Measured(rates) => Some(rates),
-            BodyRates::NoGyroscope => self.sent_rad_s,
-            BodyRates::Failed => None,
-        };
         let follows_samples = laws.follows_samples();
-        if rates.is_none() && (self.answers_by_forces || follows_samples || laws.follows_forces()) {
+        if !has_body_rates && (self.answers_by_forces || laws.follows_forces() || follows_samples) {
             return Err(NoCommand::NoBodyRates);
         }
-        if !playback.is_there() {
-            return Err(NoCommand::NoReference);
-        }
-        let measured = match &rates {
-            Some(rates) => Measured::new(state).with_body_rates(rates),
-            None => Measured::new(state),
-        };
+        let measured = Measured::new(looked.state);
+        let measured = if has_body_rates { measured.with_body_rates(looked.body_rates_rad_s) } else { measured };
         let output = if follows_samples {
-            let sample = playback.sample(tick);
-            let heading = Heading::from_angle(sample.flat.heading_rad);
-            if laws.is_changing() {
-                // The other law takes a reference, down to the forces of the craft that it reckons with.
-                let airframe = laws.airframe().ok_or(NoCommand::Step(StepError::NoActuation))?;
-                let reference = MotorReference::from_flat(&sample, airframe).map_err(NoCommand::Reference)?;
-                let target = Target::with_forces(&reference).and_sample(&sample, heading);
-                laws.step(measured, target.at(playback.progress()))
-            } else {
-                laws.step(measured, Target::with_sample(&sample, heading))
-            }
+            let (sample, heading) = playback.sample(tick).map_err(NoCommand::Reference)?;
+            laws.step(measured, Target::with_sample(&sample, heading))
         } else if laws.follows_forces() {
             let airframe = laws.airframe().ok_or(NoCommand::Step(StepError::NoActuation))?;
             let reference = playback.motor_reference(tick, airframe).map_err(NoCommand::Reference)?;
-            laws.step(measured, Target::with_forces(&reference).at(playback.progress()))
+            // For the cascade, on the way from one law to another.
+            let (sample, heading) = playback.sample(tick).map_err(NoCommand::Reference)?;
+            let target = Target::with_forces(&reference).at(playback.progress());
+            laws.step(measured, target.and_sample(&sample, heading))
         } else {
             // Looked at where it lies: to move a reference out costs as many instructions as the product with a gain.
             match &playback.reference(tick) {

@@ -2,17 +2,22 @@
 
 use quatrack::gains::table::{AcceptedTable, TableKind};
 use quatrack::link::{LawChoice, Table};
+use quatrack::supervisor::{Certified, Levelled, Looked, Rescue};
 use quatrack::{
-    Actuation, ActuatorAware, Controller, Law, Limits, Measured, Memory, Output, Settings, StepError, Target,
+    Actuation, ActuatorAware, Controller, FifthOrderSample, Heading, Law, Limits, Measured, Memory, Output, Settings,
+    StepError, Target,
 };
 
+use super::Laws;
 use crate::rates::TICK_RATE;
 
 /// There is none.
 pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> = None;
 
-/// Nor this.
-pub(crate) const BUILT_IN_CASCADE: Option<Law<'static>> = None;
+/// There is none.
+pub(crate) const fn cascade() -> Option<Law<'static>> {
+    None
+}
 
 /// None.
 pub struct Actuations;
@@ -37,6 +42,39 @@ impl Actuations {
             error_form: choice.error_form,
             ..Settings::new(limits, TICK_RATE)
         }
+    }
+}
+
+impl Laws {
+    /// Nothing is driven.
+    pub(crate) const fn covers(&self, _are_driven: bool) -> Certified {
+        Certified::NoMotors
+    }
+
+    /// Nobody asks.
+    #[inline(always)]
+    pub(crate) const fn thrust_m_s2(&self) -> f32 {
+        0.0
+    }
+
+    /// Not without motors.
+    pub(crate) fn brake(
+        &mut self,
+        _looked: &Looked<'_>,
+        _sample: &FifthOrderSample,
+        _heading: Heading,
+    ) -> Result<Output, StepError> {
+        Err(StepError::NoActuation)
+    }
+
+    /// Not without motors.
+    pub(crate) fn brake_from(&mut self, _: &Rescue, _: &FifthOrderSample, _: Heading) -> Option<Output> {
+        None
+    }
+
+    /// Not without motors.
+    pub(crate) fn level(&mut self, _levelled: &Levelled) -> Result<Output, StepError> {
+        Err(StepError::NoActuation)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use quatrack::body_rate::BandwidthError;
 use quatrack::cascade::{Cascade, CascadeLimits};
-use quatrack::gains::cascade::CRAZYFLIE_2_1_DEFAULT;
 use quatrack::gains::table::{AcceptedTable, CascadeTable};
 use quatrack::link::{LawChoice, Table};
 use quatrack::{
@@ -10,27 +9,21 @@ use quatrack::{
     Target,
 };
 
+use super::rescue::CASCADE;
 use crate::rates::TICK_RATE;
-use crate::vehicle::{ACTUATION, AIRFRAME, STEP_RATE};
+use crate::vehicle::{ACTUATION, AIRFRAME};
 
 /// The table in the image.
 pub mod table {
     include!("../../../gains/generated/actuator-aware.rs");
 }
 
+/// The law of nested loops in the image, for steps at [`crate::vehicle::STEP_RATE`].
+pub(crate) fn cascade() -> Option<Law<'static>> {
+    Some(Law::from(&CASCADE))
+}
+
 static TO_MOTORS: Actuation = ACTUATION;
-
-/// The cascade in the image, for steps at [`crate::vehicle::STEP_RATE`].
-static CASCADE: Cascade = {
-    let table = &CRAZYFLIE_2_1_DEFAULT.table;
-    match table.flown(&AIRFRAME, STEP_RATE, &CascadeLimits::STANDARD, &table.air) {
-        Ok(cascade) => cascade,
-        Err(_) => panic!("the motors are too fast for this rate"),
-    }
-};
-
-/// The same as a law.
-pub(crate) const BUILT_IN_CASCADE: Option<Law<'static>> = Some(Law::Cascade(&CASCADE));
 
 /// The board's ways to its motors: its own, and that of each slot's table, which may reckon with another motor lag; and the
 /// cascades that are made of loaded tables.

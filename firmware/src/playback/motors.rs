@@ -1,11 +1,46 @@
 //! The same sources, to the motors: a stored trajectory to its fifth derivative; what the link sends to its jerk, and
 //! without what lies beyond.
 
-use quatrack::{Airframe, FifthOrderSample, MotorReference, Player, ReferenceError, Tick};
+use quatrack::error::Field;
+use quatrack::{
+    Airframe, FifthOrderSample, FlatSample, Heading, MotorReference, Player, Reference, ReferenceError, Tick,
+};
 
 use super::{NOWHERE, Playback, Source};
 
 impl Playback {
+    /// The flat output at a tick of the clock and its heading, for a law that makes its own reference of it.
+    ///
+    /// # Errors
+    /// [`ReferenceError`] where it cannot be flown.
+    pub fn sample(&mut self, now: Tick) -> Result<(FifthOrderSample, Heading), ReferenceError> {
+        let tick = self.trajectory_tick(now);
+        let sample = match &mut self.source {
+            Source::Flash(player) if self.moving => player.at_fifth_order(tick),
+            Source::Link(sample) => {
+                // What comes from outside is looked at, what is stored has been.
+                Reference::from_flat(sample)?;
+                FifthOrderSample::of_jerk(*sample)
+            }
+            Source::Flash(player) => at_rest(&player.at(tick)),
+            Source::Uploaded(bookmark) => {
+                let trajectory = self.store.active().trajectory();
+                match trajectory.and_then(|trajectory| Player::resume(trajectory, *bookmark)) {
+                    Some(mut player) if self.moving => {
+                        let sample = player.at_fifth_order(tick);
+                        *bookmark = player.bookmark();
+                        sample
+                    }
+                    Some(mut player) => at_rest(&player.at(tick)),
+                    // Another trajectory has been put to use since this one was started.
+                    None => return Err(nowhere()),
+                }
+            }
+            Source::Nothing => return Err(nowhere()),
+        };
+        Ok((sample, Heading::from_angle(sample.flat.heading_rad)))
+    }
+
     /// The reference at a tick of the clock, down to the motor forces of a craft.
     ///
     /// # Errors
@@ -33,30 +68,12 @@ impl Playback {
         };
         MotorReference::hover(sample.position_m, sample.heading_rad, airframe)
     }
+}
 
-    /// The flat output at a tick of the clock: of a stored trajectory to its fifth derivative, of the link to its jerk. Not finite
-    /// where there is nothing to follow.
-    pub fn sample(&mut self, now: Tick) -> FifthOrderSample {
-        let tick = self.trajectory_tick(now);
-        let sample = match &mut self.source {
-            Source::Link(sample) => return FifthOrderSample::of_jerk(*sample),
-            Source::Flash(player) if self.moving => return player.at_fifth_order(tick),
-            Source::Flash(player) => player.at(tick),
-            Source::Uploaded(bookmark) => {
-                let trajectory = self.store.active().trajectory();
-                match trajectory.and_then(|trajectory| Player::resume(trajectory, *bookmark)) {
-                    Some(mut player) if self.moving => {
-                        let sample = player.at_fifth_order(tick);
-                        *bookmark = player.bookmark();
-                        return sample;
-                    }
-                    Some(mut player) => player.at(tick),
-                    // Another trajectory has been put to use since this one was started.
-                    None => NOWHERE,
-                }
-            }
-            Source::Nothing => NOWHERE,
-        };
-        FifthOrderSample::at_rest(sample.position_m, sample.heading_rad)
-    }
+fn at_rest(sample: &FlatSample) -> FifthOrderSample {
+    FifthOrderSample::at_rest(sample.position_m, sample.heading_rad)
+}
+
+const fn nowhere() -> ReferenceError {
+    ReferenceError::NonFinite { field: Field::Position, value: f32::NAN }
 }

@@ -10,10 +10,10 @@ use quatrack::gains::cascade::CRAZYFLIE_2_1_DEFAULT;
 use quatrack::gains::paper;
 use quatrack::link::{ForcesOut, FromBoard, LawChoice, NoCommand, RigidStateIn, StateIn, Table, TrajectoryId};
 use quatrack::nalgebra::Vector3;
-use quatrack::supervisor::{Fault, Mode, StopReason};
+use quatrack::supervisor::{ArmError, Fault, Mode, Reason};
 use quatrack::{
-    Actuation, ActuatorAware, Controller, Equilibrium, Handover, Heading, Limits, Memory, MotorForces, MotorReference,
-    Output, Rate, RigidState, State, StateError, StepError, Target, Tick,
+    Actuation, ActuatorAware, Controller, Equilibrium, FlatSample, Handover, Heading, Limits, Memory, MotorForces,
+    MotorReference, Output, Quaternion, Rate, RigidState, State, Target, Tick,
 };
 use quatrack_firmware::craft::{BoardCraft, BodyRates, Craft};
 use quatrack_firmware::drivers::battery::CellVoltage;
@@ -47,7 +47,9 @@ fn board(table: Table) -> Flight {
 fn flying(table: Table, now: Tick) -> Flight {
     let mut flight = board(table);
     flight.hear(now);
-    flight.arm(now).expect("the link has just been heard");
+    // A law of commands is not armed for motors that lag, and so before any body rates come.
+    flight.accept(StateIn { tick: 7, state: state(0).state }, now);
+    flight.arm(now).expect("it is where the trajectory begins");
     flight.accept_rigid(RigidStateIn { tick: 7, state: state(0) }, now);
     flight.step(now, false, BodyRates::NoGyroscope);
     assert_eq!(flight.mode(), Mode::Flying);
@@ -62,10 +64,10 @@ fn answered(flight: &mut Flight) -> ForcesOut {
     }
 }
 
-fn stopped(flight: &Flight) -> Option<StopReason> {
+fn stopped(flight: &Flight) -> Reason {
     assert_eq!((*flight.forces_n(), *flight.driven_forces_n()), (NONE, NONE), "a flight that has ended holds no force");
     match flight.mode() {
-        Mode::Disarmed(reason) => reason,
+        Mode::Stopped(reason) => reason,
         mode => panic!("still {mode}"),
     }
 }
@@ -179,64 +181,171 @@ fn before_it_is_armed_and_after_a_disarm_there_are_no_forces() {
         assert!(!flight.takes_body_rates(), "nobody asks the gyroscope");
         let mut flight = flying(table, 0);
         flight.disarm();
-        assert_eq!(stopped(&flight), Some(StopReason::Requested));
+        assert_eq!((flight.mode(), flight.forces_n()), (Mode::OnGround, &NONE));
+    }
+}
+
+/// A craft in flight with a gyroscope of its own, which never stands quite still.
+struct Gyroscopic {
+    flight: Flight,
+    now: Tick,
+}
+
+impl Gyroscopic {
+    fn flying(table: Table) -> Self {
+        Self { flight: flying(table, 0), now: 0 }
+    }
+
+    /// The next step, with a state or without.
+    fn step(&mut self, state: Option<RigidState>) {
+        self.now += 2;
+        let wobble = if self.now.is_multiple_of(4) { 1e-3 } else { -1e-3 };
+        if let Some(state) = state {
+            self.flight.hear(self.now);
+            self.flight.accept(StateIn { tick: self.now, state: state.state }, self.now);
+        }
+        self.flight.step(self.now, false, BodyRates::Measured(Vector3::new(wobble, 0.0, 0.0)));
+    }
+}
+
+#[test]
+fn after_the_link_is_lost_it_levels_and_lands_on_its_own_gyroscope() {
+    for table in LAWS {
+        let mut craft = Gyroscopic::flying(table);
+        let mut modes = vec![];
+        while craft.flight.mode().is_in_air() {
+            craft.step(None);
+            if modes.last() != Some(&craft.flight.mode()) {
+                modes.push(craft.flight.mode());
+            }
+            let [a, b, c, d] = *craft.flight.forces_n();
+            if craft.now > 2500 && craft.flight.mode().is_in_air() {
+                let hover = 4.0 * AIRFRAME.hover_force_n();
+                // A little less than the weight, whatever became of the climb before.
+                let thrust = a + b + c + d;
+                assert!(thrust > 0.9 * hover && thrust < hover, "{} of {hover} at {}", thrust, craft.now);
+            }
+        }
+        let down = Mode::LevelAndDown(Reason::StateLost);
+        let off = Mode::Stopped(Reason::AttitudeLost);
+        assert!(
+            modes.starts_with(&[Mode::Flying, Mode::Holding(Reason::LinkLost)]) || modes.contains(&down),
+            "{modes:?}"
+        );
+        assert_eq!(modes.last(), Some(&off), "{modes:?}");
+        assert!(craft.now > 15_000 && craft.now < 15_100, "as long as the gyroscope is believed: {}", craft.now);
+    }
+}
+
+#[test]
+fn a_reference_that_is_none_is_braked_for() {
+    for table in LAWS {
+        let mut craft = Gyroscopic::flying(table);
+        craft.flight.playback.follow(FlatSample::at_rest(Vector3::new(0.0, 0.0, f32::NAN), 0.0));
+        for step in 1..1000 {
+            craft.step(Some(state(step)));
+            assert_ne!(craft.flight.forces_n(), &NONE);
+            let expected = if craft.now <= 1502 {
+                Mode::Holding(Reason::BadReference)
+            } else {
+                Mode::LevelAndDown(Reason::BadReference)
+            };
+            assert_eq!(craft.flight.mode(), expected, "{}", craft.now);
+        }
+        craft.flight.playback.follow(FlatSample::at_rest(state(0).state.position_m, 0.0));
+        for step in 1..100 {
+            craft.step(Some(state(step)));
+        }
+        assert_eq!(craft.flight.mode(), Mode::Flying, "sound again for a tenth of a second");
     }
 }
 
 #[test]
 fn whatever_ends_a_flight_ends_with_no_forces() {
     for table in LAWS {
+        // On body rates that come with the state, none are left to level by.
         let mut old = flying(table, 0);
         let now = CONFIG.state_age_max_ticks + 1;
         old.hear(now);
-        old.watch(now, false);
-        assert_eq!(stopped(&old), Some(StopReason::StaleState));
-
-        let mut silent = flying(table, 0);
-        silent.config.state_age_max_ticks = 10_000;
-        silent.step(CONFIG.link_silence_max_ticks + 1, false, BodyRates::NoGyroscope);
-        assert_eq!(stopped(&silent), Some(StopReason::LinkLost));
+        old.step(now, false, BodyRates::NoGyroscope);
+        old.step(now + 2, false, BodyRates::NoGyroscope);
+        assert_eq!(stopped(&old), Reason::BodyRatesLost);
 
         let mut late = flying(table, 0);
         for tick in 1..=CONFIG.overruns_tolerated + 1 {
             late.step(tick, true, BodyRates::NoGyroscope);
         }
-        assert_eq!(stopped(&late), Some(StopReason::Overrun));
-
-        let mut aimless = flying(table, 0);
-        aimless.playback.stop();
-        aimless.step(2, false, BodyRates::NoGyroscope);
-        assert_eq!(stopped(&aimless), Some(StopReason::NoReference));
+        assert_eq!(stopped(&late), Reason::Overrun);
 
         let mut faulted = flying(table, 0);
         faulted.fail(Fault::StackExhausted, 2);
         assert_eq!(faulted.forces_n(), &NONE);
         faulted.step(4, false, BodyRates::NoGyroscope);
-        assert_eq!((faulted.forces_n(), faulted.mode()), (&NONE, Mode::Faulted(Fault::StackExhausted)));
+        let stopped = Mode::Stopped(Reason::Fault(Fault::StackExhausted));
+        assert_eq!((faulted.forces_n(), faulted.mode()), (&NONE, stopped));
     }
 }
 
 #[test]
-fn body_rates_that_are_none_end_the_flight() {
+fn body_rates_that_are_none_are_bridged_by_the_attitude_and_then_end_the_flight() {
     for table in LAWS {
-        for value in [f32::NAN, f32::INFINITY] {
+        for failed in [BodyRates::Failed, BodyRates::Measured(Vector3::new(0.0, f32::INFINITY, 0.0))] {
             let mut flight = flying(table, 0);
-            let _ = flight.take_message();
-            let mut bad = state(1);
-            bad.body_rates_rad_s.y = value;
-            flight.accept_rigid(RigidStateIn { tick: 2, state: bad }, 2);
-            flight.step(2, false, BodyRates::NoGyroscope);
-            assert_eq!(stopped(&flight), Some(StopReason::StepFailed));
-            let refused = answered(&mut flight).result;
-            assert!(
-                matches!(refused, Err(NoCommand::Step(StepError::State(StateError::NonFinite { .. })))),
-                "{refused:?}"
-            );
+            let mut now = 0;
+            while flight.mode().is_in_air() {
+                now += 2;
+                flight.hear(now);
+                flight.accept(StateIn { tick: now, state: state(now as u16).state }, now);
+                flight.step(now, false, failed);
+            }
+            assert_eq!(stopped(&flight), Reason::BodyRatesLost);
+            assert!(now > 600 && now < 610, "{now}");
         }
-        let mut deaf = flying(table, 0);
-        deaf.step(2, false, BodyRates::Failed);
-        assert_eq!(stopped(&deaf), Some(StopReason::StepFailed), "a gyroscope that fails is not flown without");
     }
+}
+
+#[test]
+fn the_default_is_the_cascade_where_there_are_body_rates() {
+    for (has_rates, expected) in [(true, Table::Cascade), (false, Table::LqrE)] {
+        let mut flight = Flight::new(Box::leak(Box::default()), None);
+        flight.playback.start(stored::player(TrajectoryId::Mild).expect("it is in flash"));
+        flight.hear(0);
+        if has_rates {
+            flight.accept_rigid(RigidStateIn { tick: 0, state: state(0) }, 0);
+        } else {
+            flight.accept(StateIn { tick: 0, state: state(0).state }, 0);
+        }
+        flight.arm(0).expect("it is fit to fly");
+        assert_eq!(flight.law().table, expected);
+        flight.step(0, false, BodyRates::NoGyroscope);
+        assert_eq!(flight.mode(), Mode::Flying);
+        assert_eq!(flight.forces_n() != &NONE, has_rates);
+    }
+}
+
+#[test]
+fn a_law_that_no_certificate_covers_is_not_armed_for_motors() {
+    for (table, expected) in [
+        (Table::LqrE, Err(ArmError::NotCertified)),
+        (Table::LyapF, Err(ArmError::NotCertified)),
+        (Table::ActuatorAware, Ok(())),
+        (Table::Cascade, Ok(())),
+    ] {
+        let mut flight = board(table);
+        flight.hear(0);
+        flight.accept_rigid(RigidStateIn { tick: 0, state: state(0) }, 0);
+        assert_eq!(flight.arm(0), expected, "{table:?}");
+    }
+    let mut flight = board(Table::ActuatorAware);
+    flight.hear(0);
+    assert_eq!(flight.arm(0), Err(ArmError::NoState));
+    let mut tilted = state(0);
+    tilted.state.attitude = Quaternion::new(0.966, 0.0, 0.259, 0.0);
+    flight.accept_rigid(RigidStateIn { tick: 0, state: tilted }, 0);
+    assert!(matches!(flight.arm(0), Err(ArmError::Tilted { .. })), "30 degrees");
+    flight.accept_rigid(RigidStateIn { tick: 0, state: state(0) }, 0);
+    flight.motors.set_battery(CellVoltage::new(2.5).unwrap());
+    assert_eq!(flight.arm(0), Err(ArmError::Battery { volts: 2.5 }));
 }
 
 #[test]
@@ -250,7 +359,7 @@ fn without_body_rates_a_law_that_needs_none_commands_and_drives_nothing() {
     let mut flight = flying(Table::ActuatorAware, 0);
     flight.accept(StateIn { tick: 2, state: state(1).state }, 2);
     flight.step(2, false, BodyRates::NoGyroscope);
-    assert_eq!(stopped(&flight), Some(StopReason::StepFailed));
+    assert_eq!(stopped(&flight), Reason::StepFailed);
     let answer = flight.take_message();
     assert!(matches!(answer, Some(FromBoard::Command(command)) if command.result == Err(NoCommand::NoBodyRates)));
 }
@@ -278,7 +387,7 @@ fn in_lock_step_with_a_simulation_the_motors_stay_off() {
     let mut flight = board(Table::ActuatorAware);
     flight.set_decimation(LOCK_STEP);
     flight.hear(0);
-    flight.arm(0).unwrap();
+    flight.arm(0).expect("no motor turns");
     flight.accept_rigid(RigidStateIn { tick: 0, state: state(0) }, 0);
     flight.step(0, false, BodyRates::NoGyroscope);
     assert!(answered(&mut flight).result.is_ok());

@@ -59,6 +59,7 @@ fn a_change_in_flight_takes_its_steps_whatever_is_asked_meanwhile() {
     let mut flight = board();
     load(&mut flight).unwrap();
     flight.hear(0);
+    flight.accept(StateIn { tick: 0, state: State::at_rest(Vector3::new(0.0, 0.0, -0.1)) }, 0);
     flight.arm(0).unwrap();
     // LQR-E is cut to the most thrust, that of four motors of 0.12 N at 29 g; LYAP-E gives 9.81 + 8 * 0.1.
     let most = flight.limits().thrust_max_m_s2;
@@ -89,6 +90,7 @@ fn a_table_that_is_flown_is_not_taken_away() {
     }
     flight.select(LawChoice::new(Table::Loaded(1))).unwrap();
     flight.hear(0);
+    flight.accept(StateIn { tick: 0, state: State::at_rest(Vector3::new(0.0, 0.0, -0.1)) }, 0);
     flight.arm(0).unwrap();
     assert_eq!(load(&mut flight), Err(Refused::Busy), "it would be the room for the next one");
     flight.select(LawChoice::new(Table::LqrE)).unwrap();

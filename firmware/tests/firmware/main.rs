@@ -5,3 +5,4 @@ mod flight_motors;
 mod gyro;
 mod laws;
 mod motors;
+mod session;

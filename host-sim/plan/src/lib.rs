@@ -3,11 +3,13 @@
 //! ```text
 //! plan            waypoints and bounds -> B-spline, by second-order cone programming
 //!   trajectory    B-splines, polynomial pieces, their files, fits for the Crazyflie
+//!     quote       what an error quotes of a file
 //! ```
 //!
 //! Below it is `quatrack_design`, of which it takes the flat output and gravity; conventions are those.
 
 pub mod plan;
+pub mod quote;
 pub mod trajectory;
 
 /// The examples of the README, run as tests.

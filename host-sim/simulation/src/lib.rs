@@ -6,6 +6,7 @@
 //! scenario             one file that every command flies: a craft, its air, a course and a law
 //!   rivals             Mellinger's and Lee's laws and the cascaded PID
 //!     control_law      the interface by which a law flies
+//! faults               flights with something wrong, under the supervisor
 //! crazyflie            the Crazyflie's firmware around our controller
 //! reproduction         Table I, and past it
 //!   flight             plants under laws in f64 and under the f32 core, metrics
@@ -19,6 +20,7 @@
 
 pub mod control_law;
 pub mod crazyflie;
+pub mod faults;
 pub mod flight;
 pub mod gains;
 pub mod generated;

@@ -1,12 +1,12 @@
 //! Every message of the link, with any numbers: floats by their bits, so that NaN and infinities are among them.
 
 use proptest::prelude::*;
-use proptest::{array, collection, option, sample};
+use proptest::{array, collection, sample};
 use quatrack::command::LimitsError;
 use quatrack::error::Field;
 use quatrack::link::*;
 use quatrack::nalgebra::Vector3;
-use quatrack::supervisor::{ArmError, Fault, Mode, StopReason};
+use quatrack::supervisor::{ArmError, Fault, Mode, Reason, Tumble};
 use quatrack::trajectory::TrajectoryError;
 use quatrack::{
     Command, ErrorForm, FeedForward, FlatSample, Limited, MotorLimited, MotorStep, Quaternion, ReferenceError,
@@ -117,19 +117,28 @@ pub(crate) fn to_board() -> impl Strategy<Value = ToBoard> {
 }
 
 fn mode() -> impl Strategy<Value = Mode> {
-    let reason = sample::select(vec![
-        StopReason::Requested,
-        StopReason::Overrun,
-        StopReason::LinkLost,
-        StopReason::StaleState,
-        StopReason::NoReference,
-        StopReason::StepFailed,
-    ]);
+    let reason = prop_oneof![
+        fault().prop_map(Reason::Fault),
+        sample::select(vec![
+            Reason::Overrun,
+            Reason::AttitudeLost,
+            Reason::StepFailed,
+            Reason::StateLost,
+            Reason::LinkLost,
+            Reason::BadReference,
+            Reason::NoReference,
+            Reason::NoGround,
+        ])
+    ];
+    let tumble = sample::select(vec![Tumble::Tilted, Tumble::UpsideDown, Tumble::NoClimb]);
     prop_oneof![
-        option::of(reason).prop_map(Mode::Disarmed),
+        Just(Mode::OnGround),
         Just(Mode::Armed),
         Just(Mode::Flying),
-        fault().prop_map(Mode::Faulted)
+        reason.clone().prop_map(Mode::Holding),
+        reason.clone().prop_map(Mode::LevelAndDown),
+        reason.prop_map(Mode::Stopped),
+        tumble.prop_map(Mode::Tumbled)
     ]
 }
 
@@ -228,7 +237,9 @@ fn refusal() -> impl Strategy<Value = Refusal> {
             Refusal::OutOfRange,
             Refusal::NoTrajectory,
             Refusal::Arm(ArmError::LinkSilent),
+            Refusal::Arm(ArmError::NotCertified),
         ]),
+        any::<u32>().prop_map(|ticks| Refusal::Arm(ArmError::Tolerance { ticks })),
         fault().prop_map(|fault| Refusal::Arm(ArmError::Faulted(fault))),
         limits.prop_map(Refusal::Limits),
         upload.prop_map(Refusal::Upload),

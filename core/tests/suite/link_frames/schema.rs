@@ -7,7 +7,7 @@ use quatrack::gain::GainError;
 use quatrack::gains::table::{AcceptError, Name, TableError, Vehicle};
 use quatrack::link::*;
 use quatrack::nalgebra::Vector3;
-use quatrack::supervisor::{ArmError, Fault, Mode, StopReason};
+use quatrack::supervisor::{ArmError, Fault, Mode, Reason};
 use quatrack::trajectory::TrajectoryError;
 use quatrack::{
     Command, ErrorForm, FeedForward, FlatSample, Limited, MotorLimited, MotorStep, Quaternion, RigidState, State,
@@ -106,12 +106,7 @@ fn from_board() -> Vec<FromBoard> {
         FromBoard::Command(CommandOut { tick: 7, state_tick: 300, result: Ok(step) }),
         FromBoard::Command(CommandOut { tick: 7, state_tick: 300, result: Err(refused) }),
         FromBoard::Command(CommandOut { tick: 7, state_tick: 300, result: Err(NoCommand::Mode(Mode::Armed)) }),
-        FromBoard::Telemetry(Telemetry {
-            tick: 7,
-            mode: Mode::Disarmed(Some(StopReason::StepFailed)),
-            statistics,
-            link,
-        }),
+        FromBoard::Telemetry(Telemetry { tick: 7, mode: Mode::Stopped(Reason::StepFailed), statistics, link }),
         FromBoard::Ack { sequence: 5 },
         FromBoard::Nack { sequence: 5, reason: Refusal::Arm(ArmError::LinkSilent) },
         FromBoard::Nack { sequence: 5, reason: Refusal::Upload(UploadError::Checksum { announced: 1, found: 2 }) },

@@ -1,6 +1,7 @@
 //! Design files: TOML in, what is written in them out, key by key. What belongs together is checked in
 //! [`super::design`].
 
+use quatrack_plan::quote::{one_line, quoted};
 use serde::Deserialize;
 
 use super::GainsError;
@@ -149,11 +150,52 @@ impl std::fmt::Display for MethodName {
 }
 
 pub(super) fn read(text: &str) -> Result<DesignFile, GainsError> {
-    toml::from_str(text).map_err(|error| {
+    let file: DesignFile = toml::from_str(text).map_err(|error| {
         let start = error.span().map_or(0, |span| span.start);
         let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
-        let words: Vec<&str> = error.message().split_whitespace().collect();
-        let written = text.lines().nth(line - 1).unwrap_or_default().trim().to_owned();
-        GainsError::Syntax { line, written, reason: words.join(" ") }
-    })
+        let written = quoted(text.lines().nth(line - 1).unwrap_or_default().trim());
+        GainsError::Syntax { line, written, reason: one_line(error.message()) }
+    })?;
+    match file.description.chars().find(|c| !is_plain(*c)) {
+        None => Ok(file),
+        Some(c) => Err(GainsError::Value {
+            key: "description".to_owned(),
+            value: format!("a text with U+{:04X}", u32::from(c)),
+            must: "plain text: it becomes a comment in Rust, where such a character turns or hides what follows"
+                .to_owned(),
+        }),
+    }
+}
+
+/// Whether a character may be in a description: no control character but the end of a line, and none that changes the direction of
+/// what is read.
+fn is_plain(c: char) -> bool {
+    let turns = matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    !turns && (c == '\n' || !c.is_control())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_description_is_plain_text() {
+        let design = |description: &str| {
+            read(&format!(
+                "description = \"{description}\"\nvehicle = \"crazyflie-2.1\"\nlinearisation = \"equilibrium\"\n\
+                 method = \"lqr\"\ncontrol_rate_hz = 500"
+            ))
+        };
+        assert!(design("The paper's, in two\\nlines: 3 \u{b5}s").is_ok());
+        for bad in ["\\r", "\\u0000", "\\u001b[2J", "\u{202e}", "\\u2066", "\\u200f", "\\t", "\\u2028"] {
+            let error = design(bad).unwrap_err().to_string();
+            assert!(error.starts_with("description = a text with U+"), "{error}");
+        }
+    }
+
+    #[test]
+    fn an_error_quotes_a_line_and_not_a_book() {
+        let error = read(&format!("vehicle = {}", "x".repeat(100_000))).unwrap_err().to_string();
+        assert!(error.len() < 600, "{} bytes", error.len());
+    }
 }

@@ -141,6 +141,11 @@ impl Plant {
         self
     }
 
+    /// From here on each motor gives this share of what a sound one would; none where all are off.
+    pub fn set_motor_strength(&mut self, strength: [f64; 4]) {
+        self.converter.strength = strength;
+    }
+
     /// Gives commands, N, and flies on for a time, s: Runge-Kutta 4 in steps of at most 2 ms, between which the
     /// voltage, and in which the slope of the wind stays the same. Steps end where delayed commands begin to act.
     pub fn advance(&mut self, commands_n: &Vector4<f64>, duration_s: f64) {

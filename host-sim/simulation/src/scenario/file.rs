@@ -11,6 +11,7 @@
 use std::fmt;
 use std::path::Path;
 
+use quatrack_plan::quote::{one_line, quoted};
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
 
@@ -244,13 +245,12 @@ impl ScenarioFile {
         toml::from_str(text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start).min(text.len());
             let line = 1 + text.as_bytes()[..start].iter().filter(|byte| **byte == b'\n').count();
-            let words: Vec<&str> = error.message().split_whitespace().collect();
             let written = text.lines().nth(line - 1).unwrap_or("").trim();
             ScenarioError::Syntax {
                 origin: origin.to_owned(),
                 line,
-                text: written.split(" #").next().unwrap_or("").trim().to_owned(),
-                reason: words.join(" "),
+                text: quoted(written.split(" #").next().unwrap_or("").trim()),
+                reason: one_line(error.message()),
             }
         })
     }

@@ -100,6 +100,5 @@ pub fn id(vehicle: &Vehicle) -> u32 {
 fn syntax(text: &str, error: &toml::de::Error) -> VehicleFileError {
     let start = error.span().map_or(0, |span| span.start);
     let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
-    let words: Vec<&str> = error.message().split_whitespace().collect();
-    VehicleFileError::Syntax { line, reason: words.join(" ") }
+    VehicleFileError::Syntax { line, reason: quatrack_plan::quote::one_line(error.message()) }
 }

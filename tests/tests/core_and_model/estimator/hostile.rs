@@ -100,6 +100,7 @@ fn check(config: &EstimatorConfig, before: &Estimate, after: &Estimate, outcome:
         Ok(()) => {}
         Err(EstimatorError::OutOfRange { .. }) => assert_eq!(before, after),
         Err(EstimatorError::Restarted) => assert_eq!(before.state(), after.state()),
+        Err(error) => panic!("an error that no test knows: {error}"),
     }
 }
 

@@ -9,7 +9,7 @@ use quatrack::link::{
     FromBoard, LawChoice, NoCommand, Parameter, ParameterId, Table, ToBoard, TrajectoryCommand, TrajectoryId,
 };
 use quatrack::nalgebra::Vector3;
-use quatrack::supervisor::{Mode, StopReason};
+use quatrack::supervisor::{Mode, Reason};
 use quatrack_cli::pil::client::Client;
 use quatrack_cli::pil::emulated::{self, Transport};
 use quatrack_cli::pil::image::{self, Image};
@@ -69,9 +69,9 @@ fn a_state_that_gets_too_old_ends_the_flight() {
     let mut client = flying();
     // The emulated clock runs while the board works: every answer takes some of its time.
     let ended = (0..200).map(|_| client.telemetry().unwrap().mode).find(|mode| !mode.motors_allowed());
-    assert_eq!(ended, Some(Mode::Disarmed(Some(StopReason::StaleState))));
+    assert_eq!(ended, Some(Mode::Stopped(Reason::StateLost)));
     let refused = client.step(2, &at_rest()).unwrap().result;
-    assert_eq!(refused, Err(NoCommand::Mode(Mode::Disarmed(Some(StopReason::StaleState)))), "and it stays ended");
+    assert_eq!(refused, Err(NoCommand::Mode(Mode::Stopped(Reason::StateLost))), "and it stays ended");
 }
 
 #[test]
@@ -86,7 +86,7 @@ fn noise_is_no_sign_of_life() {
     let noise: Vec<u8> = (0..400_000_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
     client.noise(&noise).unwrap();
     let telemetry = client.telemetry().unwrap();
-    assert_eq!(telemetry.mode, Mode::Disarmed(Some(StopReason::LinkLost)));
+    assert_eq!(telemetry.mode, Mode::Stopped(Reason::LinkLost));
     assert!(telemetry.link.rejected() > 1000, "every piece of it has been rejected and counted");
     assert_eq!(client.step(0, &at_rest()).unwrap().result.ok(), None);
 }
@@ -111,8 +111,9 @@ fn a_trajectory_is_started_paused_and_stopped_by_command() {
     client.request(&ToBoard::Trajectory(TrajectoryCommand::Resume)).unwrap();
     assert!(next(&mut client).is_ok());
     client.request(&ToBoard::Trajectory(TrajectoryCommand::Stop)).unwrap();
-    assert_eq!(next(&mut client), Err(NoCommand::NoReference));
-    assert_eq!(client.telemetry().unwrap().mode, Mode::Disarmed(Some(StopReason::NoReference)));
+    let stopped = Mode::Stopped(Reason::NoReference);
+    assert_eq!(next(&mut client), Err(NoCommand::Mode(stopped)));
+    assert_eq!(client.telemetry().unwrap().mode, stopped);
     assert!(client.request(&ToBoard::Trajectory(TrajectoryCommand::Resume)).is_err(), "there is nothing to resume");
 }
 

@@ -12,7 +12,7 @@ use quatrack::link::{
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::Mode;
 use quatrack::{
-    Controller, ErrorForm, FeedForward, Handover, Law, Limits, Measured, Memory, Output, Player, Progress, Rate,
+    Controller, Handover, Law, Limits, Measured, Memory, Output, Player, Progress, Rate,
     Settings, State, Step, Target, Trajectory,
 };
 use quatrack_cli::pil::client::Client;

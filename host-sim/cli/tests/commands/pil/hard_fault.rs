@@ -5,7 +5,7 @@ use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
 use quatrack::link::{Parameter, ToBoard};
-use quatrack::supervisor::{Fault, Mode};
+use quatrack::supervisor::{Fault, Mode, Reason};
 use quatrack_cli::pil::client::Client;
 use quatrack_cli::pil::emulator::{Emulator, Folder};
 use quatrack_cli::pil::interrupt::Interrupt;
@@ -59,6 +59,6 @@ fn a_hard_fault_restarts_the_board_disarmed_for_good() {
     }
 
     let mut client = client.reconnect().unwrap();
-    assert_eq!(client.telemetry().unwrap().mode, Mode::Faulted(Fault::HardFault));
+    assert_eq!(client.telemetry().unwrap().mode, Mode::Stopped(Reason::Fault(Fault::HardFault)));
     assert!(client.request(&ToBoard::Arm).is_err(), "it must not be armed again");
 }

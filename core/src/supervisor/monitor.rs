@@ -1,0 +1,380 @@
+//! Whether a state may be flown on: an estimate and body rates in; the same, or what bridges them, and how sound it is, out.
+//!
+//! A step with a sound estimate costs a few comparisons. What is not sound is replaced by the last sound one, carried on:
+//! attitude by the gyroscope, velocity and position by the accelerometer, or by what the motors should give where there is
+//! none. Each part is looked at by itself, so that a position that is no number takes nothing from a good attitude.
+
+use nalgebra::Vector3;
+
+use crate::clock::Tick;
+use crate::flatness::GRAVITY_M_S2;
+use crate::math::sqrt;
+use crate::quaternion::Quaternion;
+use crate::state::State;
+
+/// What is sound, and for how long the rest is bridged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MonitorConfig {
+    /// Length of a tick, s.
+    pub tick_s: f32,
+    /// How long a position, velocity or attitude is bridged before it counts as lost, ticks.
+    pub bridge_ticks: Tick,
+    /// How long the gyroscope alone may carry an attitude on, ticks.
+    pub attitude_ticks: Tick,
+    /// How long body rates may be the attitude's differences, ticks.
+    pub body_rates_ticks: Tick,
+    /// How long an estimate may stand still, bit by bit, while the gyroscope moves; and a gyroscope while the attitude does.
+    pub frozen_ticks: Tick,
+    /// Velocity that no craft has, m/s.
+    pub speed_max_m_s: f32,
+    /// Farthest position, m.
+    pub position_max_m: f32,
+    /// Body rate beyond what the gyroscope gives, rad/s.
+    pub body_rate_max_rad_s: f32,
+}
+
+impl MonitorConfig {
+    /// Ticks of 1 ms; half a second of bridging, five on the gyroscope alone, and a range of 2000 degrees a second.
+    pub const STANDARD: Self = Self {
+        tick_s: 1e-3,
+        bridge_ticks: 500,
+        attitude_ticks: 5000,
+        body_rates_ticks: 600,
+        frozen_ticks: 100,
+        speed_max_m_s: 30.0,
+        position_max_m: 10_000.0,
+        body_rate_max_rad_s: 34.9,
+    };
+}
+
+/// Squared norms between which a quaternion is an attitude and is scaled to norm 1: of 0.7 and of 1.4.
+const NORM_SQUARED: [f32; 2] = [0.49, 1.96];
+/// Squared norms that every law takes as they are.
+const NORM_SQUARED_NEAR: [f32; 2] = [0.98, 1.02];
+/// Largest specific force that is believed, m/s^2: 16 g.
+const FORCE_MAX_M_S2: f32 = 157.0;
+/// Change of a body rate from which on the gyroscope moves, rad/s: one step of its output at 2000 degrees a second.
+const MOVED_RAD_S: f32 = 1e-3;
+/// Drag over mass that bridges a velocity where there is no accelerometer, 1/s.
+const DRAG_PER_S: f32 = 0.4;
+/// Longest step of the bridge, s.
+const STEP_MAX_S: f32 = 0.05;
+/// Share of a new difference of attitudes in the body rates that are made of them.
+const DIFFERENCE_SHARE: f32 = 0.5;
+
+/// How sound a state is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Soundness {
+    /// As it was given, or with its quaternion scaled to norm 1.
+    Sound,
+    /// In parts the last sound one, carried on.
+    Bridged,
+    /// A position, velocity or attitude has been missing for too long: what is left is good for staying level.
+    AttitudeOnly,
+    /// There is no attitude.
+    AttitudeLost,
+    /// There are no body rates.
+    BodyRatesLost,
+}
+
+/// What a step may be flown on.
+#[derive(Clone, Copy, Debug)]
+pub struct Looked<'a> {
+    /// How sound it is.
+    pub soundness: Soundness,
+    /// The state; of finite numbers and an attitude, unless that is lost.
+    pub state: &'a State,
+    /// The body rates, rad/s.
+    pub body_rates_rad_s: &'a Vector3<f32>,
+    /// How long the velocity has been bridged, ticks; none while it is measured.
+    pub velocity_bridged_ticks: Option<Tick>,
+}
+
+/// What is measured at a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<'a> {
+    /// The tick.
+    pub now: Tick,
+    /// The estimate; nothing where the newest is too old.
+    pub state: Option<&'a State>,
+    /// The gyroscope's body rates, rad/s; nothing where there is none. One that has failed gives NaN.
+    pub body_rates_rad_s: Option<&'a Vector3<f32>>,
+    /// The accelerometer's specific force in the body frame, m/s^2.
+    pub specific_force_m_s2: Option<&'a Vector3<f32>>,
+    /// Thrust over mass that the motors should give, m/s^2: what carries a velocity on without accelerometer.
+    pub thrust_m_s2: f32,
+}
+
+/// What the monitor remembers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Monitor {
+    /// The newest estimate as it was given, and its body rates.
+    given: State,
+    rates: Vector3<f32>,
+    at: Tick,
+    /// A sound estimate has come.
+    is_known: bool,
+    /// Something is not sound, or stands still.
+    bridge: Option<Bridge>,
+}
+
+/// What is carried on while something is not sound.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Bridge {
+    state: State,
+    rates: Vector3<f32>,
+    /// Since when each is bad.
+    place: Option<Tick>,
+    attitude: Option<Tick>,
+    gyroscope: Option<Tick>,
+    /// That the estimate stands still, and where the gyroscope was when it began to.
+    still: Option<Still<Vector3<f32>>>,
+    /// That the gyroscope does, and where the attitude was.
+    still_gyroscope: Option<Still<Quaternion>>,
+}
+
+/// One thing stands still.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Still<T> {
+    from: Tick,
+    /// Where another one was then, and whether that has moved since.
+    other: T,
+    has_moved: bool,
+}
+
+impl<T> Still<T> {
+    const fn new(from: Tick, other: T) -> Self {
+        Self { from, other, has_moved: false }
+    }
+}
+
+const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
+/// Of a craft without a gyroscope.
+static NO_RATES: Vector3<f32> = ZERO;
+
+impl Monitor {
+    /// Nothing seen.
+    pub const fn new() -> Self {
+        let given = State { position_m: ZERO, attitude: Quaternion::IDENTITY, velocity_m_s: ZERO };
+        Self { given, rates: ZERO, at: 0, is_known: false, bridge: None }
+    }
+
+    /// Looks at what a step is given.
+    #[inline]
+    pub fn look<'a>(&'a mut self, config: &MonitorConfig, sample: &Sample<'a>) -> Looked<'a> {
+        let rates = sample.body_rates_rad_s.unwrap_or(&NO_RATES);
+        if let Some(state) = sample.state
+            && self.bridge.is_none()
+            && self.is_known
+            && is_attitude(state.attitude, NORM_SQUARED_NEAR)
+            && is_place(state, config)
+            && *state != self.given
+            && (sample.body_rates_rad_s.is_none() || is_turning(rates, config) && *rates != self.rates)
+        {
+            (self.given, self.rates, self.at) = (*state, *rates, sample.now);
+            let soundness = Soundness::Sound;
+            return Looked { soundness, state, body_rates_rad_s: rates, velocity_bridged_ticks: None };
+        }
+        self.look_closely(config, sample)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn look_closely(&mut self, config: &MonitorConfig, sample: &Sample<'_>) -> Looked<'_> {
+        let now = sample.now;
+        let step_s = shorter(now.wrapping_sub(self.at) as f32 * config.tick_s, STEP_MAX_S);
+        let mut bridge = self.bridge.unwrap_or_else(|| Bridge {
+            state: State { attitude: normalised(self.given.attitude).unwrap_or(Quaternion::IDENTITY), ..self.given },
+            rates: self.rates,
+            place: None,
+            attitude: None,
+            gyroscope: None,
+            still: None,
+            still_gyroscope: None,
+        });
+        let before = bridge.state.attitude;
+
+        let given_rates = sample.body_rates_rad_s.copied();
+        let is_gyroscope = given_rates.is_none_or(|rates| is_turning(&rates, config));
+        let is_gyroscope = is_gyroscope && !self.is_gyroscope_stuck(&mut bridge, config, sample);
+        since(&mut bridge.gyroscope, !is_gyroscope, now);
+        if is_gyroscope {
+            bridge.rates = given_rates.unwrap_or(ZERO);
+        }
+        bridge.carry(sample, step_s);
+
+        let stuck_since = self.stuck_since(&mut bridge, config, sample);
+        let fresh = sample.state.filter(|_| stuck_since.is_none());
+        let place = fresh.filter(|state| is_place(state, config));
+        let attitude = fresh.and_then(|state| as_attitude(state.attitude));
+        since(&mut bridge.place, place.is_none(), stuck_since.unwrap_or(now));
+        since(&mut bridge.attitude, attitude.is_none(), stuck_since.unwrap_or(now));
+        // What stands still is carried on beside it, should it turn out to be stuck.
+        let is_still = bridge.still.is_some();
+        if let Some(state) = place.filter(|_| !is_still) {
+            (bridge.state.position_m, bridge.state.velocity_m_s) = (state.position_m, state.velocity_m_s);
+        }
+        if let Some(attitude) = attitude.filter(|_| !is_still) {
+            if !is_gyroscope && sample.state.is_some_and(|state| state.attitude != self.given.attitude) {
+                bridge.differ(before, attitude, step_s);
+            }
+            bridge.state.attitude = attitude;
+        }
+        self.is_known |= place.is_some() && attitude.is_some();
+        if let Some(state) = sample.state {
+            self.given = *state;
+        }
+        (self.rates, self.at) = (given_rates.unwrap_or(ZERO), now);
+
+        let soundness = bridge.soundness(self.is_known, config, now);
+        let velocity_bridged_ticks = bridge.place.map(|from| now.wrapping_sub(from));
+        let is_over = soundness == Soundness::Sound
+            && bridge.still.is_none()
+            && bridge.still_gyroscope.is_none()
+            && is_attitude(self.given.attitude, NORM_SQUARED_NEAR);
+        self.bridge = (!is_over).then_some(bridge);
+        let is_given = soundness == Soundness::Sound && is_attitude(self.given.attitude, NORM_SQUARED_NEAR);
+        let (state, body_rates_rad_s) = match &self.bridge {
+            Some(bridge) => (if is_given { &self.given } else { &bridge.state }, &bridge.rates),
+            None => (&self.given, &self.rates),
+        };
+        Looked { soundness, state, body_rates_rad_s, velocity_bridged_ticks }
+    }
+
+    /// Since when the estimate has been standing still while the gyroscope moves, where that is too long.
+    fn stuck_since(&self, bridge: &mut Bridge, config: &MonitorConfig, sample: &Sample<'_>) -> Option<Tick> {
+        let rates = bridge.rates;
+        if !self.is_known || sample.state.is_none_or(|state| !is_same(state, &self.given)) {
+            bridge.still = None;
+            return None;
+        }
+        let still = bridge.still.get_or_insert(Still::new(self.at, rates));
+        let turn = rates - still.other;
+        still.has_moved |= turn.dot(&turn) > MOVED_RAD_S * MOVED_RAD_S;
+        (still.has_moved && sample.now.wrapping_sub(still.from) >= config.frozen_ticks).then_some(still.from)
+    }
+
+    /// Whether the gyroscope has been standing still for too long while the attitude moves.
+    fn is_gyroscope_stuck(&self, bridge: &mut Bridge, config: &MonitorConfig, sample: &Sample<'_>) -> bool {
+        let (Some(rates), Some(state)) = (sample.body_rates_rad_s, sample.state) else { return false };
+        if *rates != self.rates || !self.is_known {
+            bridge.still_gyroscope = None;
+            return false;
+        }
+        let still = bridge.still_gyroscope.get_or_insert(Still::new(self.at, state.attitude));
+        still.has_moved |= state.attitude != still.other;
+        still.has_moved && sample.now.wrapping_sub(still.from) >= config.frozen_ticks
+    }
+}
+
+impl Default for Monitor {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Bridge {
+    /// Carries the state on by what is felt.
+    fn carry(&mut self, sample: &Sample<'_>, step_s: f32) {
+        let State { position_m, attitude, velocity_m_s } = self.state;
+        let is_felt = |f: &&Vector3<f32>| f.dot(f) <= FORCE_MAX_M_S2 * FORCE_MAX_M_S2;
+        let acceleration = match sample.specific_force_m_s2.filter(is_felt) {
+            Some(force) => turned(attitude, force),
+            None => {
+                let thrust = attitude.thrust_axis() * sample.thrust_m_s2;
+                if thrust.dot(&thrust).is_finite() { thrust - velocity_m_s * DRAG_PER_S } else { ZERO }
+            }
+        };
+        let acceleration = Vector3::new(acceleration.x, acceleration.y, acceleration.z - GRAVITY_M_S2);
+        let half = 0.5 * step_s;
+        let turn = Quaternion::new(1.0, half * self.rates.x, half * self.rates.y, half * self.rates.z);
+        self.state = State {
+            position_m: position_m + (velocity_m_s + acceleration * half) * step_s,
+            attitude: normalised(attitude * turn).unwrap_or(attitude),
+            velocity_m_s: velocity_m_s + acceleration * step_s,
+        };
+    }
+
+    /// Makes body rates of the difference of two attitudes.
+    fn differ(&mut self, before: Quaternion, after: Quaternion, step_s: f32) {
+        let turn = before.conjugate() * after;
+        let scale = if turn.w < 0.0 { -2.0 } else { 2.0 };
+        if step_s > 0.0 {
+            let difference = turn.vector() * (scale / step_s);
+            self.rates += (difference - self.rates) * DIFFERENCE_SHARE;
+        }
+    }
+
+    fn soundness(&self, is_known: bool, config: &MonitorConfig, now: Tick) -> Soundness {
+        let longer = |from: Option<Tick>, most: Tick| from.is_some_and(|from| now.wrapping_sub(from) > most);
+        if !is_known || longer(self.attitude, config.attitude_ticks) {
+            Soundness::AttitudeLost
+        } else if longer(self.gyroscope, config.body_rates_ticks)
+            || (self.gyroscope.is_some() && longer(self.attitude, 0))
+        {
+            Soundness::BodyRatesLost
+        } else if longer(self.place, config.bridge_ticks) || longer(self.attitude, config.bridge_ticks) {
+            Soundness::AttitudeOnly
+        } else if self.place.is_some() || self.attitude.is_some() || self.gyroscope.is_some() {
+            Soundness::Bridged
+        } else {
+            Soundness::Sound
+        }
+    }
+}
+
+/// Notes since when something is so.
+fn since(noted: &mut Option<Tick>, is_so: bool, from: Tick) {
+    *noted = if is_so { Some(noted.unwrap_or(from)) } else { None };
+}
+
+fn shorter(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn is_attitude(q: Quaternion, [least, most]: [f32; 2]) -> bool {
+    let squared = q.dot(q);
+    squared >= least && squared <= most
+}
+
+#[inline(always)]
+fn is_place(state: &State, config: &MonitorConfig) -> bool {
+    let (p, v) = (&state.position_m, &state.velocity_m_s);
+    let (far, fast) = (config.position_max_m, config.speed_max_m_s);
+    p.x * p.x + p.y * p.y + p.z * p.z <= far * far && v.x * v.x + v.y * v.y + v.z * v.z <= fast * fast
+}
+
+#[inline(always)]
+fn is_turning(w: &Vector3<f32>, config: &MonitorConfig) -> bool {
+    let most = config.body_rate_max_rad_s;
+    w.x * w.x + w.y * w.y + w.z * w.z < most * most
+}
+
+/// Whether two estimates have the same bits; what is no number is the same as itself.
+fn is_same(a: &State, b: &State) -> bool {
+    let bits = |s: &State| {
+        let (p, q, v) = (&s.position_m, &s.attitude, &s.velocity_m_s);
+        [p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z].map(f32::to_bits)
+    };
+    bits(a) == bits(b)
+}
+
+/// An attitude as the laws take it: as it is where its norm is near 1, else scaled.
+fn as_attitude(q: Quaternion) -> Option<Quaternion> {
+    if is_attitude(q, NORM_SQUARED_NEAR) { Some(q) } else { normalised(q) }
+}
+
+fn normalised(q: Quaternion) -> Option<Quaternion> {
+    is_attitude(q, NORM_SQUARED).then(|| q.scaled(1.0 / sqrt(q.dot(q))))
+}
+
+/// A body vector in the world frame.
+fn turned(q: Quaternion, v: &Vector3<f32>) -> Vector3<f32> {
+    let u = q.vector();
+    let t = u.cross(v) * 2.0;
+    v + t * q.w + u.cross(&t)
+}
+
+#[cfg(test)]
+mod tests;

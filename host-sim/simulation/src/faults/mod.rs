@@ -1,0 +1,18 @@
+//! Flights with something wrong: a kind of fault and a craft in; when it was noticed, how the flight ended and where, out.
+//!
+//! The core's cascade under the core's supervisor, at 500 Hz, on the plant in air with what is known of each craft; estimates with
+//! noise at every step, setpoints to the crackle. What happens in flight begins after two seconds of it.
+//!
+//! ```text
+//! bench        one flight under the supervisor
+//!   kinds      every kind of fault: what it spoils, and what others promise there
+//! ```
+
+mod bench;
+mod kinds;
+
+pub use self::bench::{Crafts, EndState, Row, fly};
+pub use self::kinds::{Craft, Fault, Signals, kinds};
+
+/// The crafts that are flown.
+pub const VEHICLES: [&str; 3] = ["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"];
