@@ -217,7 +217,7 @@ fn a_heading_that_moves_with_a_rate_of_zero_gets_its_own() {
     (10..=1000).step_by(10).for_each(|ms| headings.accept(sent(ms), 0.0, ms, true));
     let [_, rate, second, third] = heading_at(&headings, 1004);
     // A fifth of half a step over 10 ms, some times over.
-    assert!((rate - 1.5708).abs() < 0.1 && second == 0.0 && third == 0.0, "{rate}");
+    assert!((rate - std::f64::consts::FRAC_PI_2).abs() < 0.1 && second == 0.0 && third == 0.0, "{rate}");
     (1010..=1500).step_by(10).for_each(|ms| headings.accept(sent(1000), 0.0, ms, true));
     assert_eq!(heading_at(&headings, 1504)[1], 0.0, "it stands again");
     headings.accept(sent(0), 0.0, 1510, true);

@@ -12,6 +12,7 @@ use quatrack::{Air, CascadeGains, CascadeLimits, Limits};
 use quatrack_crazyflie::abi::{Attitude, Mode, Modes, Setpoint};
 use quatrack_crazyflie::craft::{Craft as FirmwareCraft, KNOWN, RATE};
 use quatrack_crazyflie::ffi;
+use quatrack_crazyflie::shared::AtomicF32;
 use quatrack_crazyflie::tables::{Gain, Refusal, Table, TableId, Tuning};
 use quatrack_crazyflie::upload::{PACKET_BYTES, Packet, Status};
 use quatrack_design::certify::cascade::{CascadeCraft, CascadeRegion};
@@ -466,7 +467,7 @@ fn stiffness_changes_the_position_and_nothing_else() {
     let _firmware = Firmware::start(&craft, &Tune::new(0, 0.0), QUIET);
     let gains = || [0, 1, 2, 10, 11, 12, 16].map(|index: usize| ffi::quatrack.gains.entries[index].get());
     let plain = gains();
-    assert_eq!([&ffi::quatrack.gains.scale_min, &ffi::quatrack.gains.scale_max].map(|s| s.get()), [0.5, 1.3]);
+    assert_eq!([&ffi::quatrack.gains.scale_min, &ffi::quatrack.gains.scale_max].map(AtomicF32::get), [0.5, 1.3]);
     for (asked, flown) in [(1.2, 1.2), (99.0, 1.3), (0.0, 0.5)] {
         ffi::quatrack.parameters.position_scale.set(asked);
         ffi::quatrack.parameters.yaw_scale.set(0.5);
@@ -486,7 +487,7 @@ fn a_parameter_that_is_no_number_gets_its_default_back_and_says_so() {
     let _firmware = Firmware::start(&craft, &Tune::new(0, 0.0), QUIET);
     let (parameters, log) = (&ffi::quatrack.parameters, &ffi::quatrack.log);
     // Known once the craft is.
-    let air = [&parameters.drag_per_s, &parameters.moment_x_n_s, &parameters.moment_y_n_s].map(|figure| figure.get());
+    let air = [&parameters.drag_per_s, &parameters.moment_x_n_s, &parameters.moment_y_n_s].map(AtomicF32::get);
     assert_eq!(air, [0.353, 5.6e-4, 7.3e-4]);
     let before = log.put_back.load(Relaxed);
     for (number, parameter, default) in
