@@ -3,7 +3,7 @@
 //! Of body x and y: `M = J w' - c v + d w + b`, M the lagged motors' mixture; of z: `f = a_z` with drag and lift. The bias b
 //! is each section's own mean.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::prior::Base;
 use super::{CORNER_HZ, MARGIN_S};
@@ -119,18 +119,22 @@ impl Prepared {
     }
 }
 
-/// Whatever the accelerometer shows on average beyond gravity and the change of the velocity.
+/// Whatever the accelerometer shows on average beyond gravity and the change of the velocity: in the world frame the mean of the
+/// specific force is known from the velocity at both ends.
 fn force_bias(section: &Section) -> Vector3<f64> {
     let count = section.len();
-    let axes = [0, 1, 2].map(|k| section.velocity.iter().map(|v| v[k]).collect::<Vec<f64>>());
-    let low = LowPass::new(2.0, RATE_HZ);
-    let slopes = axes.map(|axis| derivative(&low.both_ways(&axis), STEP_S));
-    let expected = (0..count).fold(Vector3::zeros(), |sum, i| {
-        let acceleration = Vector3::new(slopes[0][i], slopes[1][i], slopes[2][i] + GRAVITY_M_S2);
-        sum + section.attitude[i].inverse_transform_vector(&acceleration)
-    });
-    let felt = section.specific_force.iter().fold(Vector3::zeros(), |sum, f| sum + f);
-    (felt - expected) / count as f64
+    // A tenth of a second at either end, since the velocity is noisy.
+    let ends = (0.1 * RATE_HZ) as usize;
+    let average = |from: usize| section.velocity[from..from + ends].iter().sum::<Vector3<f64>>() / ends as f64;
+    let inner = ends / 2..count - ends / 2;
+    let change = (average(count - ends) - average(0)) / ((count - ends) as f64 * STEP_S);
+    let (mut turn, mut felt) = (Matrix3::zeros(), Vector3::zeros());
+    for i in inner.clone() {
+        turn += section.attitude[i].to_rotation_matrix().into_inner();
+        felt += section.attitude[i] * section.specific_force[i];
+    }
+    let over = felt / inner.len() as f64 - change - Vector3::new(0.0, 0.0, GRAVITY_M_S2);
+    (turn / inner.len() as f64).lu().solve(&over).unwrap_or_default()
 }
 
 /// What the gyroscope shows on average beyond the turning of the attitude.

@@ -79,9 +79,9 @@ impl Stream {
                 })
                 .collect();
             // What 98 of 100 samples stay within, tenfold: a flight's own jumps are part of that.
-            let usual = crate::filter::quantile(&stray, 0.98).max(1e-3 * spread(channel));
+            let most = (10.0 * crate::filter::quantile(&stray, 0.98)).max(0.3 * spread(channel));
             for (keep, stray) in keep.iter_mut().zip(&stray) {
-                *keep &= *stray <= 10.0 * usual || usual == 0.0;
+                *keep &= *stray <= most;
             }
         }
         keep
