@@ -4,6 +4,7 @@ mod analyze;
 mod compare;
 mod crazyflie;
 mod export;
+mod faults;
 mod fly;
 mod gains;
 mod limits;
@@ -60,6 +61,7 @@ enum Command {
     Compare(compare::Args),
     Crazyflie(crazyflie::Args),
     Export(export::Args),
+    Faults(faults::Args),
     Fly(fly::Args),
     Gains(gains::Args),
     Manoeuvres(manoeuvres::Args),
@@ -82,6 +84,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Compare(args) => compare::run(args),
         Command::Crazyflie(args) => crazyflie::run(args),
         Command::Export(args) => export::run(args),
+        Command::Faults(args) => faults::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Gains(args) => gains::run(args),
         Command::Manoeuvres(args) => manoeuvres::run(args),

@@ -76,6 +76,12 @@ struct Comparison {
     refit_from_original_iae_m_s: Option<f64>,
 }
 
+impl Comparison {
+    fn is_lost(&self) -> bool {
+        self.original_iae_m_s.is_none() || self.refit_iae_m_s.is_none() || self.refit_from_original_iae_m_s.is_none()
+    }
+}
+
 fn pieces_parser() -> RangedU64ValueParser<usize> {
     RangedU64ValueParser::new().range(1..=PIECES_MAX as u64)
 }
@@ -112,6 +118,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             "{name}: {} pieces are {off_m:.2e} m off, more than --tolerance-m {tolerance_m}; allow more pieces (at most \
              {PIECES_MAX}) or split the trajectory",
             report.pieces
+        )));
+    }
+    if [&report.lqr_e, &report.lqr_e_feed_forward].iter().any(|comparison| comparison.is_lost()) {
+        return Err(Failure::verdict(format!(
+            "{name}: the flight of the original or of the refit was lost, so that there is nothing to compare; nothing is written: \
+             plan a milder trajectory"
         )));
     }
     if let Some(path) = &args.csv {
