@@ -5,6 +5,7 @@ mod campaign;
 mod compare;
 mod crazyflie;
 mod export;
+mod faults;
 mod fly;
 mod gains;
 mod identify;
@@ -68,6 +69,7 @@ enum Command {
     Completions(shell::CompletionArgs),
     Crazyflie(crazyflie::Args),
     Export(export::Args),
+    Faults(faults::Args),
     Fly(fly::Args),
     Gains(gains::Args),
     Identify(identify::Args),
@@ -95,6 +97,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Completions(args) => shell::completions(args),
         Command::Crazyflie(args) => crazyflie::run(args),
         Command::Export(args) => export::run(args),
+        Command::Faults(args) => faults::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Gains(args) => gains::run(args),
         Command::Identify(args) => identify::run(args),

@@ -132,7 +132,11 @@ fn a_flight_is_logged_whole_with_named_columns() {
     assert_eq!(metrics["saturated_steps"], 0);
     // What is written lies under its own name only.
     assert!(
-        fs::read_dir(&dir).unwrap().all(|entry| !entry.unwrap().file_name().to_string_lossy().ends_with(".partial"))
+        fs::read_dir(&dir).unwrap().all(|entry| !entry
+            .unwrap()
+            .file_name()
+            .to_string_lossy()
+            .starts_with(".quatrack-"))
     );
 }
 

@@ -12,8 +12,8 @@ use quatrack::link::{
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::Mode;
 use quatrack::{
-    Controller, Handover, Law, Limits, Measured, Memory, Output, Player, Progress, Rate,
-    Settings, State, Step, Target, Trajectory,
+    Controller, Handover, Law, Limits, Measured, Memory, Output, Player, Progress, Rate, Settings, State, Step, Target,
+    Trajectory,
 };
 use quatrack_cli::pil::client::Client;
 use quatrack_plan::plan::paper::PaperTrajectory;

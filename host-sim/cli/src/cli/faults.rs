@@ -1,0 +1,90 @@
+//! `quatrack faults`: every kind of fault on three crafts in; what comes of each, in one table, out.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use quatrack_simulation::faults::{Crafts, Row, VEHICLES, fly, kinds};
+use serde::Serialize;
+
+use super::{Failure, output};
+
+/// Flies the core's cascade under its supervisor through every kind of fault, on three crafts in air, and says what comes of each.
+///
+/// Exit code 1 where anything that is recoverable was lost, or a fault that is not did not end with the motors off.
+///
+/// Examples:
+///   quatrack faults --json faults.json
+///   quatrack faults --only gyro --vehicle crazyflie-2.1-brushless
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Args {
+    /// Only faults whose name begins with this.
+    #[arg(long, value_name = "TEXT")]
+    only: Option<String>,
+    /// Only this craft.
+    #[arg(long, value_name = "NAME", value_parser = VEHICLES)]
+    vehicle: Option<String>,
+    /// Write the table as JSON.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+#[derive(Serialize)]
+struct Table<'a> {
+    schema: &'static str,
+    rows: &'a [Row],
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let only = args.only.as_deref().unwrap_or("");
+    let faults: Vec<_> = kinds().into_iter().filter(|fault| fault.name.starts_with(only)).collect();
+    if faults.is_empty() {
+        return Err(Failure::input(format!("--only {only}: no fault begins with this; leave it out to see all")));
+    }
+    let mut rows = Vec::new();
+    for name in VEHICLES.into_iter().filter(|name| args.vehicle.as_deref().is_none_or(|asked| asked == *name)) {
+        let craft = Crafts::by_name(name).ok_or_else(|| Failure::input(format!("{name}: not known")))?;
+        for fault in &faults {
+            rows.push(fly(fault, &craft).map_err(Failure::input)?);
+        }
+    }
+    rows.sort_by_key(|row| faults.iter().position(|fault| fault.name == row.fault));
+    output::print(&text(&rows))?;
+    if let Some(path) = &args.json {
+        output::write_json(path, &Table { schema: "quatrack/faults/1", rows: &rows })?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    let wrong: Vec<String> = rows
+        .iter()
+        .filter(|row| !row.is_as_promised())
+        .map(|row| format!("{} on {}", row.fault, row.vehicle))
+        .collect();
+    if wrong.is_empty() { Ok(()) } else { Err(Failure::verdict(format!("not as it should be: {}", wrong.join("; ")))) }
+}
+
+fn text(rows: &[Row]) -> String {
+    let mut text = format!(
+        "{:<52} {:<26} {:>9} {:>9} {:>8}  {:<9} end state\n",
+        "fault", "craft", "seen ms", "off ms", "far m", "came down"
+    );
+    let ms = |time: Option<u32>| time.map_or_else(|| "-".to_owned(), |ms| ms.to_string());
+    for row in rows {
+        let down = match (row.crashed, row.recoverable) {
+            (true, true) => "LOST",
+            (true, false) => "hard",
+            (false, _) => "",
+        };
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{:<52} {:<26} {:>9} {:>9} {:>8.2}  {down:<9} {}",
+            row.fault,
+            row.vehicle,
+            ms(row.detected_ms),
+            ms(row.motors_off_ms),
+            row.farthest_m,
+            row.end_state
+        );
+    }
+    text
+}
