@@ -12,12 +12,14 @@ use quatrack_simulation::flight::motor_laws::CraftLaw;
 use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::rigid_loop::RigidSample;
 use quatrack_simulation::scenario::compare::Table;
-use quatrack_simulation::scenario::{Law, Recording, Scenario, TableLaw};
+use quatrack_simulation::scenario::{CascadeLaw, Law, Recording, Scenario, TableLaw};
 use quatrack_simulation::vehicles;
 
 use crate::arrays::array;
+use crate::crazyflie;
 use crate::error::refused;
 use crate::gains::GainTable;
+use crate::law::cascade_of_table;
 use crate::long_call::{Cancelled, long_call};
 use crate::own_law::{Interruptible, OwnLaw};
 use crate::scenario;
@@ -86,7 +88,7 @@ fn record_table(
     let table = CoreTable::from_bytes(bytes).map_err(|error| error.to_string())?;
     let (kind, head) = (table.kind(), *table.head());
     let refused = |reason: String| format!("{}: {reason}", head.name);
-    if kind != TableKind::ActuatorAware {
+    if !matches!(kind, TableKind::ActuatorAware | TableKind::Cascade) {
         return Err(refused(format!(
             "its kind is {kind}; a scenario takes a table for motor forces, or a law by its name"
         )));
@@ -95,6 +97,11 @@ fn record_table(
         return Err(refused(format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name())));
     }
     let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| refused(error.to_string()))?;
+    if let Some(table) = accepted.cascade() {
+        let cascade = cascade_of_table(table, RATE, &scenario.vehicle, &scenario.told);
+        let cascade = cascade.map_err(|error| refused(error.to_string()))?;
+        return record(scenario, &mut CascadeLaw::hovering(cascade), course, cancelled);
+    }
     let law = CraftLaw::of_table(&scenario.vehicle, accepted).map_err(|error| refused(error.to_string()))?;
     let mut flying = TableLaw::hovering(&law, scenario.vehicle.hover_thrust_n())
         .ok_or_else(|| refused("becomes no controller".to_owned()))?;
@@ -105,6 +112,9 @@ fn flown(py: Python<'_>, scenario: &Scenario, flies: Flies, course: Option<Piece
     let name = flies.name().to_owned();
     let recording = match flies {
         Flies::Named(law) => {
+            if law == Law::Crazyflie {
+                crazyflie::end_the_one_before();
+            }
             let scenario = scenario.clone();
             long_call(py, move |cancelled| {
                 let mut law = law.start(&scenario.vehicle, &scenario.told).map_err(|error| error.to_string())?;

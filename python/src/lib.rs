@@ -6,6 +6,8 @@
 //!   own_law         a callable as a law
 //!   plant           the plant of a scenario, for many crafts
 //!     scenario
+//! reproduction      the paper's table
+//! crazyflie         the Crazyflie object through its C interface
 //! controller        the core's controller, for many crafts
 //!   batch           one step of all of them
 //!     law           a law with what it borrows
@@ -22,6 +24,7 @@
 mod arrays;
 mod batch;
 mod controller;
+mod crazyflie;
 mod design;
 mod error;
 mod estimator;
@@ -32,6 +35,7 @@ mod long_call;
 mod own_law;
 mod plant;
 mod reference;
+mod reproduction;
 mod scenario;
 mod state;
 mod trajectory;
@@ -43,6 +47,8 @@ mod vehicle;
 mod _quatrack {
     #[pymodule_export]
     use crate::controller::{Controller, Step};
+    #[pymodule_export]
+    use crate::crazyflie::{CrazyflieControl, CrazyflieController};
     #[pymodule_export]
     use crate::design::{Feedback, care, certify, dare, dlqr, hover_model, lqr, lyapunov, stein};
     #[pymodule_export]
@@ -59,6 +65,8 @@ mod _quatrack {
     use crate::plant::Plant;
     #[pymodule_export]
     use crate::reference::Reference;
+    #[pymodule_export]
+    use crate::reproduction::{Reproduction, reproduce};
     #[pymodule_export]
     use crate::scenario::{Course, Scenario};
     #[pymodule_export]

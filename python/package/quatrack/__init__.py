@@ -9,6 +9,8 @@ from quatrack._quatrack import (
     Comparison,
     Controller,
     Course,
+    CrazyflieControl,
+    CrazyflieController,
     Estimator,
     Feedback,
     Flight,
@@ -18,6 +20,7 @@ from quatrack._quatrack import (
     Player,
     QuatrackError,
     Reference,
+    Reproduction,
     Scenario,
     State,
     Step,
@@ -33,6 +36,7 @@ from quatrack._quatrack import (
     lqr,
     lyapunov,
     plan,
+    reproduce,
     stein,
 )
 
@@ -40,6 +44,8 @@ __all__ = [
     "Comparison",
     "Controller",
     "Course",
+    "CrazyflieControl",
+    "CrazyflieController",
     "Estimator",
     "Feedback",
     "Flight",
@@ -49,6 +55,7 @@ __all__ = [
     "Player",
     "QuatrackError",
     "Reference",
+    "Reproduction",
     "Scenario",
     "State",
     "Step",
@@ -65,5 +72,6 @@ __all__ = [
     "lqr",
     "lyapunov",
     "plan",
+    "reproduce",
     "stein",
 ]

@@ -18,7 +18,7 @@ use crate::flight::motor_loop::{self, PERIOD_S, RATE};
 const JUMP_M: f64 = 0.05;
 
 /// The cascade on a vehicle's motors.
-pub(super) struct CascadeLaw {
+pub struct CascadeLaw {
     cascade: Cascade,
     memory: Memory,
     fit: JerkFit,
@@ -28,9 +28,13 @@ pub(super) struct CascadeLaw {
 impl CascadeLaw {
     /// Of [`cascade_of`], at a hover.
     pub(super) fn new(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, FlightError> {
-        let cascade = cascade_of(vehicle, told)?;
+        cascade_of(vehicle, told).map(Self::hovering)
+    }
+
+    /// At a hover.
+    pub fn hovering(cascade: Cascade) -> Self {
         let memory = Memory::hovering(cascade.airframe());
-        Ok(Self { cascade, memory, fit: JerkFit::NONE, newest: None })
+        Self { cascade, memory, fit: JerkFit::NONE, newest: None }
     }
 
     /// The setpoint with snap and crackle of the fit through its jerks; as it is where it has them.

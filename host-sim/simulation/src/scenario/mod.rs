@@ -36,7 +36,7 @@ mod table_law;
 mod varied;
 mod whole;
 
-pub use cascade_law::cascade_of;
+pub use cascade_law::{CascadeLaw, cascade_of};
 pub use core_law::{actuation_of, actuator_aware_of};
 pub use error::{ScenarioError, StartError};
 pub use laws::{Law, LawError, ToldFigures};
