@@ -16,15 +16,12 @@ use quatrack::gains::table::{AcceptError, AcceptedTable};
 use quatrack::link::{GainStore, LawChoice, Table};
 #[cfg(feature = "motors")]
 use quatrack::{Airframe, MotorStep};
-use quatrack::{
-    Controller, Equilibrium, Handover, Limits, Measured, Memory, Output, Rate, Settings, StepError, Target,
-};
+use quatrack::{Controller, Equilibrium, Handover, Limits, Measured, Memory, Output, Rate, StepError, Target};
 
 pub use self::motors::Actuations;
 #[cfg(feature = "motors")]
 pub use self::motors::table;
-use self::motors::{BUILT_IN_TO_MOTORS, loaded, step};
-use crate::rates::TICK_RATE;
+use self::motors::{BUILT_IN_CASCADE, BUILT_IN_TO_MOTORS, loaded, step};
 use crate::vehicle::{STEP_RATE, VEHICLE};
 
 /// Steps from one law to another in flight: a tenth of a second at 500 Hz.
@@ -96,7 +93,7 @@ impl Laws {
             return;
         }
         self.store.assign(rate.map(|rate| (VEHICLE, rate)));
-        if matches!(self.choice.table, Table::Loaded(_) | Table::ActuatorAware) {
+        if matches!(self.choice.table, Table::Loaded(_) | Table::ActuatorAware | Table::Cascade) {
             self.choice = DEFAULT;
         }
         self.settle();
@@ -208,6 +205,27 @@ impl Laws {
         gives_forces(&self.choice) || (!self.handover.is_over() && gives_forces(&self.before))
     }
 
+    /// Whether a law that is stepped makes a reference of its own, and is to be given targets with the flat output.
+    #[cfg(feature = "motors")]
+    #[inline]
+    pub fn follows_samples(&self) -> bool {
+        if self.is_alone { self.controller.law().follows_samples() } else { self.is_any_of_samples() }
+    }
+
+    #[cfg(feature = "motors")]
+    #[cold]
+    #[inline(never)]
+    fn is_any_of_samples(&self) -> bool {
+        let follows = |choice| self.controller_of(choice).is_some_and(|controller| controller.law().follows_samples());
+        follows(&self.choice) || (!self.handover.is_over() && follows(&self.before))
+    }
+
+    /// Whether another law is on its way out.
+    #[cfg(feature = "motors")]
+    pub fn is_changing(&self) -> bool {
+        !self.handover.is_over()
+    }
+
     /// The craft as the law in force reckons with it, for targets with motor forces.
     #[cfg(feature = "motors")]
     pub fn airframe(&self) -> Option<&Airframe> {
@@ -261,12 +279,7 @@ impl Laws {
     #[inline(never)]
     fn controller_of(&self, choice: &LawChoice) -> Option<Controller<'_>> {
         let Table::Loaded(slot) = choice.table else { return self.built_in(choice) };
-        let settings = Settings {
-            actuation: self.actuations.of(choice.table),
-            feed_forward: choice.feed_forward,
-            error_form: choice.error_form,
-            ..Settings::new(self.limits, TICK_RATE)
-        };
+        let settings = self.actuations.settings(choice, self.limits);
         loaded(&self.store.table(slot)?, &settings)
     }
 
@@ -275,6 +288,7 @@ impl Laws {
     fn built_in(&self, choice: &LawChoice) -> Option<Controller<'static>> {
         let law = match choice.table {
             Table::ActuatorAware if self.rate() == Some(STEP_RATE) => BUILT_IN_TO_MOTORS?.into(),
+            Table::Cascade if self.rate() == Some(STEP_RATE) => BUILT_IN_CASCADE?,
             _ => choice.built_in()?,
         };
         Some(Controller::new(law, self.limits))

@@ -1,6 +1,6 @@
 // cascade-100ms for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
 // Design d538e6303804398b4b2f2e0ae8e7e23bb1990934ad0414c070e336b289bf9995
-// Certificate 13e01276b85154842ae7a0a5ab8b9e14089d703ccd4e505d66120aa8ec5f081f
+// Certificate 26e12e1defc10ad065d928f50e1f4f9d2e08c687f67b40ab09fa8bfda9d483b2
 
 /// The default for a Crazyflie 2.1: for any published lag of its motors.
 #[rustfmt::skip]

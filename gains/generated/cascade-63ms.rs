@@ -1,6 +1,6 @@
 // cascade-63ms for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
 // Design 40dd9dac305e32ff3c562917dbe9f87a161c92a08875b0980db7f911b732b01e
-// Certificate 232692e9c3263eb6db91fa9754fed6571698512c3bccffadf99e0b85d743f4de
+// Certificate dd39e2f7f0838230fe28e982bcf344bfe94465aeebdecadbcf170c08aea7b6ef
 
 /// For a Crazyflie 2.1 whose motors are known to lag about 63.5 ms.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // cascade-brushless-110ms for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
 // Design 732aceff8536daffec7912b8663adb74253092cd8fb649ee7db431b48a4c7d87
-// Certificate 403ac208e56ac8b2dfd8372ddfee7793796841c6a29a4d651f7698ef5e5a6fc3
+// Certificate d46cc5f1d5c463ec4bd41e51d0897eb0ee1b3c87f68a2e43087b33d54d3c0cd9
 
 /// For a Crazyflie 2.1 Brushless whose motors lag by up to 126 ms.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // cascade-brushless-20ms for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
 // Design 4643ab13c461b5e6ad4d6990b1fd1c0841817b77183e3fa06d27e287abc69cc7
-// Certificate 5e4e61fd3fdc1178e7af9f76fa4cac77e071be2da4cc0dbe1389e9c38c7ee8de
+// Certificate fca9082230cad29946f5d96f78beeadf67c163e5c3101a00fa3423c05f2e0707
 
 /// For a Crazyflie 2.1 Brushless whose motors are known to lag about 20 ms.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // cascade-brushless-50ms for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
 // Design 359b6a991b891efdf54d353d0ecec0404c6c752b12e60e7a85d8a629d11e869d
-// Certificate d20d7a009dc29410463eaa4887a947688f8129b4434080ecc6d84133488e0269
+// Certificate 10de08a7b676a480ea14532a62b46b63a9daf9b5152075d9d07fe2c5f460e584
 
 /// The default for a Crazyflie 2.1 Brushless.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // cascade-kit-100ms for crazyflie-2.1-upgrade-kit at 500 Hz: made by `quatrack gains design` and not edited by hand.
 // Design 096eb8b548c749e568705cce83fe8627b17ea9409aa16082ddaf33377cb48d51
-// Certificate d0586919f02492cab18ba369f9247077f009d80a747ad42f90c346575f670509
+// Certificate 0d933e7840fbb3dd8177c508692b2a3eb0dca9010314c17ca8cc3527f625bda4
 
 /// The default for a Crazyflie 2.1 with the upgrade kit: for any published lag of its motors.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // cascade-kit-20ms for crazyflie-2.1-upgrade-kit at 500 Hz: made by `quatrack gains design` and not edited by hand.
 // Design ca2d0e5f7a42902917adaeaab92bd16bd9c705fa4f85f283581a4ad18c22ac57
-// Certificate 72c538ea282acc7d15d1cf16fb7f70e308998f14039a5d8f00da4d4eaef1ad29
+// Certificate a420e8d1150559017ef6c2479a1988d467f6af91ee0bde7b0343f4fed389e273
 
 /// For a Crazyflie 2.1 with the upgrade kit whose motors are known to lag about 20 ms.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // cascade-kit-63ms for crazyflie-2.1-upgrade-kit at 500 Hz: made by `quatrack gains design` and not edited by hand.
 // Design 1f123e4692e1dde155064aac2ea5f8b04b1ae2cdc08621a0f7da7fc56f9ccd1e
-// Certificate 5a32d5316cea5fbf2c3fa361077e237f319546aa57e709256db30a0f6a4195ce
+// Certificate 9f8888f88ab5b8ab52c29ed96ff0e231711d0b51c3a43f1beea54a2747d1b020
 
 /// For a Crazyflie 2.1 with the upgrade kit whose motors are known to lag about 63.5 ms.
 #[rustfmt::skip]

@@ -108,6 +108,13 @@ impl<'a> Target<'a> {
         Self { sample: Some((sample, heading)), ..Self::new(&NOWHERE) }
     }
 
+    #[cfg(feature = "cascade")]
+    /// The same with the flat output, for a way between the cascade and another law.
+    #[inline]
+    pub const fn and_sample(self, sample: &'a FifthOrderSample, heading: Heading) -> Self {
+        Self { sample: Some((sample, heading)), ..self }
+    }
+
     /// Where on which trajectory that is, for gains that change along one; without it they are those of its end.
     #[inline]
     pub const fn at(self, progress: Option<Progress>) -> Self {

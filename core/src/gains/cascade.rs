@@ -34,7 +34,7 @@ pub const BRUSHLESS_20_MS: BuiltInCascade = BuiltInCascade {
     },
     margins: Margins { gain_factor: 2.598, phase_rad: 0.8359 },
     delay_max_s: 0.02399,
-    motor_lag_max_s: 0.08992,
+    motor_lag_max_s: 0.08995,
 };
 
 /// The default for a Crazyflie 2.1 Brushless.
@@ -61,9 +61,9 @@ pub const BRUSHLESS_50_MS: BuiltInCascade = BuiltInCascade {
             moment_n_s: [0.00084, 0.001095],
         },
     },
-    margins: Margins { gain_factor: 2.098, phase_rad: 0.6815 },
+    margins: Margins { gain_factor: 2.099, phase_rad: 0.6817 },
     delay_max_s: 0.02799,
-    motor_lag_max_s: 0.1343,
+    motor_lag_max_s: 0.1344,
 };
 
 /// For a Crazyflie 2.1 Brushless whose motors lag by up to 126 ms.
@@ -90,9 +90,9 @@ pub const BRUSHLESS_110_MS: BuiltInCascade = BuiltInCascade {
             moment_n_s: [0.00084, 0.001095],
         },
     },
-    margins: Margins { gain_factor: 1.967, phase_rad: 0.6304 },
+    margins: Margins { gain_factor: 1.968, phase_rad: 0.6308 },
     delay_max_s: 0.02999,
-    motor_lag_max_s: 0.2435,
+    motor_lag_max_s: 0.2439,
 };
 
 /// Of the Crazyflie 2.1 Brushless, for the shortest lags first.
@@ -154,9 +154,9 @@ pub const CRAZYFLIE_2_1_63_MS: BuiltInCascade = BuiltInCascade {
             moment_n_s: [0.00045, 0.00051],
         },
     },
-    margins: Margins { gain_factor: 2.228, phase_rad: 0.7273 },
+    margins: Margins { gain_factor: 2.229, phase_rad: 0.7273 },
     delay_max_s: 0.02399,
-    motor_lag_max_s: 0.1837,
+    motor_lag_max_s: 0.1839,
 };
 
 /// The default for a Crazyflie 2.1: for any published lag of its motors.
@@ -183,9 +183,9 @@ pub const CRAZYFLIE_2_1_100_MS: BuiltInCascade = BuiltInCascade {
             moment_n_s: [0.00045, 0.00051],
         },
     },
-    margins: Margins { gain_factor: 2.046, phase_rad: 0.6618 },
+    margins: Margins { gain_factor: 2.047, phase_rad: 0.6619 },
     delay_max_s: 0.02599,
-    motor_lag_max_s: 0.245,
+    motor_lag_max_s: 0.2452,
 };
 
 /// Of the Crazyflie 2.1, for the shortest lags first.
@@ -218,9 +218,9 @@ pub const UPGRADE_KIT_20_MS: BuiltInCascade = BuiltInCascade {
             moment_n_s: [0.00045, 0.00051],
         },
     },
-    margins: Margins { gain_factor: 2.762, phase_rad: 0.8762 },
+    margins: Margins { gain_factor: 2.763, phase_rad: 0.8762 },
     delay_max_s: 0.02199,
-    motor_lag_max_s: 0.09876,
+    motor_lag_max_s: 0.09878,
 };
 
 /// For a Crazyflie 2.1 with the upgrade kit whose motors are known to lag about 63.5 ms.
@@ -247,9 +247,9 @@ pub const UPGRADE_KIT_63_MS: BuiltInCascade = BuiltInCascade {
             moment_n_s: [0.00045, 0.00051],
         },
     },
-    margins: Margins { gain_factor: 2.167, phase_rad: 0.7063 },
+    margins: Margins { gain_factor: 2.167, phase_rad: 0.7064 },
     delay_max_s: 0.02599,
-    motor_lag_max_s: 0.1766,
+    motor_lag_max_s: 0.1767,
 };
 
 /// The default for a Crazyflie 2.1 with the upgrade kit: for any published lag of its motors.
@@ -276,9 +276,9 @@ pub const UPGRADE_KIT_100_MS: BuiltInCascade = BuiltInCascade {
             moment_n_s: [0.00045, 0.00051],
         },
     },
-    margins: Margins { gain_factor: 1.992, phase_rad: 0.6404 },
+    margins: Margins { gain_factor: 1.992, phase_rad: 0.6406 },
     delay_max_s: 0.02799,
-    motor_lag_max_s: 0.236,
+    motor_lag_max_s: 0.2362,
 };
 
 /// Of the Crazyflie 2.1 with the thrust upgrade kit, for the shortest lags first.

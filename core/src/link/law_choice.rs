@@ -22,6 +22,8 @@ pub enum Table {
     Loaded(u8),
     /// The actuator-aware law's for this craft, straight to motor forces; takes neither feed-forward nor error form.
     ActuatorAware,
+    /// The cascade's for this craft where no lag of its motors is stated; takes neither feed-forward nor error form.
+    Cascade,
 }
 
 /// A table and how its law is to be flown.
@@ -52,7 +54,7 @@ impl LawChoice {
             Table::LqrE => equilibrium(&paper::LQR_E),
             Table::LyapF => flat_output(&paper::LYAP_F),
             Table::LqrF => flat_output(&paper::LQR_F),
-            Table::Loaded(_) | Table::ActuatorAware => None,
+            Table::Loaded(_) | Table::ActuatorAware | Table::Cascade => None,
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use quatrack::link::NoCommand;
 use quatrack::nalgebra::Vector3;
-use quatrack::{Measured, MotorForces, Output, State, StepError, Target, Tick};
+use quatrack::{Heading, Measured, MotorForces, MotorReference, Output, State, StepError, Target, Tick};
 
 use crate::craft::BodyRates;
 use crate::drivers::battery::CellVoltage;
@@ -71,7 +71,8 @@ impl ToMotors {
             BodyRates::NoGyroscope => self.sent_rad_s,
             BodyRates::Failed => None,
         };
-        if rates.is_none() && (self.answers_by_forces || laws.follows_forces()) {
+        let follows_samples = laws.follows_samples();
+        if rates.is_none() && (self.answers_by_forces || follows_samples || laws.follows_forces()) {
             return Err(NoCommand::NoBodyRates);
         }
         if !playback.is_there() {
@@ -81,7 +82,19 @@ impl ToMotors {
             Some(rates) => Measured::new(state).with_body_rates(rates),
             None => Measured::new(state),
         };
-        let output = if laws.follows_forces() {
+        let output = if follows_samples {
+            let sample = playback.sample(tick);
+            let heading = Heading::from_angle(sample.flat.heading_rad);
+            if laws.is_changing() {
+                // The other law takes a reference, down to the forces of the craft that it reckons with.
+                let airframe = laws.airframe().ok_or(NoCommand::Step(StepError::NoActuation))?;
+                let reference = MotorReference::from_flat(&sample, airframe).map_err(NoCommand::Reference)?;
+                let target = Target::with_forces(&reference).and_sample(&sample, heading);
+                laws.step(measured, target.at(playback.progress()))
+            } else {
+                laws.step(measured, Target::with_sample(&sample, heading))
+            }
+        } else if laws.follows_forces() {
             let airframe = laws.airframe().ok_or(NoCommand::Step(StepError::NoActuation))?;
             let reference = playback.motor_reference(tick, airframe).map_err(NoCommand::Reference)?;
             laws.step(measured, Target::with_forces(&reference).at(playback.progress()))

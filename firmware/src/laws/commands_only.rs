@@ -1,11 +1,18 @@
 //! The paper's laws alone, for an image without the feature `motors`.
 
 use quatrack::gains::table::{AcceptedTable, TableKind};
-use quatrack::link::Table;
-use quatrack::{Actuation, ActuatorAware, Controller, Law, Measured, Memory, Output, Settings, StepError, Target};
+use quatrack::link::{LawChoice, Table};
+use quatrack::{
+    Actuation, ActuatorAware, Controller, Law, Limits, Measured, Memory, Output, Settings, StepError, Target,
+};
+
+use crate::rates::TICK_RATE;
 
 /// There is none.
 pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> = None;
+
+/// Nor this.
+pub(crate) const BUILT_IN_CASCADE: Option<Law<'static>> = None;
 
 /// None.
 pub struct Actuations;
@@ -21,6 +28,15 @@ impl Actuations {
     #[inline(always)]
     pub(crate) const fn of(&self, _table: Table) -> Option<&Actuation> {
         None
+    }
+
+    /// What a controller of a table takes.
+    pub(crate) const fn settings(&self, choice: &LawChoice, limits: Limits) -> Settings<'_> {
+        Settings {
+            feed_forward: choice.feed_forward,
+            error_form: choice.error_form,
+            ..Settings::new(limits, TICK_RATE)
+        }
     }
 }
 

@@ -1,13 +1,17 @@
 //! Every law, and the board's ways to its motors.
 
 use quatrack::body_rate::BandwidthError;
-use quatrack::gains::table::AcceptedTable;
-use quatrack::link::Table;
+use quatrack::cascade::{Cascade, CascadeLimits};
+use quatrack::gains::cascade::CRAZYFLIE_2_1_DEFAULT;
+use quatrack::gains::table::{AcceptedTable, CascadeTable};
+use quatrack::link::{LawChoice, Table};
 use quatrack::{
-    Actuation, ActuatorAware, BodyRateLoop, Controller, Measured, Memory, Output, Settings, StepError, Target,
+    Actuation, ActuatorAware, BodyRateLoop, Controller, Law, Limits, Measured, Memory, Output, Settings, StepError,
+    Target,
 };
 
-use crate::vehicle::{ACTUATION, AIRFRAME};
+use crate::rates::TICK_RATE;
+use crate::vehicle::{ACTUATION, AIRFRAME, STEP_RATE};
 
 /// The table in the image.
 pub mod table {
@@ -16,10 +20,24 @@ pub mod table {
 
 static TO_MOTORS: Actuation = ACTUATION;
 
-/// The board's ways to its motors: its own, and that of each slot's table, which may reckon with another motor lag.
+/// The cascade in the image, for steps at [`crate::vehicle::STEP_RATE`].
+static CASCADE: Cascade = {
+    let table = &CRAZYFLIE_2_1_DEFAULT.table;
+    match table.flown(&AIRFRAME, STEP_RATE, &CascadeLimits::STANDARD, &table.air) {
+        Ok(cascade) => cascade,
+        Err(_) => panic!("the motors are too fast for this rate"),
+    }
+};
+
+/// The same as a law.
+pub(crate) const BUILT_IN_CASCADE: Option<Law<'static>> = Some(Law::Cascade(&CASCADE));
+
+/// The board's ways to its motors: its own, and that of each slot's table, which may reckon with another motor lag; and the
+/// cascades that are made of loaded tables.
 pub struct Actuations {
     board: Actuation,
     of_slots: [Actuation; 2],
+    cascades: [Option<Cascade>; 2],
     bandwidth_rad_s: [f32; 3],
 }
 
@@ -28,7 +46,7 @@ impl Actuations {
     #[inline(always)]
     pub(crate) const fn new() -> Self {
         let bandwidth_rad_s = [0.5 / AIRFRAME.figures().motor_lag_s; 3];
-        Self { board: ACTUATION, of_slots: [ACTUATION; 2], bandwidth_rad_s }
+        Self { board: ACTUATION, of_slots: [ACTUATION; 2], cascades: [None; 2], bandwidth_rad_s }
     }
 
     /// Bandwidth of the body-rate loop, rad/s.
@@ -54,17 +72,45 @@ impl Actuations {
     pub(crate) fn load(&mut self, table: &AcceptedTable<'_>) {
         let [in_use, _] = self.of_slots;
         self.of_slots = [table.actuation(&self.board), in_use];
+        let [in_use, _] = self.cascades;
+        let flown = |of: &CascadeTable| of.flown(&AIRFRAME, table.rate(), &CascadeLimits::STANDARD, &of.air).ok();
+        self.cascades = [table.cascade().and_then(flown), in_use];
     }
 
     /// That of a table.
     #[inline]
     pub(crate) const fn of(&self, table: Table) -> Option<&Actuation> {
+        if let Some(cascade) = self.cascade(table) {
+            return Some(cascade.actuation());
+        }
         let [in_use, before] = &self.of_slots;
         Some(match table {
             Table::Loaded(0) => in_use,
             Table::Loaded(_) => before,
             _ => &self.board,
         })
+    }
+
+    /// The cascade of a table, if it is one of it.
+    const fn cascade(&self, table: Table) -> Option<&Cascade> {
+        let [in_use, before] = &self.cascades;
+        match table {
+            Table::Loaded(0) => in_use.as_ref(),
+            Table::Loaded(_) => before.as_ref(),
+            Table::Cascade => Some(&CASCADE),
+            _ => None,
+        }
+    }
+
+    /// What a controller of a table takes.
+    pub(crate) const fn settings(&self, choice: &LawChoice, limits: Limits) -> Settings<'_> {
+        Settings {
+            actuation: self.of(choice.table),
+            cascade: self.cascade(choice.table),
+            feed_forward: choice.feed_forward,
+            error_form: choice.error_form,
+            ..Settings::new(limits, TICK_RATE)
+        }
     }
 }
 

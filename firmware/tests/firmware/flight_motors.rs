@@ -5,13 +5,15 @@ use embedded_hal::i2c::ErrorKind;
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::i2c::{Mock as Bus, Transaction as OnBus};
 use embedded_hal_mock::eh1::pwm::{Mock as Channel, Transaction as OnChannel};
+use quatrack::cascade::CascadeLimits;
+use quatrack::gains::cascade::CRAZYFLIE_2_1_DEFAULT;
 use quatrack::gains::paper;
 use quatrack::link::{ForcesOut, FromBoard, LawChoice, NoCommand, RigidStateIn, StateIn, Table, TrajectoryId};
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{Fault, Mode, StopReason};
 use quatrack::{
-    Actuation, ActuatorAware, Controller, Equilibrium, Handover, Limits, Memory, MotorForces, Output, RigidState,
-    State, StateError, StepError, Target, Tick,
+    Actuation, ActuatorAware, Controller, Equilibrium, Handover, Heading, Limits, Memory, MotorForces, MotorReference,
+    Output, Rate, RigidState, State, StateError, StepError, Target, Tick,
 };
 use quatrack_firmware::craft::{BoardCraft, BodyRates, Craft};
 use quatrack_firmware::drivers::battery::CellVoltage;
@@ -128,6 +130,43 @@ fn a_law_that_takes_over_in_flight_knows_the_motors_and_comes_in_parts() {
         assert_eq!(flight.forces_n(), &expected.forces_n, "step {step}");
     }
     assert!(way.is_over());
+}
+
+#[test]
+fn the_cascade_takes_over_in_flight_and_its_forces_are_the_cores() {
+    let mut flight = flying(Table::LqrE, 0);
+    let first = *flight.forces_n();
+    flight.select(LawChoice::new(Table::Cascade)).expect("it is in flash");
+    let of = &CRAZYFLIE_2_1_DEFAULT.table;
+    let rate = ACTUATION.lag().period_s();
+    let cascade = of
+        .flown(&AIRFRAME, Rate::from_hz((1.0 / rate).round() as u32).unwrap(), &CascadeLimits::STANDARD, &of.air)
+        .unwrap();
+    let mut memory = Memory::new(ACTUATION.lag().next(&NONE, &first)).unwrap();
+    let limits = flight.limits().check().unwrap();
+    let (old, new) = (core(Table::LqrE, limits), Controller::new(&cascade, limits));
+    let mut way = Handover::begin(FADE_STEPS, old.law(), new.law(), &mut memory);
+    let mut player = stored::player(TrajectoryId::Mild).unwrap();
+    for step in 1..=FADE_STEPS + 50 {
+        let tick = 2 * Tick::from(step);
+        let measured = state(step);
+        flight.hear(tick);
+        flight.accept_rigid(RigidStateIn { tick, state: measured }, tick);
+        flight.step(tick, false, BodyRates::NoGyroscope);
+        let sample = player.at_fifth_order(tick);
+        let heading = Heading::from_angle(sample.flat.heading_rad);
+        let reference = MotorReference::from_flat(&sample, cascade.airframe()).unwrap();
+        let target = Target::with_forces(&reference).and_sample(&sample, heading);
+        let Ok(Output::Forces(expected)) = way.step((&old, &new), &mut memory, (&measured).into(), target) else {
+            panic!("step {step}: no forces");
+        };
+        assert_eq!(flight.forces_n(), &expected.forces_n, "step {step}");
+    }
+    assert!(way.is_over());
+    // At a rate that it is not made for there is none.
+    let mut other = board(Table::Cascade);
+    other.set_decimation(1);
+    assert_ne!(other.law().table, Table::Cascade);
 }
 
 #[test]

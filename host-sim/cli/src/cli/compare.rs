@@ -26,6 +26,10 @@ pub(crate) struct Args {
     /// Which laws, by their names; by default --law, or else all.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', conflicts_with = "law")]
     laws: Vec<Law>,
+    /// Fly a gain table for motor forces (.bin), or a design (.toml) whose table is made first, beside them; on its vehicle where
+    /// none is named.
+    #[arg(long, value_name = "FILE")]
+    gains: Option<PathBuf>,
     /// Write the table as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -35,12 +39,20 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let scenario = args.scenario.checked()?;
+    let named = args.scenario.scenario.is_some() || args.scenario.vehicle.is_some();
+    let gains = args.gains.as_deref().map(|path| Ok((path, fly::table::source(path)?))).transpose()?;
+    let own = gains.as_ref().filter(|_| !named).map(|(path, table)| table.own_vehicle(path)).transpose()?;
+    let scenario = args.scenario.checked_for(own.as_ref())?;
     let trajectory = scenario.course.trajectory().map(fly::trajectory).transpose()?;
     let flown = scenario.flown(trajectory);
     let asked: Vec<Law> = args.scenario.law.into_iter().chain(args.laws.iter().copied()).collect();
     let laws = if asked.is_empty() { Law::ALL.to_vec() } else { asked.clone() };
-    let (mut flights, mut grounded) = (Vec::with_capacity(laws.len()), String::new());
+    let (mut flights, mut grounded) = (Vec::with_capacity(laws.len() + 1), String::new());
+    if let Some((path, table)) = &gains {
+        flights.push(fly::table::in_scenario(path, table, &scenario, &|law, name| {
+            Ok((name.to_owned(), scenario.fly(law, &flown).map_err(Failure::input)?))
+        })?);
+    }
     for law in laws {
         let mut flying = match law.start(&scenario.vehicle, &scenario.told) {
             Ok(flying) => flying,

@@ -3,7 +3,7 @@
 
 mod picture;
 pub(super) mod scenario;
-mod table;
+pub(super) mod table;
 
 use std::fmt;
 use std::path::{Path, PathBuf};

@@ -44,7 +44,7 @@ enum Command {
         json: Option<PathBuf>,
     },
     /// Writes every generated file that is not what its design gives: the tables of a folder and, in a checkout, the
-    /// sources made of them: core/src/gains/paper.rs, crazyflie/src/builtin/motor_gains.rs and paper_limits.rs, plans/*.rs.
+    /// sources made of them: core/src/gains/paper.rs and cascade.rs, crazyflie/src/builtin/motor_gains.rs and paper_limits.rs, plans/*.rs.
     ///
     /// A file that `check` passes stays as it is. Exit code 1 for a file that no design gives.
     Generate {
@@ -72,6 +72,10 @@ enum Command {
         /// Write all of it as JSON.
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
+        /// Of a design of the cascade: draw loop gain, sensitivity with the disk margin, and steps into a folder, as SVG and
+        /// PNG.
+        #[arg(long, value_name = "DIR")]
+        plot: Option<PathBuf>,
     },
     /// Prints a line for each design of a folder.
     List {
@@ -89,7 +93,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Command::Design { designs, out, json } => design(designs, out.as_deref(), json.as_deref()),
         Command::Generate { folders } => generate(folders),
         Command::Check { paths, json } => check(paths, json.as_deref()),
-        Command::Show { file, json } => show::show(file, json.as_deref()),
+        Command::Show { file, json, plot } => show::show(file, json.as_deref(), plot.as_deref()),
         Command::List { folder, json } => list(folder.as_deref(), json.as_deref()),
     }
 }

@@ -1,6 +1,7 @@
 //! The command line: one module a command, each with its `Args` and a `run`.
 
 mod analyze;
+mod campaign;
 mod compare;
 mod crazyflie;
 mod export;
@@ -13,6 +14,7 @@ mod output;
 mod pil;
 mod plan;
 mod refit;
+mod report;
 mod reproduce;
 mod robustness;
 mod scenario;
@@ -57,6 +59,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Analyze(analyze::Args),
+    Campaign(campaign::Args),
     Compare(compare::Args),
     Crazyflie(crazyflie::Args),
     Export(export::Args),
@@ -67,6 +70,7 @@ enum Command {
     Pil(pil::Args),
     Plan(plan::Args),
     Refit(refit::Args),
+    Report(report::Args),
     Reproduce(reproduce::Args),
     Robustness(robustness::Args),
 }
@@ -79,6 +83,7 @@ pub(crate) fn main() -> ExitCode {
     };
     let outcome: Result<(), Failure> = match &arguments.command {
         Command::Analyze(args) => analyze::run(args),
+        Command::Campaign(args) => campaign::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Crazyflie(args) => crazyflie::run(args),
         Command::Export(args) => export::run(args),
@@ -89,6 +94,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Pil(args) => pil::run(args),
         Command::Plan(args) => plan::run(args),
         Command::Refit(args) => refit::run(args),
+        Command::Report(args) => report::run(args),
         Command::Reproduce(args) => reproduce::run(args),
         Command::Robustness(args) => robustness::run(args),
     };

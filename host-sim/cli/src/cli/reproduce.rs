@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use quatrack_cli::figures::{Curve, TrackingFigure};
+use quatrack_cli::figures::{Curve, FigureError, TrackingFigure};
 use quatrack_design::model::position;
 use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::{self, Plan, PlanError};
@@ -53,11 +53,7 @@ const FIGURES: [(u32, &str, PaperTrajectory, [Controller; 2]); 4] = [
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     output::create_dir(&args.out)?;
-    let planned = |plan: Result<Plan, PlanError>| {
-        let curve = plan.and_then(|plan| plan.solve()).map_err(Failure::verdict)?;
-        PiecewisePolynomial::from_bspline(&curve).map_err(Failure::verdict)
-    };
-    let (mild, aggressive) = (planned(plan::paper::mild())?, planned(plan::paper::aggressive())?);
+    let (mild, aggressive) = courses()?;
     let reproduction = Reproduction::fly(&mild, &aggressive).map_err(Failure::verdict)?;
     output::print(&format!("{reproduction}\n"))?;
     let beyond = args.beyond.then(|| Extensions::fly(&mild, &aggressive)).transpose().map_err(Failure::verdict)?;
@@ -77,7 +73,24 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-fn write_figures(reproduction: &Reproduction, dir: &Path) -> Result<(), Failure> {
+/// Both trajectories, planned from their waypoints.
+fn courses() -> Result<(PiecewisePolynomial, PiecewisePolynomial), Failure> {
+    let planned = |plan: Result<Plan, PlanError>| {
+        let curve = plan.and_then(|plan| plan.solve()).map_err(Failure::verdict)?;
+        PiecewisePolynomial::from_bspline(&curve).map_err(Failure::verdict)
+    };
+    Ok((planned(plan::paper::mild())?, planned(plan::paper::aggressive())?))
+}
+
+/// All flights of Table I.
+pub(super) fn fly() -> Result<Reproduction, Failure> {
+    let (mild, aggressive) = courses()?;
+    Reproduction::fly(&mild, &aggressive).map_err(Failure::verdict)
+}
+
+/// Number, title, SVG and PNG of each figure; the latter as it is asked for.
+pub(super) fn figures(reproduction: &Reproduction) -> Result<Vec<(u32, &'static str, String, Png)>, Failure> {
+    let mut drawn = Vec::new();
     for (number, title, course, controllers) in FIGURES {
         let flights: Vec<&Flight> = controllers
             .iter()
@@ -91,10 +104,20 @@ fn write_figures(reproduction: &Reproduction, dir: &Path) -> Result<(), Failure>
             reference: reference.curve("reference"),
             flights: tracks.iter().zip(&labels).map(|(track, label)| track.curve(label)).collect(),
         };
+        drawn.push((number, title, figure.to_svg().map_err(Failure::verdict)?, figure.to_png()));
+    }
+    Ok(drawn)
+}
+
+/// A figure's pixels, or why there are none.
+type Png = Result<Vec<u8>, FigureError>;
+
+fn write_figures(reproduction: &Reproduction, dir: &Path) -> Result<(), Failure> {
+    for (number, _, document, pixels) in figures(reproduction)? {
         let svg = dir.join(format!("figure{number}.svg"));
         let png = dir.join(format!("figure{number}.png"));
-        output::write(&svg, figure.to_svg().map_err(Failure::verdict)?.as_bytes())?;
-        output::write(&png, &figure.to_png().map_err(Failure::verdict)?)?;
+        output::write(&svg, document.as_bytes())?;
+        output::write(&png, &pixels.map_err(Failure::verdict)?)?;
         output::print(&format!("wrote {} and {}\n", svg.display(), png.display()))?;
     }
     Ok(())

@@ -5,6 +5,7 @@ mod values;
 
 use std::path::{Path, PathBuf};
 
+use quatrack_design::vehicle::Vehicle;
 use quatrack_simulation::scenario::file::{Air, Estimator, OwnAir, ScenarioFile};
 use quatrack_simulation::scenario::flight::Setpoints;
 use quatrack_simulation::scenario::{Law, Scenario};
@@ -152,16 +153,30 @@ impl ScenarioArgs {
     /// # Errors
     /// What the file or a flag says without sense, in one line.
     pub(super) fn checked(&self) -> Result<Scenario, Failure> {
+        self.checked_for(None)
+    }
+
+    /// The same for the vehicle of a table where neither file nor flag names one.
+    ///
+    /// # Errors
+    /// As [`Self::checked`].
+    pub(super) fn checked_for(&self, own: Option<&Vehicle>) -> Result<Scenario, Failure> {
         let (mut file, name, folder) = match (&self.scenario, &self.vehicle) {
             (Some(path), _) => {
                 let file = ScenarioFile::read(path).map_err(Failure::input)?;
                 (file, path.display().to_string(), path.parent().unwrap_or(Path::new("")))
             }
             (None, Some(_)) => (ScenarioFile::default(), String::new(), Path::new("")),
+            (None, None) if own.is_some() => (ScenarioFile::default(), String::new(), Path::new("")),
             (None, None) => return Err(Failure::input("no craft to fly: give --scenario FILE or --vehicle VEHICLE")),
         };
         let before = file.clone();
         self.put_over(&mut file);
+        if file.vehicle.is_empty()
+            && let Some(vehicle) = own
+        {
+            return Scenario::on(vehicle.clone(), &file, "flags", folder).map_err(Failure::input);
+        }
         let origin = match (name.is_empty(), file == before) {
             (true, _) => "flags".to_owned(),
             (false, true) => name,

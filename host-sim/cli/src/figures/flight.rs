@@ -93,7 +93,7 @@ impl FlightFigure<'_> {
                 panel.draw_samples(sheet, times.iter().zip(&trace.values).map(|(t, v)| [*t, *v]), stroke);
             }
             panel.draw_outline(sheet);
-            quantity.legend(sheet, top - 9.0)?;
+            quantity.legend(sheet, PANELS.right, top - 9.0)?;
             sheet.text_upwards(quantity.name, [PANELS.left - 50.0, top + 0.5 * height], LABEL);
         }
         let middle = 0.5 * (PANELS.left + PANELS.right);
@@ -104,7 +104,7 @@ impl FlightFigure<'_> {
 
 impl Quantity<'_> {
     /// Limits lowest.
-    fn strokes(&self) -> Vec<(&Trace<'_>, Stroke)> {
+    pub(super) fn strokes(&self) -> Vec<(&Trace<'_>, Stroke)> {
         let limit = Stroke { colour: Colour::REFERENCE, width: 1.1, dash: Some([4.5, 5.5]) };
         let limits = self.traces.iter().filter(|trace| trace.limit).map(|trace| (trace, limit));
         let others = self.traces.iter().filter(|trace| !trace.limit).zip(Colour::FLIGHTS);
@@ -112,11 +112,11 @@ impl Quantity<'_> {
     }
 
     /// Above the panel, from the right.
-    fn legend(&self, sheet: &mut Sheet, row: f64) -> Result<(), FigureError> {
+    pub(super) fn legend(&self, sheet: &mut Sheet, right: f64, row: f64) -> Result<(), FigureError> {
         const SAMPLE: f64 = 22.0;
         let mut strokes = self.strokes();
         strokes.dedup_by(|(next, _), (before, _)| next.label == before.label);
-        let mut x = PANELS.right;
+        let mut x = right;
         for (trace, stroke) in strokes.into_iter().rev() {
             sheet.text(trace.label, [x, row], TICK, Anchor::End);
             x -= width_em(trace.label)? * TICK + 6.0;

@@ -9,6 +9,7 @@ mod compose;
 mod flight;
 mod panels;
 mod path;
+mod plots;
 mod render;
 mod space;
 mod style;
@@ -17,6 +18,7 @@ mod svg;
 use nalgebra::Vector3;
 
 pub use flight::{FlightFigure, Quantity, Trace};
+pub use plots::{Plot, PlotsFigure};
 
 /// Coordinates and times up to this size can be told apart on an axis and labelled.
 const LARGEST: f64 = 1e6;

@@ -37,7 +37,7 @@ pub(super) struct Panel {
 }
 
 impl Panel {
-    fn column(&self, time_s: f64) -> f64 {
+    pub(super) fn column(&self, time_s: f64) -> f64 {
         self.frame.left + self.time_s.range.share(time_s) * (self.frame.right - self.frame.left)
     }
 

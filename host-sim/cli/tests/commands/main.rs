@@ -1,5 +1,6 @@
 //! The command as it is typed, and the figures that it draws.
 
+mod campaign;
 mod cli;
 mod compare;
 mod figures;

@@ -4,6 +4,7 @@
 use nalgebra::{Vector3, Vector4};
 use quatrack::airframe::AirframeFigures;
 use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeLimits, JerkFit};
+use quatrack::gains::table::CascadeTable;
 use quatrack::{Airframe, Controller, Heading, Limits, Measured, Memory, Target};
 use quatrack_design::design::cascade::{CascadeWeights, cascade};
 use quatrack_design::vehicle::Vehicle;
@@ -35,6 +36,15 @@ impl CascadeLaw {
     pub fn hovering(cascade: Cascade) -> Self {
         let memory = Memory::hovering(cascade.airframe());
         Self { cascade, memory, fit: JerkFit::NONE, newest: None }
+    }
+
+    /// Of a table, with its lag, and with its air where none is told.
+    pub(super) fn of_table(vehicle: &Vehicle, told: &ToldFigures, table: &CascadeTable) -> Result<Self, FlightError> {
+        let figures = *motor_loop::airframe(vehicle, f64::from(table.motor_lag_s))?.figures();
+        let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?;
+        let air = with_told(&table.air, told).checked()?;
+        let cascade = table.flown(&airframe, RATE, &CascadeLimits::STANDARD, &air)?;
+        Ok(Self { cascade, memory: Memory::hovering(&airframe), fit: JerkFit::NONE, newest: None })
     }
 
     /// The setpoint with snap and crackle of the fit through its jerks; as it is where it has them.
@@ -112,7 +122,11 @@ fn air(vehicle: &Vehicle, told: &ToldFigures) -> Result<Air, FlightError> {
     } else {
         Air { learn: true, ..Air::NONE }
     };
-    let drag_per_s = told.drag_per_s.map_or(known.drag_per_s, |drag| drag as f32);
-    let moment_n_s = told.moment_n_m_per_m_s.map_or(known.moment_n_s, |moment| moment.map(|share| share as f32));
-    Ok(Air { drag_per_s, moment_n_s, ..known }.checked()?)
+    Ok(with_told(&known, told).checked()?)
+}
+
+fn with_told(air: &Air, told: &ToldFigures) -> Air {
+    let drag_per_s = told.drag_per_s.map_or(air.drag_per_s, |drag| drag as f32);
+    let moment_n_s = told.moment_n_m_per_m_s.map_or(air.moment_n_s, |moment| moment.map(|share| share as f32));
+    Air { drag_per_s, moment_n_s, ..*air }
 }

@@ -11,8 +11,10 @@ use super::error::ScenarioError;
 use super::file::{Air, ScenarioFile};
 use super::laws::ToldFigures;
 use super::sensors::SensorNoise;
-use super::whole::{CourseChoice, EIGHT_MEASURED_S, FilterFigures, HOVER_MEASURED_S, STEP_MEASURED_S, Scenario};
-use crate::plant::{self, Dryden, Environment, RigidState, Truth, Wind};
+use super::whole::{
+    CourseChoice, EIGHT_MEASURED_S, FilterFigures, HOVER_MEASURED_S, STEP_MEASURED_S, Scenario, StartOffset,
+};
+use crate::plant::{self, Dryden, Environment, RigidState, Supply, Truth, Wind};
 use crate::vehicles;
 
 impl Scenario {
@@ -30,8 +32,15 @@ impl Scenario {
     /// # Errors
     /// [`ScenarioError::Value`] and [`ScenarioError::Named`] with `origin` for the file's name.
     pub fn checked(file: &ScenarioFile, origin: &str, folder: &Path) -> Result<Self, ScenarioError> {
+        Self::on(vehicle(&file.vehicle, origin, folder)?, file, origin, folder)
+    }
+
+    /// The same on a vehicle that is at hand; the file's is not looked at.
+    ///
+    /// # Errors
+    /// As [`Self::checked`].
+    pub fn on(vehicle: Vehicle, file: &ScenarioFile, origin: &str, folder: &Path) -> Result<Self, ScenarioError> {
         let checks = Checks { origin };
-        let vehicle = vehicle(&file.vehicle, origin, folder)?;
         let (course, default_s) = course(file, &checks, folder)?;
         let duration_s = match (file.duration_s, default_s) {
             (None, default) => default,
@@ -58,6 +67,7 @@ impl Scenario {
             told: told(file, &checks, &vehicle)?,
             noise: noise(file, &checks)?,
             filter: filter(file, &checks)?,
+            start: start(file, &checks)?,
             vehicle,
         };
         // The plant looks at its own figures.
@@ -173,6 +183,10 @@ fn truth(
     let end = factor("errors.thrust_factor_end", errors.thrust_factor_end, thrust_factor, [0.5, 1.5])?;
     let whole_s = HOVER_S + RAMP_S + measured_s.unwrap_or(EIGHT_MEASURED_S);
     let bias = errors.torque_bias_n_m.unwrap_or([0.0; 2]);
+    let on_battery = match file.battery.charge {
+        None => Truth::as_designed(vehicle),
+        Some(charge) => on_battery(charge, checks, vehicle)?,
+    };
     let offset = errors.centre_of_mass_m.unwrap_or([0.0; 2]);
     Ok(Truth {
         mass_kg: mass_factor * vehicle.mass_kg(),
@@ -184,7 +198,35 @@ fn truth(
         thrust_factor_per_s: (end - thrust_factor) / whole_s,
         torque_bias_n_m: Vector3::new(bias[0], bias[1], 0.0),
         centre_of_mass_m: Vector3::new(offset[0], offset[1], 0.0),
-        ..Truth::as_designed(vehicle)
+        motor_strength: errors.motor_strength.unwrap_or([1.0; 4]),
+        ..on_battery
+    })
+}
+
+/// As designed, but with the vehicle's force by command and voltage, and its battery at a charge.
+fn on_battery(charge: f64, checks: &Checks<'_>, vehicle: &Vehicle) -> Result<Truth, ScenarioError> {
+    checks.one("battery.charge", Some(charge), 1.0, [0.0, 1.0], "the share of a full battery")?;
+    let flown = Truth::as_flown(vehicle);
+    match flown.supply {
+        Supply::Battery { battery, .. } if flown.force_map.is_some() => Ok(Truth {
+            force_map: flown.force_map,
+            supply: Supply::Battery { battery, charge },
+            ..Truth::as_designed(vehicle)
+        }),
+        _ => {
+            let must = format!("left out: the file of {} says nothing of a battery", vehicle.name());
+            Err(checks.refuse("battery.charge", &charge, must))
+        }
+    }
+}
+
+fn start(file: &ScenarioFile, checks: &Checks<'_>) -> Result<StartOffset, ScenarioError> {
+    let start = &file.start;
+    let each = |key, value, most: f64, unit| checks.each(key, value, [-most, most], unit).map(Vector3::from);
+    Ok(StartOffset {
+        offset_m: each("start.offset_m", start.offset_m, 4.0, "in m; a craft is lost at 5 m from its course")?,
+        velocity_m_s: each("start.velocity_m_s", start.velocity_m_s, 10.0, "in m/s")?,
+        turn_rad: each("start.turn_rad", start.turn_rad, std::f64::consts::PI, "in rad")?,
     })
 }
 

@@ -34,6 +34,8 @@ pub struct ScenarioFile {
     pub duration_s: Option<f64>,
     /// Whose law.
     pub law: Option<Law>,
+    /// Whose laws, where a campaign flies several.
+    pub laws: Option<Vec<Law>>,
     /// 100hz or exact.
     pub setpoints: Option<Setpoints>,
     /// exact or kalman.
@@ -54,6 +56,14 @@ pub struct ScenarioFile {
     /// The estimator's, where it is a filter.
     #[serde(default)]
     pub filter: Filter,
+    /// Where the craft begins.
+    #[serde(default)]
+    pub start: Start,
+    /// The motors' supply.
+    #[serde(default)]
+    pub battery: Battery,
+    /// Distributions over figures above, for a campaign; one flight leaves them alone.
+    pub vary: Option<toml::Table>,
 }
 
 /// Where a law's estimate comes from.
@@ -80,6 +90,8 @@ pub enum Air {
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct OwnAir {
+    /// Whose figures these go over; vacuum's where absent.
+    pub of: Option<AirOf>,
     /// Linear drag over mass along body x, y, z, 1/s.
     pub drag_per_s: Option<[f64; 3]>,
     /// Airflow moment `c_x, c_y`: `tau_x = c_x v_y`, `tau_y = -c_y v_x`, N m a m/s.
@@ -88,6 +100,14 @@ pub struct OwnAir {
     pub wind_m_s: Option<[f64; 3]>,
     /// Root mean square of a gust's horizontal component, m/s.
     pub gust_rms_m_s: Option<f64>,
+}
+
+/// Whose air.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum AirOf {
+    /// What the vehicle's file says.
+    Vehicle,
 }
 
 /// What the true craft differs in from its vehicle.
@@ -114,6 +134,8 @@ pub struct Errors {
     pub torque_bias_n_m: Option<[f64; 2]>,
     /// Where the centre of mass is, body x and y, m.
     pub centre_of_mass_m: Option<[f64; 2]>,
+    /// Thrust of each motor over that of a sound one; 0 is a dead one.
+    pub motor_strength: Option<[f64; 4]>,
     /// Gyroscope, rad/s.
     pub gyro_bias_rad_s: Option<[f64; 3]>,
     /// Accelerometer, m/s^2.
@@ -164,6 +186,26 @@ pub struct Filter {
     pub latency_ms: Option<f64>,
 }
 
+/// How the start differs from the course's.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Start {
+    /// Beside it, world frame, m.
+    pub offset_m: Option<[f64; 3]>,
+    /// Faster than it, world frame, m/s.
+    pub velocity_m_s: Option<[f64; 3]>,
+    /// Turned from its attitude, as a rotation vector in the body frame, rad.
+    pub turn_rad: Option<[f64; 3]>,
+}
+
+/// The battery of a vehicle whose file has one.
+#[derive(Clone, Debug, Default, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Battery {
+    /// Charge at the start, from 0 to 1. Absent: forces are what is commanded, whatever the battery.
+    pub charge: Option<f64>,
+}
+
 impl<'de> Deserialize<'de> for Air {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Either;
@@ -180,7 +222,8 @@ impl<'de> Deserialize<'de> for Air {
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Air, A::Error> {
-                OwnAir::deserialize(MapAccessDeserializer::new(map)).map(Air::Own)
+                let own = OwnAir::deserialize(MapAccessDeserializer::new(map))?;
+                Ok(if own.of == Some(AirOf::Vehicle) { Air::Vehicle(own) } else { Air::Own(own) })
             }
         }
         deserializer.deserialize_any(Either)

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use quatrack::gains::paper as gains;
+use quatrack::gains::table::CascadeTable;
 use quatrack_design::vehicle::Vehicle;
 use serde::{Deserialize, Serialize};
 
@@ -149,6 +150,20 @@ impl Law {
             Self::Pid => Box::new(CascadedPid::new(CascadedPidConfig::firmware(vehicle, told.mass_kg), actuation)),
         })
     }
+}
+
+/// The cascade of a table at the start of a flight of a vehicle of which it is told something.
+///
+/// # Errors
+/// [`LawError::Core`].
+pub fn start_table(
+    vehicle: &Vehicle,
+    told: &ToldFigures,
+    table: &CascadeTable,
+) -> Result<Box<dyn ControlLaw>, LawError> {
+    CascadeLaw::of_table(vehicle, told, table)
+        .map(|law| Box::new(law) as Box<dyn ControlLaw>)
+        .map_err(|error| LawError::Core { law: Law::Quatrack.name(), vehicle: vehicle.name().to_owned(), error })
 }
 
 impl FromStr for Law {

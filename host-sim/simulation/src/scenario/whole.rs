@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
@@ -51,6 +51,17 @@ pub struct FilterFigures {
     pub latency_s: f64,
 }
 
+/// How a start differs from the course's.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StartOffset {
+    /// World frame, m.
+    pub offset_m: Vector3<f64>,
+    /// World frame, m/s.
+    pub velocity_m_s: Vector3<f64>,
+    /// Rotation vector, body frame, rad.
+    pub turn_rad: Vector3<f64>,
+}
+
 /// A scenario that can be flown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
@@ -82,6 +93,8 @@ pub struct Scenario {
     pub noise: SensorNoise,
     /// Of the filter.
     pub filter: FilterFigures,
+    /// Where the craft begins beside its course.
+    pub start: StartOffset,
 }
 
 impl Scenario {
@@ -111,6 +124,7 @@ impl Scenario {
         } else {
             RigidState::at_rest(point.position[0], 0.25 * self.truth.mass_kg * GRAVITY_M_S2)
         };
+        let start = self.start.applied(&start);
         let sensors = Sensors::new(self.noise, self.gyro_bias_rad_s, self.accelerometer_bias_m_s2, self.seed);
         let estimation = match self.estimator {
             EstimateFrom::Exact => Estimation::Exact(sensors.into()),
@@ -134,6 +148,19 @@ impl Scenario {
                 Flown::hover(self.duration_s.unwrap_or(HOVER_MEASURED_S))
             }
         }
+    }
+}
+
+impl StartOffset {
+    /// A start that differs by this; the same to the bit where it does not.
+    fn applied(&self, start: &RigidState) -> RigidState {
+        let mut start = *start;
+        if *self != Self::default() {
+            start.position_m += self.offset_m;
+            start.velocity_m_s += self.velocity_m_s;
+            start.attitude *= UnitQuaternion::from_scaled_axis(self.turn_rad);
+        }
+        start
     }
 }
 

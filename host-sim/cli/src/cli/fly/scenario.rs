@@ -1,5 +1,7 @@
 //! The flight of a scenario: its law on its craft; figures, the log as CSV and a picture out.
 
+use std::path::Path;
+
 use quatrack_simulation::control_law::ControlLaw;
 use quatrack_simulation::scenario::{Recording, Scenario};
 use serde::Serialize;
@@ -70,17 +72,31 @@ impl Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    if args.scenario.scenario.is_none() && args.scenario.vehicle.is_none() {
+    let named = args.scenario.scenario.is_some() || args.scenario.vehicle.is_some();
+    if !named && args.gains.is_none() {
         return Err(Failure::input(NOTHING));
     }
     args.refuse_older()?;
-    let scenario = args.scenario.checked()?;
+    let table = args.gains.as_deref().map(|path| Ok((path, table::source(path)?))).transpose()?;
+    let own = table.as_ref().filter(|_| !named).map(|(path, table)| table.own_vehicle(path)).transpose()?;
+    let scenario = args.scenario.checked_for(own.as_ref())?;
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
-    let (figures, recording) = match &args.gains {
-        Some(path) => table::in_scenario(path, &scenario, &|law, name| fly_law(&scenario, law, name))?,
+    let (figures, recording) = match &table {
+        Some((path, table)) => table::in_scenario(path, table, &scenario, &|law, name| fly_law(&scenario, law, name))?,
         None => fly_and_print(&scenario)?,
     };
-    write(args, &scenario, figures, &recording)
+    let outputs = Outputs { dir: args.out.as_deref(), json: args.json.as_deref(), plot: args.plot.as_deref() };
+    outputs.write(&scenario, figures, &recording)
+}
+
+/// Where a flight's files go.
+pub(in crate::cli) struct Outputs<'a> {
+    /// The log's folder, which is there.
+    pub(in crate::cli) dir: Option<&'a Path>,
+    /// The figures.
+    pub(in crate::cli) json: Option<&'a Path>,
+    /// The picture.
+    pub(in crate::cli) plot: Option<&'a Path>,
 }
 
 /// Flies a scenario with its law and prints the figures.
@@ -132,22 +148,30 @@ fn text(scenario: &Scenario, figures: &Report) -> String {
     )
 }
 
-fn write(args: &Args, scenario: &Scenario, figures: Report, recording: &Recording) -> Result<(), Failure> {
-    if let Some(dir) = &args.out {
-        let path = dir.join("flight.csv");
-        output::write(&path, recording.to_csv().as_bytes())?;
-        output::print(&format!("wrote {}\n", path.display()))?;
-    }
-    if let Some(path) = &args.plot {
-        if recording.flight.samples.len() > 1 {
-            picture::write(path, &scenario.to_string(), &figures.law, recording)?;
-        } else {
-            output::print("no picture: the craft was lost before anything was measured\n")?;
+impl Outputs<'_> {
+    /// Writes what is asked for; exit code 3 for a craft that was lost.
+    pub(in crate::cli) fn write(
+        &self,
+        scenario: &Scenario,
+        figures: Report,
+        recording: &Recording,
+    ) -> Result<(), Failure> {
+        if let Some(dir) = self.dir {
+            let path = dir.join("flight.csv");
+            output::write(&path, recording.to_csv().as_bytes())?;
+            output::print(&format!("wrote {}\n", path.display()))?;
         }
+        if let Some(path) = self.plot {
+            if recording.flight.samples.len() > 1 {
+                picture::write(path, &scenario.to_string(), &figures.law, recording)?;
+            } else {
+                output::print("no picture: the craft was lost before anything was measured\n")?;
+            }
+        }
+        if let Some(path) = self.json {
+            output::write_json(path, &figures)?;
+            output::print(&format!("wrote {}\n", path.display()))?;
+        }
+        figures.outcome()
     }
-    if let Some(path) = &args.json {
-        output::write_json(path, &figures)?;
-        output::print(&format!("wrote {}\n", path.display()))?;
-    }
-    figures.outcome()
 }

@@ -15,7 +15,7 @@ use quatrack_simulation::flight::motor_laws::CraftLaw;
 use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::reference::{Exact, Reference};
 use quatrack_simulation::gains::{Design, OnBoardTrajectory};
-use quatrack_simulation::scenario::{Scenario, TableLaw};
+use quatrack_simulation::scenario::{Scenario, TableLaw, start_table};
 use quatrack_simulation::vehicles;
 
 use super::{Args, DescribedFlight, Precision, fly_law, load};
@@ -42,6 +42,9 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Descri
             vehicle.name()
         );
         return Err(refused(path, &reason));
+    }
+    if kind == TableKind::Cascade {
+        return Err(refused(path, &"a table of the cascade flies a scenario: give --course instead of --trajectory"));
     }
     if kind == TableKind::ActuatorAware {
         return motors::fly(args, path, &table, vehicle, rate, &load(args)?);
@@ -99,15 +102,15 @@ fn not_accepted(path: &Path, error: &AcceptError) -> Failure {
 }
 
 /// Flies a table for motor forces as the law of a scenario, on the vehicle that it was made for.
-pub(super) fn in_scenario<T>(
+pub(in crate::cli) fn in_scenario<T>(
     path: &Path,
+    source: &Source,
     scenario: &Scenario,
     fly: &dyn Fn(&mut dyn ControlLaw, &str) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
-    let bytes = source(path)?.bytes;
-    let table = GainTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
+    let table = GainTable::from_bytes(&source.bytes).map_err(|error| refused(path, &error))?;
     let (kind, head) = (table.kind(), *table.head());
-    if kind != TableKind::ActuatorAware {
+    if !matches!(kind, TableKind::ActuatorAware | TableKind::Cascade) {
         return Err(refused(path, &format!("its kind is {kind}; a scenario takes a table for motor forces, or --law")));
     }
     if vehicles::id(&scenario.vehicle) != head.vehicle.id {
@@ -115,19 +118,46 @@ pub(super) fn in_scenario<T>(
         return Err(refused(path, &reason));
     }
     let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| not_accepted(path, &error))?;
+    if let Some(cascade) = accepted.cascade() {
+        let (own_kg, told_kg) = (scenario.vehicle.mass_kg() as f32, scenario.told.mass_kg as f32);
+        if !cascade.certified.holds_mass(own_kg, told_kg) {
+            let percent = 100.0 * cascade.certified.mass_share;
+            let reason = format!("told {told_kg} kg; it is certified for {own_kg} kg and {percent:.0} % more or less");
+            return Err(refused(path, &reason));
+        }
+        let mut law = start_table(&scenario.vehicle, &scenario.told, cascade).map_err(|error| refused(path, &error))?;
+        return fly(law.as_mut(), head.name.as_str());
+    }
     let law = CraftLaw::of_table(&scenario.vehicle, accepted).map_err(|error| refused(path, &error))?;
     let flying = TableLaw::hovering(&law, scenario.vehicle.hover_thrust_n());
     fly(&mut flying.ok_or_else(|| refused(path, &"becomes no controller"))?, head.name.as_str())
 }
 
 /// A table, and the vehicle of the design that it was made of.
-struct Source {
+pub(in crate::cli) struct Source {
     bytes: Vec<u8>,
     vehicle: Option<Vehicle>,
 }
 
+impl Source {
+    /// The vehicle of the design, or the built-in one that the table is for.
+    pub(in crate::cli) fn own_vehicle(&self, path: &Path) -> Result<Vehicle, Failure> {
+        if let Some(vehicle) = &self.vehicle {
+            return Ok(vehicle.clone());
+        }
+        let table = GainTable::from_bytes(&self.bytes).map_err(|error| refused(path, &error))?;
+        let head = table.head();
+        let mut built_in = vehicles::names().into_iter().filter_map(|name| vehicles::by_name(name).ok());
+        built_in.find(|vehicle| vehicles::id(vehicle) == head.vehicle.id).ok_or_else(|| {
+            let reason =
+                format!("no built-in vehicle is its {}; give --vehicle FILE, or the design (.toml)", head.vehicle);
+            refused(path, &reason)
+        })
+    }
+}
+
 /// A binary table, which says of its vehicle no more than its name and figures' checksum; or the table of a design.
-fn source(path: &Path) -> Result<Source, Failure> {
+pub(in crate::cli) fn source(path: &Path) -> Result<Source, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") {
         let design = Design::from_file(path).map_err(|error| gains::failed(path, &error))?;
         let certified = design.certify().map_err(|error| gains::failed(path, &error))?;

@@ -1,6 +1,7 @@
 //! `quatrack gains show`: a design, or a file made of one, in; its table and its figures, for a person, out.
 
 mod cascade;
+mod plot;
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -11,12 +12,19 @@ use serde_json::{Value, json};
 use super::super::{Failure, output};
 use super::{certified, figures, read};
 
-pub(super) fn show(path: &Path, json: Option<&Path>) -> Result<(), Failure> {
+pub(super) fn show(path: &Path, json: Option<&Path>, plot: Option<&Path>) -> Result<(), Failure> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     let (text, document) = match extension.as_str() {
         "toml" => {
-            let document = gains::json_document(&certified(path)?);
+            let certified = certified(path)?;
+            if let Some(folder) = plot {
+                plot::draw(&certified, path, folder)?;
+            }
+            let document = gains::json_document(&certified);
             (of_document(&document), document)
+        }
+        "json" | "bin" if plot.is_some() => {
+            return Err(Failure::input(format!("{}: --plot takes a design (.toml)", path.display())));
         }
         "json" => {
             let document: Value = serde_json::from_slice(&read(path)?)

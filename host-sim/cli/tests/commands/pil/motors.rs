@@ -1,5 +1,6 @@
 //! The emulated board down to its motors: forces in answer to states with body rates, and what ends them.
 
+use quatrack::cascade::CascadeLimits;
 use quatrack::gains::table::{GainTable, Name, Vehicle};
 use quatrack::link::{
     BlobKind, FromBoard, LawChoice, NoCommand, Parameter, ParameterId, RigidStateIn, StateIn, Table, ToBoard,
@@ -8,7 +9,8 @@ use quatrack::link::{
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{Mode, StopReason};
 use quatrack::{
-    Actuation, Airframe, ErrorForm, FeedForward, Limits, Memory, Player, Rate, RigidState, Settings, State, Trajectory,
+    Actuation, Airframe, Heading, Limits, Measured, Memory, MotorReference, Player, Rate, RigidState, Settings, State,
+    Target, Trajectory,
 };
 use quatrack_cli::pil::client::Client;
 use quatrack_plan::plan::paper::PaperTrajectory;
@@ -125,6 +127,52 @@ fn a_table_for_motor_forces_flies_bit_for_bit() {
         measured.state.position_m.z -= 0.01 + 1e-5 * f32::from(step);
         measured.body_rates_rad_s.x += 0.1;
         let expected = controller.step_to_motors(&mut memory, (&measured).into(), (&reference).into()).unwrap();
+        let found = client.step_rigid(tick, &measured).unwrap().result;
+        assert_eq!(found, Ok(expected), "step {step}");
+    }
+}
+
+#[test]
+fn a_table_of_the_cascade_flies_bit_for_bit_from_the_first_laws_forces_on() {
+    if !has_emulator() {
+        return;
+    }
+    let blob: &[u8] = include_bytes!("../../../../../gains/generated/cascade-63ms.bin");
+    let (rate, ticks) = (Rate::from_hz(500).unwrap(), Rate::from_hz(1000).unwrap());
+    let vehicle = Vehicle { name: Name::literal("crazyflie-2.1"), id: 0x8983_3c06 };
+    let table = GainTable::from_bytes(blob).unwrap();
+    let accepted = table.accept_for(&vehicle, rate).unwrap();
+    let told = accepted.cascade().unwrap();
+    let cascade = told.flown(&Airframe::CRAZYFLIE_2_1, rate, &CascadeLimits::STANDARD, &told.air).unwrap();
+    let settings = Settings { cascade: Some(&cascade), ..Settings::new(Limits::NONE, ticks) };
+    let controller = accepted.controller(&settings).unwrap();
+
+    let mut client = connected();
+    client.set(Parameter::Decimation(0)).unwrap();
+    client.set(Parameter::StateAgeMaxTicks(10_000)).unwrap();
+    client.set(Parameter::LinkSilenceMaxTicks(10_000)).unwrap();
+    let begin = UploadBegin::of(BlobKind::GainTable, 1, blob).unwrap();
+    let mut answer = client.ask(&ToBoard::UploadBegin(begin)).unwrap();
+    while let FromBoard::Upload(wanted) = answer {
+        let Some(chunk) = wanted.next_chunk(blob) else { break };
+        answer = client.ask(&ToBoard::UploadChunk(chunk)).unwrap();
+    }
+    client.request(&ToBoard::UploadCommit { id: 1 }).unwrap();
+    client.request(&ToBoard::SelectLaw(LawChoice::new(Table::Loaded(0)))).unwrap();
+    client.request(&ToBoard::Trajectory(TrajectoryCommand::Start(TrajectoryId::Mild))).unwrap();
+    client.request(&ToBoard::Arm).unwrap();
+
+    let mut player = Player::new(Trajectory::new(stored::pieces(PaperTrajectory::Mild)).unwrap(), ticks);
+    let mut memory = Memory::at_rest();
+    for step in 0..500_u16 {
+        let tick = 2 * u32::from(step);
+        let sample = player.at_fifth_order(tick);
+        let reference = MotorReference::from_flat(&sample, cascade.airframe()).unwrap();
+        let mut measured = RigidState { state: *reference.state(), body_rates_rad_s: reference.body_rates_rad_s() };
+        measured.state.position_m.z -= 0.01 + 1e-5 * f32::from(step);
+        measured.body_rates_rad_s.x += 0.1;
+        let target = Target::with_sample(&sample, Heading::from_angle(sample.flat.heading_rad));
+        let expected = controller.step_to_motors(&mut memory, Measured::from(&measured), target).unwrap();
         let found = client.step_rigid(tick, &measured).unwrap().result;
         assert_eq!(found, Ok(expected), "step {step}");
     }

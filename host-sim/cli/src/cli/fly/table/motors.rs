@@ -12,10 +12,9 @@ use quatrack_simulation::flight::motor_loop::{RATE, STEPS_A_SAMPLE, state_on};
 use quatrack_simulation::flight::reference::Exact;
 use quatrack_simulation::flight::rigid_loop::Conditions;
 use quatrack_simulation::plant::Craft;
-use quatrack_simulation::vehicles;
 
 use super::super::{Args, DescribedFlight};
-use super::{not_accepted, refused};
+use super::{not_accepted, refused, source};
 use crate::cli::Failure;
 
 pub(super) fn fly(
@@ -33,16 +32,7 @@ pub(super) fn fly(
     if head.rate != RATE {
         return Err(refused(path, &format!("for {} Hz; the rigid plant is flown at {} Hz", head.rate.hz(), RATE.hz())));
     }
-    let built_in = || {
-        let all = vehicles::names().into_iter().filter_map(|name| vehicles::by_name(name).ok());
-        all.into_iter().find(|vehicle| vehicles::id(vehicle) == head.vehicle.id)
-    };
-    let vehicle = own.or_else(built_in).ok_or_else(|| {
-        refused(
-            path,
-            &format!("no built-in vehicle is its {}; give --vehicle FILE, or the design (.toml)", head.vehicle),
-        )
-    })?;
+    let vehicle = own.map_or_else(|| source(path)?.own_vehicle(path), Ok)?;
     let accepted =
         table.accept_for(&head.vehicle, rate.unwrap_or(head.rate)).map_err(|error| not_accepted(path, &error))?;
     let law = CraftLaw::of_table(&vehicle, accepted).map_err(|error| refused(path, &error))?;

@@ -1,0 +1,67 @@
+//! Why there is no campaign, in one line that names what, where and the remedy.
+
+use std::path::PathBuf;
+
+use quatrack_simulation::scenario::{LawError, ScenarioError};
+
+/// Why there is no campaign.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CampaignError {
+    /// The scenario has no sense, also without its distributions.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// A distribution without sense.
+    #[error("{origin}: vary.{key}: {reason}")]
+    Vary {
+        /// Whose it is.
+        origin: String,
+        /// Which figure.
+        key: String,
+        /// Why not, with the remedy.
+        reason: String,
+    },
+    /// A law does not fly the vehicle.
+    #[error("{0}; leave it out of --laws or of laws = [...]")]
+    Law(#[from] LawError),
+    /// A trajectory that cannot be had.
+    #[error("{name}: {reason}")]
+    Trajectory {
+        /// Which.
+        name: String,
+        /// Why not.
+        reason: String,
+    },
+    /// A number of runs or a shard without sense.
+    #[error("{0}")]
+    Asked(String),
+    /// The system refuses a file.
+    #[error("{}: {what} ({reason})", path.display())]
+    File {
+        /// Which.
+        path: PathBuf,
+        /// What was tried.
+        what: &'static str,
+        /// What the system says.
+        reason: String,
+    },
+    /// A folder that holds something else.
+    #[error("{}: {reason}", path.display())]
+    Folder {
+        /// Which.
+        path: PathBuf,
+        /// What is wrong with it, with the remedy.
+        reason: String,
+    },
+}
+
+impl CampaignError {
+    /// Of a system's refusal.
+    pub(crate) fn file(path: &std::path::Path, what: &'static str, reason: &dyn std::fmt::Display) -> Self {
+        Self::File { path: path.to_owned(), what, reason: reason.to_string() }
+    }
+
+    /// Of a folder's contents.
+    pub(crate) fn folder(path: &std::path::Path, reason: impl Into<String>) -> Self {
+        Self::Folder { path: path.to_owned(), reason: reason.into() }
+    }
+}

@@ -1,0 +1,312 @@
+//! A campaign on disk: what is flown, rows as CSV by shard, and all rows as Parquet.
+//!
+//! ```text
+//! campaign.json     quatrack/campaign/1: seed, runs, laws, drawn figures, digest
+//! scenario.toml     the scenario with its distributions; the files that it names lie beside it
+//! rows.csv          a line for each flight in the order of runs; of shards rows-I-of-N.csv
+//! rows.parquet      the same, once all runs are there
+//! ```
+
+mod columns;
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::definition::{Asked, Campaign, Trajectories};
+use crate::error::CampaignError;
+use crate::row::{self, Row};
+use crate::shard::Shard;
+
+/// What the file says that it is.
+pub const SCHEMA: &str = "quatrack/campaign/1";
+
+/// What is known of a campaign without its scenario.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Card {
+    /// [`SCHEMA`].
+    pub schema: String,
+    /// The campaign's seed.
+    pub seed: u64,
+    /// How many runs; each law flies them all.
+    pub runs: u64,
+    /// Whose laws, in the order of their rows.
+    pub laws: Vec<String>,
+    /// Names of the drawn figures, in the order of their columns.
+    pub drawn: Vec<String>,
+    /// SHA-256 of all that rows depend on.
+    pub digest: String,
+}
+
+/// A campaign's folder.
+#[derive(Clone, Debug)]
+pub struct Folder {
+    path: PathBuf,
+    card: Card,
+}
+
+/// A file of rows that grows by whole runs.
+pub struct Growing {
+    file: File,
+    path: PathBuf,
+    /// The first run that it has not.
+    pub next_run: u64,
+}
+
+impl Folder {
+    /// For a campaign: a new one, or the one that it was begun in. More runs than before are flown after those.
+    ///
+    /// # Errors
+    /// [`CampaignError::Folder`] where something else is there.
+    pub fn begin(path: &Path, campaign: &Campaign, runs: u64) -> Result<Self, CampaignError> {
+        let card = Card {
+            schema: SCHEMA.to_owned(),
+            seed: campaign.seed(),
+            runs,
+            laws: campaign.laws().iter().map(|law| law.name().to_owned()).collect(),
+            drawn: campaign.drawn_names(),
+            digest: campaign.digest(),
+        };
+        fs::create_dir_all(path).map_err(|error| CampaignError::file(path, "cannot create this folder", &error))?;
+        let folder = Self { path: path.to_owned(), card };
+        let card_path = path.join("campaign.json");
+        if card_path.exists() {
+            let before = read_card(&card_path)?;
+            if (Card { runs, ..before.clone() }) != folder.card {
+                return Err(CampaignError::folder(
+                    path,
+                    format!(
+                        "holds another campaign (seed {}, {}); choose another --out",
+                        before.seed,
+                        before.laws.join(", ")
+                    ),
+                ));
+            }
+            if before.runs > runs {
+                return Err(CampaignError::folder(
+                    path,
+                    format!("has {} runs, more than --runs {runs}; choose another --out", before.runs),
+                ));
+            }
+            if before.runs == runs {
+                return Ok(folder);
+            }
+            if folder.shard_files()?.iter().any(|shard| *shard != Shard::WHOLE) {
+                return Err(CampaignError::folder(
+                    path,
+                    format!("holds shards of {} runs; give --runs {0}, or choose another --out", before.runs),
+                ));
+            }
+        }
+        for (name, bytes) in campaign.files() {
+            write(&path.join(name), bytes)?;
+        }
+        write(&path.join("scenario.toml"), campaign.text().as_bytes())?;
+        let mut card = serde_json::to_string_pretty(&folder.card).unwrap_or_default();
+        card.push('\n');
+        write(&card_path, card.as_bytes())?;
+        Ok(folder)
+    }
+
+    /// One that is there.
+    ///
+    /// # Errors
+    /// [`CampaignError`] where there is none.
+    pub fn open(path: &Path) -> Result<Self, CampaignError> {
+        let card = path.join("campaign.json");
+        if !card.exists() {
+            return Err(CampaignError::folder(path, "no campaign is here (no campaign.json); give the --out of one"));
+        }
+        Ok(Self { path: path.to_owned(), card: read_card(&card)? })
+    }
+
+    /// What it flies.
+    ///
+    /// # Errors
+    /// [`CampaignError`], also where the scenario was changed since.
+    pub fn campaign(&self, trajectories: Trajectories<'_>) -> Result<Campaign, CampaignError> {
+        let path = self.path.join("scenario.toml");
+        let campaign = Campaign::read(&path, &Asked::default(), trajectories)?;
+        if campaign.digest() != self.card.digest {
+            let reason = "is no longer what was flown; put back what it was, or fly another campaign";
+            return Err(CampaignError::folder(&path, reason));
+        }
+        Ok(campaign)
+    }
+
+    /// What is known of it.
+    pub fn card(&self) -> &Card {
+        &self.card
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Shards whose rows are here.
+    ///
+    /// # Errors
+    /// [`CampaignError::File`].
+    pub fn shard_files(&self) -> Result<Vec<Shard>, CampaignError> {
+        let refused = |error| CampaignError::file(&self.path, "cannot be read", &error);
+        let mut found = Vec::new();
+        for entry in fs::read_dir(&self.path).map_err(refused)? {
+            let name = entry.map_err(refused)?.file_name();
+            let name = name.to_string_lossy();
+            found.extend(if name == "rows.csv" { Some(Shard::WHOLE) } else { Shard::of_file(&name) });
+        }
+        Ok(found)
+    }
+
+    /// The file of a shard's rows, cut after the last whole run, for this process alone.
+    ///
+    /// # Errors
+    /// [`CampaignError`], also where another process grows it.
+    pub fn grow(&self, shard: Shard) -> Result<Growing, CampaignError> {
+        let path = self.path.join(shard.file_name());
+        let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
+        let mut file = opened.map_err(|error| CampaignError::file(&path, "cannot be opened", &error))?;
+        file.try_lock()
+            .map_err(|error| CampaignError::folder(&path, format!("is being written by another process ({error})")))?;
+        let runs = shard.runs(self.card.runs);
+        let (next_run, kept) =
+            self.whole_runs(&file, runs.start).map_err(|e| CampaignError::file(&path, "cannot be read", &e))?;
+        let cut = (|| {
+            file.set_len(kept)?;
+            file.seek(SeekFrom::Start(kept))?;
+            if kept == 0 {
+                file.write_all(self.header().as_bytes())?;
+            }
+            file.sync_data()
+        })();
+        cut.map_err(|error| CampaignError::file(&path, "cannot be written", &error))?;
+        Ok(Growing { file, path, next_run })
+    }
+
+    fn header(&self) -> String {
+        row::header(&self.card.drawn).join(",") + "\n"
+    }
+
+    /// The first run that is not wholly there, and where its rows would begin.
+    fn whole_runs(&self, file: &File, first: u64) -> std::io::Result<(u64, u64)> {
+        let mut reader = BufReader::new(file);
+        let (mut line, mut place, mut next_run, mut kept) = (Vec::new(), 0, first, 0);
+        reader.read_until(b'\n', &mut line)?;
+        if line != self.header().as_bytes() {
+            return Ok((first, 0));
+        }
+        place += line.len() as u64;
+        kept += place;
+        let mut laws = self.card.laws.iter();
+        loop {
+            line.clear();
+            reader.read_until(b'\n', &mut line)?;
+            let row = whole_row(&line).filter(|row| row.drawn.len() == self.card.drawn.len());
+            let expected = laws.next();
+            match (row, expected) {
+                (Some(row), Some(law)) if row.run == next_run && row.law.name() == law => {}
+                _ => return Ok((next_run, kept)),
+            }
+            place += line.len() as u64;
+            if laws.len() == 0 {
+                laws = self.card.laws.iter();
+                next_run += 1;
+                kept = place;
+            }
+        }
+    }
+
+    /// The rows of a shard in their order; an error for a line that is no row.
+    ///
+    /// # Errors
+    /// [`CampaignError::File`].
+    pub fn rows(&self, shard: Shard) -> Result<impl Iterator<Item = Result<Row, CampaignError>>, CampaignError> {
+        let path = self.path.join(shard.file_name());
+        let mut file = File::open(&path).map_err(|error| CampaignError::file(&path, "cannot be read", &error))?;
+        // What a writer that was killed left behind is not read.
+        let (next_run, kept) = self
+            .whole_runs(&file, shard.runs(self.card.runs).start)
+            .and_then(|whole| file.rewind().map(|()| whole))
+            .map_err(|error| CampaignError::file(&path, "cannot be read", &error))?;
+        let _ = next_run;
+        let records = csv::ReaderBuilder::new().from_reader(file.take(kept)).into_records();
+        Ok(records.map(move |record| {
+            let row = record.ok().as_ref().and_then(Row::of_cells);
+            row.ok_or_else(|| {
+                CampaignError::folder(&path, "holds a line that is no row; delete the file and fly it again")
+            })
+        }))
+    }
+
+    /// How many runs of a shard are wholly there.
+    ///
+    /// # Errors
+    /// [`CampaignError::File`].
+    pub fn flown(&self, shard: Shard) -> Result<u64, CampaignError> {
+        let path = self.path.join(shard.file_name());
+        let first = shard.runs(self.card.runs).start;
+        let file = File::open(&path).map_err(|error| CampaignError::file(&path, "cannot be read", &error))?;
+        let whole = self.whole_runs(&file, first);
+        whole.map(|(next, _)| next - first).map_err(|error| CampaignError::file(&path, "cannot be read", &error))
+    }
+
+    /// Writes all rows as Parquet.
+    ///
+    /// # Errors
+    /// [`CampaignError`].
+    pub fn write_parquet(&self) -> Result<(), CampaignError> {
+        columns::write(&self.path.join("rows.parquet"), &self.card.drawn, self.rows(Shard::WHOLE)?)
+    }
+}
+
+fn whole_row(line: &[u8]) -> Option<Row> {
+    line.ends_with(b"\n").then_some(())?;
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).buffer_capacity(line.len()).from_reader(line);
+    Row::of_cells(&reader.records().next()?.ok()?)
+}
+
+impl Growing {
+    /// Appends whole runs; they are on the disk when this returns.
+    ///
+    /// # Errors
+    /// [`CampaignError::File`]: what is there stays whole.
+    pub fn append(&mut self, rows: &[u8], next_run: u64) -> Result<(), CampaignError> {
+        let written = self.file.write_all(rows).and_then(|()| self.file.sync_data());
+        written.map_err(|error| CampaignError::file(&self.path, "cannot be written", &error))?;
+        self.next_run = next_run;
+        Ok(())
+    }
+}
+
+fn read_card(path: &Path) -> Result<Card, CampaignError> {
+    let text = fs::read_to_string(path).map_err(|error| CampaignError::file(path, "cannot be read", &error))?;
+    let card: Card = serde_json::from_str(&text)
+        .map_err(|error| CampaignError::folder(path, format!("is no campaign ({error})")))?;
+    if card.schema != SCHEMA || card.laws.is_empty() {
+        return Err(CampaignError::folder(
+            path,
+            format!("is {}, not {SCHEMA}; read it with the version that wrote it", card.schema),
+        ));
+    }
+    Ok(card)
+}
+
+/// Writes a file under a name of this process beside it and renames it: shards that begin at once do not meet.
+pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), CampaignError> {
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(format!(".{}.partial", std::process::id()));
+    let partial = PathBuf::from(partial);
+    let written = (|| {
+        let mut file = File::create(&partial)?;
+        file.write_all(bytes)?;
+        file.sync_all()?;
+        fs::rename(&partial, path)
+    })();
+    written.map_err(|error: std::io::Error| {
+        let _ = fs::remove_file(&partial);
+        CampaignError::file(path, "cannot be written", &error)
+    })
+}

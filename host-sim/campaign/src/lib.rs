@@ -1,0 +1,38 @@
+//! Campaigns: a scenario with distributions over its figures and a number of runs in; a row for each flight, what the rows
+//! say of each law, and a page to look at, out.
+//!
+//! ```text
+//! report             a folder -> a page to look at
+//! summary            rows -> success, percentiles, worst flights, what matters most
+//!   statistics       intervals, quantiles, ranks
+//! merge              shards -> one folder; which shard is missing
+//!   fly              runs on all cores -> rows in order, resumed where they end
+//!     folder         what is on disk: the definition, rows as CSV, the same as Parquet
+//!       row          one flight of one law
+//! definition         a file -> scenarios by number
+//!   vary             distributions over the figures of a file
+//!     draws          random numbers by seed, run and figure
+//! shard              which runs are whose
+//! ```
+//!
+//! Run k is the same alone, in any shard and on any number of cores, to the byte: its figures and the seed of its noise are
+//! functions of the campaign's seed, k and the figure's name, and of nothing else.
+
+pub mod definition;
+pub mod draws;
+mod error;
+pub mod fly;
+pub mod folder;
+pub mod merge;
+pub mod report;
+pub mod row;
+pub mod shard;
+pub mod statistics;
+pub mod summary;
+pub mod vary;
+
+pub use definition::Campaign;
+pub use error::CampaignError;
+pub use folder::Folder;
+pub use row::{Outcome, Row};
+pub use shard::Shard;

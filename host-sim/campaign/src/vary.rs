@@ -1,0 +1,271 @@
+//! Distributions over the figures of a scenario: the table `[vary]` in; which figures are drawn, and how, out.
+//!
+//! ```toml
+//! [vary]
+//! speed_m_s = { uniform = [1.5, 2.5] }
+//! errors.lag_ms = { normal = [67.0, 10.0], min = 20.0, max = 150.0 }      # mean, deviation
+//! errors.inertia_factor = { log_normal = [1.0, 0.1] }                     # median, deviation of the logarithm
+//! errors.delay_ms = { choice = [0.0, 5.0, 10.0] }
+//! air.drag_per_s = { uniform = [0.8, 1.2], relative = true }              # times the figure in the file
+//! air.wind_m_s = [{ uniform = [-1.0, 1.0] }, { uniform = [-1.0, 1.0] }, 0.0]
+//! ```
+
+use toml::{Table, Value};
+
+use crate::draws::Draws;
+
+/// Farthest that a normal draw lies from its mean, in deviations; what lies beyond, two in a billion, is drawn again.
+const FARTHEST: f64 = 6.0;
+/// How often a draw beyond its bounds is repeated before it is put on the nearer one.
+const TRIES: u32 = 1000;
+/// Names of the distributions.
+const KINDS: [&str; 4] = ["uniform", "normal", "log_normal", "choice"];
+
+/// How a number is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Kind {
+    /// Between two numbers.
+    Uniform([f64; 2]),
+    /// By mean and standard deviation, within bounds.
+    Normal([f64; 2], [f64; 2]),
+    /// Its logarithm normal: by median and the logarithm's deviation, within bounds.
+    LogNormal([f64; 2], [f64; 2]),
+    /// One of them, each as likely as the others.
+    Choice(Vec<f64>),
+}
+
+/// A figure that is drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Varied {
+    /// Its keys from the outermost table inwards.
+    pub path: Vec<String>,
+    /// Which number of a list; all of them where absent.
+    pub index: Option<usize>,
+    /// How it is drawn.
+    pub kind: Kind,
+    /// Whether it is a factor of what the file says.
+    pub relative: bool,
+}
+
+impl Kind {
+    /// Least and most that can be drawn.
+    pub fn bounds(&self) -> [f64; 2] {
+        match self {
+            Self::Uniform(ends) => *ends,
+            Self::Normal(_, bounds) | Self::LogNormal(_, bounds) => *bounds,
+            Self::Choice(values) => [
+                values.iter().copied().fold(f64::INFINITY, f64::min),
+                values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+            ],
+        }
+    }
+
+    fn draw(&self, draws: &mut Draws) -> f64 {
+        let within = |[least, most]: [f64; 2], mut value: Box<dyn FnMut() -> f64 + '_>| {
+            let mut drawn = value();
+            for _ in 0..TRIES {
+                if (least..=most).contains(&drawn) {
+                    break;
+                }
+                drawn = value();
+            }
+            drawn.max(least).min(most)
+        };
+        match self {
+            Self::Uniform([least, most]) => least + (most - least) * draws.uniform(),
+            Self::Normal([mean, deviation], bounds) => within(*bounds, Box::new(|| mean + deviation * draws.normal())),
+            Self::LogNormal([median, deviation], bounds) => {
+                within(*bounds, Box::new(|| median * (deviation * draws.normal()).exp()))
+            }
+            Self::Choice(values) => values[((draws.uniform() * values.len() as f64) as usize).min(values.len() - 1)],
+        }
+    }
+}
+
+impl Varied {
+    /// As columns and summaries call it: `errors.lag_ms`, `air.wind_m_s.0`.
+    pub fn name(&self) -> String {
+        let path = self.path.join(".");
+        self.index.map_or_else(|| path.clone(), |index| format!("{path}.{index}"))
+    }
+
+    /// What it is in a run of a campaign: the drawn number.
+    pub fn drawn(&self, seed: u64, run: u64) -> f64 {
+        self.kind.draw(&mut Draws::new(seed, run, &self.name()))
+    }
+
+    /// Puts a drawn number into a scenario's table.
+    ///
+    /// # Errors
+    /// Why there is no place for it.
+    pub fn put(&self, scenario: &mut Table, drawn: f64) -> Result<(), String> {
+        let Some((last, tables)) = self.path.split_last() else { return Err("a figure has a name".to_owned()) };
+        let mut table = scenario;
+        for key in tables {
+            let entry = table.entry(key.clone()).or_insert_with(|| Value::Table(Table::new()));
+            if key == "air" && entry.as_str() == Some("vehicle") {
+                // The same by its other form, which has room for figures.
+                *entry = Value::Table(Table::from_iter([("of".to_owned(), Value::String("vehicle".to_owned()))]));
+            }
+            table = entry.as_table_mut().ok_or_else(|| format!("{key} is no table in the scenario"))?;
+        }
+        let own = table.get(last);
+        let number = |value: &Value| value.as_float().or(value.as_integer().map(|whole| whole as f64));
+        let factor = |own: Option<&Value>| match (self.relative, own.and_then(number)) {
+            (false, _) => Ok(drawn),
+            (true, Some(own)) => Ok(own * drawn),
+            (true, None) => Err("relative = true needs the figure itself in the scenario; add it".to_owned()),
+        };
+        let value = match (self.index, own.and_then(Value::as_array)) {
+            (None, Some(list)) => {
+                Value::Array(list.iter().map(|own| factor(Some(own)).map(Value::Float)).collect::<Result<_, _>>()?)
+            }
+            (None, None) => Value::Float(factor(own)?),
+            (Some(index), list) => {
+                let mut list = list.cloned().unwrap_or_default();
+                let value = factor(list.get(index))?;
+                while list.len() <= index {
+                    list.push(Value::Float(0.0));
+                }
+                list[index] = Value::Float(value);
+                Value::Array(list)
+            }
+        };
+        table.insert(last.clone(), value);
+        Ok(())
+    }
+}
+
+/// All figures of a table `[vary]`, in the order of their names; fixed numbers within lists are put into the scenario.
+///
+/// # Errors
+/// The figure's name, and why not.
+pub fn all(vary: &Table, scenario: &mut Table) -> Result<Vec<Varied>, (String, String)> {
+    let mut found = Vec::new();
+    walk(vary, &mut Vec::new(), scenario, &mut found)?;
+    let mut places: Vec<(u32, String)> =
+        found.iter().map(Varied::name).map(|name| (crate::draws::place(&name), name)).collect();
+    places.sort();
+    if let Some(pair) = places.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        return Err((pair[1].1.clone(), format!("draws the numbers of {}; leave out one of them", pair[0].1)));
+    }
+    Ok(found)
+}
+
+fn walk(
+    vary: &Table,
+    path: &mut Vec<String>,
+    scenario: &mut Table,
+    found: &mut Vec<Varied>,
+) -> Result<(), (String, String)> {
+    for (key, value) in vary {
+        path.push(key.clone());
+        let refused = |reason: String| (path.join("."), reason);
+        if ["seed", "vary", "laws", "law"].contains(&path[0].as_str()) {
+            return Err(refused("is not drawn: seeds are a campaign's own, laws are in laws = [...]".to_owned()));
+        }
+        match value {
+            Value::Table(table) if is_distribution(table) => {
+                let (kind, relative) = distribution(table).map_err(refused)?;
+                found.push(Varied { path: path.clone(), index: None, kind, relative });
+            }
+            Value::Table(table) => walk(table, path, scenario, found)?,
+            Value::Array(list) if !list.iter().any(|entry| entry.as_table().is_some_and(is_distribution)) => {
+                return Err(refused(format!("{value} holds no distribution; {EXAMPLE}")));
+            }
+            Value::Array(list) => {
+                for (index, entry) in list.iter().enumerate() {
+                    match entry {
+                        Value::Table(table) if is_distribution(table) => {
+                            let (kind, relative) = distribution(table).map_err(refused)?;
+                            found.push(Varied { path: path.clone(), index: Some(index), kind, relative });
+                        }
+                        Value::Integer(_) | Value::Float(_) => {
+                            let fixed = finite(entry).map_err(refused)?;
+                            let kind = Kind::Choice(vec![fixed]);
+                            let fixed = Varied { path: path.clone(), index: Some(index), kind, relative: false };
+                            fixed.put(scenario, finite(entry).map_err(refused)?).map_err(refused)?;
+                        }
+                        _ => return Err(refused("a list holds distributions and numbers".to_owned())),
+                    }
+                }
+            }
+            _ => return Err(refused(format!("{value} is no distribution; {EXAMPLE}"))),
+        }
+        path.pop();
+    }
+    Ok(())
+}
+
+const EXAMPLE: &str = "write { uniform = [least, most] }, { normal = [mean, deviation] }, { log_normal = [median, deviation \
+                       of the logarithm] } or { choice = [...] }";
+
+fn is_distribution(table: &Table) -> bool {
+    table.keys().any(|key| KINDS.contains(&key.as_str())) || table.contains_key("relative")
+}
+
+fn finite(value: &Value) -> Result<f64, String> {
+    let number = value.as_float().or(value.as_integer().map(|whole| whole as f64));
+    number.filter(|number| number.is_finite()).ok_or_else(|| format!("{value} is no finite number"))
+}
+
+fn distribution(table: &Table) -> Result<(Kind, bool), String> {
+    let known = |key: &str| KINDS.contains(&key) || ["min", "max", "relative"].contains(&key);
+    if let Some(key) = table.keys().find(|key| !known(key)) {
+        return Err(format!("unknown key {key}; {EXAMPLE}, with min, max or relative = true"));
+    }
+    let kinds: Vec<&str> = KINDS.into_iter().filter(|kind| table.contains_key(*kind)).collect();
+    let [kind] = kinds[..] else { return Err(format!("must be one distribution; {EXAMPLE}")) };
+    let numbers: Vec<f64> = match &table[kind] {
+        Value::Array(list) => list.iter().map(finite).collect::<Result<_, _>>()?,
+        other => return Err(format!("{kind} = {other}: must be a list of numbers")),
+    };
+    let relative = match table.get("relative") {
+        None => false,
+        Some(value) => value.as_bool().ok_or_else(|| format!("relative = {value}: must be true or false"))?,
+    };
+    let bound = |key: &str| table.get(key).map(finite).transpose();
+    let (min, max) = (bound("min")?, bound("max")?);
+    let two = || <[f64; 2]>::try_from(numbers.clone()).map_err(|_| format!("{kind} takes two numbers; {EXAMPLE}"));
+    let bounds = |[least, most]: [f64; 2]| {
+        let bounds = [min.unwrap_or(least).max(least), max.unwrap_or(most).min(most)];
+        if bounds[0] <= bounds[1] {
+            Ok(bounds)
+        } else {
+            Err("min and max leave nothing to draw; widen them".to_owned())
+        }
+    };
+    let kind = match kind {
+        "normal" | "log_normal" => {
+            let [middle, deviation] = two()?;
+            if deviation < 0.0 || kind == "log_normal" && middle <= 0.0 {
+                return Err(format!(
+                    "{kind} = [{middle}, {deviation}]: a deviation is not negative, a median positive"
+                ));
+            }
+            if kind == "normal" {
+                let far = FARTHEST * deviation;
+                Kind::Normal([middle, deviation], bounds([middle - far, middle + far])?)
+            } else {
+                let far = (FARTHEST * deviation).exp();
+                Kind::LogNormal([middle, deviation], bounds([middle / far, middle * far])?)
+            }
+        }
+        _ if min.is_some() || max.is_some() => {
+            return Err(format!("min and max belong to normal and log_normal; {kind} has its own ends"));
+        }
+        "uniform" => {
+            let [least, most] = two()?;
+            if least > most {
+                return Err(format!("uniform = [{least}, {most}]: the least comes first"));
+            }
+            Kind::Uniform([least, most])
+        }
+        _ if numbers.is_empty() => return Err("choice = []: nothing to choose from".to_owned()),
+        _ => Kind::Choice(numbers),
+    };
+    Ok((kind, relative))
+}
+
+#[cfg(test)]
+mod tests;

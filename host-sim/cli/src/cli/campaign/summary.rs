@@ -1,0 +1,42 @@
+//! `quatrack campaign summary`: a campaign's folder in; what its rows say of each law out.
+
+use std::path::PathBuf;
+
+use quatrack_campaign::Folder;
+use quatrack_campaign::summary::{Summary, View};
+
+use super::refused;
+use crate::cli::{Failure, output};
+
+/// Says what came of a campaign, also while it flies: success of each law with Wilson's interval of 95 %, errors at 50, 95 and
+/// 99 %, the worst flights with the command that flies each again, and which figure matters most.
+#[derive(clap::Args)]
+pub(super) struct Args {
+    /// The campaign's folder.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// A flight succeeds with at most this position error, m; by default whenever it is not lost.
+    #[arg(long, value_name = "X")]
+    within_m: Option<f64>,
+    /// How many of the worst flights to name for each law.
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    worst: usize,
+    /// Write all of it as JSON.
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    if args.within_m.is_some_and(|within| within.is_nan() || within <= 0.0) {
+        return Err(Failure::input("--within-m: must be a positive number of metres"));
+    }
+    let folder = Folder::open(&args.folder).map_err(refused)?;
+    let view = View { within_m: args.within_m, worst: args.worst };
+    let summary = Summary::of(&folder, &view).map_err(refused)?;
+    output::print(&summary.to_string())?;
+    if let Some(path) = &args.json {
+        output::write_json(path, &summary)?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    Ok(())
+}

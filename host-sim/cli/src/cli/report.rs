@@ -1,0 +1,55 @@
+//! `quatrack report`: a campaign's folder in; one HTML page that needs nothing else out.
+
+use std::path::PathBuf;
+
+use quatrack_campaign::report::{Paper, page};
+use quatrack_campaign::summary::View;
+use quatrack_campaign::{CampaignError, Folder};
+
+use super::{Failure, output, reproduce};
+
+/// Puts a campaign on one page that opens from disk without a network: the laws' table, distributions, what matters, the worst
+/// flights with the commands that fly them again, a replay in space of any two flights at once, and the paper's table and
+/// figures, made anew.
+///
+/// Example:
+///   quatrack report my-campaign
+#[derive(clap::Args)]
+#[command(verbatim_doc_comment)]
+pub(crate) struct Args {
+    /// The campaign's folder.
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// The page; report.html in the folder where absent.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// A flight succeeds with at most this position error, m; by default whenever it is not lost.
+    #[arg(long, value_name = "X")]
+    within_m: Option<f64>,
+    /// How many of the worst flights of each law to replay.
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    worst: usize,
+    /// Leave the paper out, whose flights take some seconds.
+    #[arg(long)]
+    without_paper: bool,
+}
+
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let refused = |error: CampaignError| Failure::input(error);
+    let folder = Folder::open(&args.folder).map_err(refused)?;
+    let trajectories = |name: &str| super::fly::trajectory(name).map_err(|failure| failure.line);
+    let campaign = folder.campaign(&trajectories).map_err(refused)?;
+    let paper = if args.without_paper { None } else { Some(reproduced()?) };
+    let view = View { within_m: args.within_m, worst: args.worst };
+    let html = page(&folder, &campaign, &view, paper.as_ref()).map_err(refused)?;
+    let path = args.out.clone().unwrap_or_else(|| args.folder.join("report.html"));
+    output::write(&path, html.as_bytes())?;
+    output::print(&format!("wrote {}: {} kB, open it in a browser\n", path.display(), html.len() / 1000))
+}
+
+fn reproduced() -> Result<Paper, Failure> {
+    let reproduction = reproduce::fly()?;
+    let figures = reproduce::figures(&reproduction)?;
+    let figures = figures.into_iter().map(|(number, title, svg, _)| (format!("Fig. {number}: {title}"), svg)).collect();
+    Ok(Paper { table: reproduction.to_string(), figures })
+}
