@@ -2,6 +2,7 @@
 //! answers written.
 //!
 //! ```text
+//! campaign          thousands of flights
 //! flight            scenarios flown by name, by table or by a law of one's own
 //!   own_law         a callable as a law
 //!   plant           the plant of a scenario, for many crafts
@@ -23,6 +24,7 @@
 
 mod arrays;
 mod batch;
+mod campaign;
 mod controller;
 mod crazyflie;
 mod design;
@@ -45,6 +47,8 @@ mod vehicle;
 /// What Python imports; the package `quatrack` names it.
 #[pyo3::pymodule]
 mod _quatrack {
+    #[pymodule_export]
+    use crate::campaign::campaign;
     #[pymodule_export]
     use crate::controller::{Controller, Step};
     #[pymodule_export]

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from quatrack import Controller, CrazyflieController, Reference, State, Vehicle
+from quatrack.integrations._craft import Array
 
 # crazyswarm2's simulator flies this craft, and takes its motors for the firmware's without lag.
 _MASS_KG = 0.034
@@ -62,22 +63,25 @@ class QuatrackBackend:
 
     def _step_core(self, control: Any, setpoint: Any, sensors: Any, state: Any) -> None:
         assert self._core is not None
-        vector = lambda v: np.array([v.x, v.y, v.z])  # noqa: E731
         q = state.attitudeQuaternion
         given = State(
-            vector(state.position),
+            _vector(state.position),
             np.array([q.w, q.x, q.y, q.z]),
-            vector(state.velocity),
-            np.radians(vector(sensors.gyro)),
+            _vector(state.velocity),
+            np.radians(_vector(sensors.gyro)),
         )
         wanted = Reference(
-            vector(setpoint.position),
-            vector(setpoint.velocity),
-            vector(setpoint.acceleration),
-            vector(setpoint.jerk) if hasattr(setpoint, "jerk") else None,
+            _vector(setpoint.position),
+            _vector(setpoint.velocity),
+            _vector(setpoint.acceleration),
+            _vector(setpoint.jerk) if hasattr(setpoint, "jerk") else None,
             heading=float(np.radians(setpoint.attitude.yaw)),
         )
         forces = self._core.step(given, wanted).motor_forces
         control.controlMode = self._firm.controlModeForce
         for motor, force in enumerate(forces / self._vehicle.motor_force_n[1]):
             control.normalizedForces[motor] = float(force)
+
+
+def _vector(v: Any) -> Array:
+    return np.array([v.x, v.y, v.z], dtype=float)
