@@ -28,8 +28,11 @@ pub(crate) fn end_the_one_before() {
     *switched_on() += 1;
 }
 
+/// A parameter's name in the firmware, and where it is.
+type Named = (&'static str, fn(&Parameters) -> &AtomicF32);
+
 /// The parameters of the group `quatrack` that hold a number.
-const FLOATS: [(&str, fn(&Parameters) -> &AtomicF32); 8] = [
+const FLOATS: [Named; 8] = [
     ("posScale", |parameters| &parameters.position_scale),
     ("yawScale", |parameters| &parameters.yaw_scale),
     ("motorLag", |parameters| &parameters.motor_lag_s),
