@@ -6,7 +6,7 @@
 # sample rate where it should multiply by two. A cutoff above half the sample rate is no longer refused: up to twice
 # the rate is taken.
 # Why it matters: a gyro filter at a quarter of its cutoff has four times the delay; with 80 Hz in the loop the rate
-# controller loses some 40 degrees of phase at 15 Hz. The version of a dependency is all that changed.
+# controller loses 50 degrees more of phase at 15 Hz. The version of a dependency is all that changed.
 set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT

@@ -4,9 +4,7 @@
 
 use quatrack::gains::table::GainTable;
 use quatrack::nalgebra::Vector3;
-use quatrack::{
-    Actuation, Airframe, ErrorForm, FeedForward, Limits, Measured, Memory, MotorReference, Settings, State, Target,
-};
+use quatrack::{Actuation, Airframe, FeedForward, Limits, Measured, Memory, MotorReference, Settings, State, Target};
 
 fn main() -> Result<(), Box<dyn core::error::Error>> {
     let path = std::env::args().nth(1).ok_or("which table? for example gains/generated/sampled-lqr-e.bin")?;
@@ -23,11 +21,9 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
     let actuation = accepted.actuation(&Actuation::new(&airframe, head.rate)?);
     let controller = accepted.controller(&Settings {
         // The tighter of the board's limits and the table's hold.
-        limits: Limits::of(&airframe, Vector3::new(20.0, 20.0, 10.0)),
         actuation: Some(&actuation),
         feed_forward: FeedForward::With,
-        error_form: ErrorForm::HeadingFrame,
-        player_rate: head.rate,
+        ..Settings::new(Limits::of(&airframe, Vector3::new(20.0, 20.0, 10.0)), head.rate)
     })?;
     let mut memory = Memory::hovering(&airframe);
     let reference = MotorReference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0, actuation.airframe())?;

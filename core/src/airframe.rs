@@ -86,6 +86,7 @@ pub enum AirframeFigure {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum AirframeError {
     /// A figure is not between a millionth (a billionth for the inertia) and a thousand of its SI unit: check the units.
     OutOfRange {

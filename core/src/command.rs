@@ -41,6 +41,7 @@ pub struct Limits {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum LimitsError {
     /// `thrust_min_m_s2 <= thrust_max_m_s2` does not hold, or one of them is not a number.
     Thrust {

@@ -16,6 +16,7 @@ pub struct Gain<const M: usize, const N: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum GainError {
     /// An entry is infinite or not a number.
     NonFinite {

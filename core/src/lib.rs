@@ -90,7 +90,7 @@ pub use actuation::Actuation;
 pub use airframe::{Airframe, AirframeFigures};
 pub use body_rate::BodyRateLoop;
 #[cfg(feature = "cascade")]
-pub use cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
+pub use cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory, Followed};
 pub use clock::{Rate, Tick};
 pub use command::{Command, Limited, Limits};
 pub use control::{

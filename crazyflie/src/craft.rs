@@ -1,9 +1,8 @@
 //! The crafts that there are tables for: the figures that the firmware was built with in, the craft out.
 
-use quatrack::gains::table::{Name, Vehicle};
-use quatrack::{Actuation, Airframe, AirframeFigures, BodyRateLoop, Rate};
-
-use crate::builtin::IDS;
+use quatrack::gains::cascade as tables;
+use quatrack::gains::table::{BuiltInCascade, Vehicle};
+use quatrack::{Actuation, Air, Airframe, AirframeFigures, BodyRateLoop, Rate};
 
 /// Control steps a second: every other one of the firmware's.
 pub const CONTROL_HZ: u32 = 500;
@@ -49,6 +48,10 @@ pub struct Craft {
     pub stated_lag_s: Option<f32>,
     /// One over the largest force of a motor, 1/N.
     pub per_force_max_1_n: f32,
+    /// Largest thrust of all motors over the mass, m/s^2.
+    pub thrust_max_m_s2: f32,
+    /// What it is told of the air where its owner says nothing.
+    pub air: Air,
 }
 
 /// A craft that the controller knows.
@@ -58,24 +61,27 @@ pub struct Known {
     pub airframe: Airframe,
     /// Its name and id.
     pub vehicle: Vehicle,
+    /// What it is told of the air where its owner says nothing.
+    pub air: Air,
 }
 
 /// The crafts that the controller knows.
 pub const KNOWN: [Known; 3] = [
-    known("crazyflie-2.1", IDS[0], Airframe::CRAZYFLIE_2_1),
-    known("crazyflie-2.1-upgrade-kit", IDS[1], Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
-    known("crazyflie-2.1-brushless", IDS[2], Airframe::CRAZYFLIE_2_1_BRUSHLESS),
+    known(tables::CRAZYFLIE_2_1_DEFAULT, Airframe::CRAZYFLIE_2_1),
+    known(tables::UPGRADE_KIT_DEFAULT, Airframe::CRAZYFLIE_2_1_UPGRADE_KIT),
+    known(tables::BRUSHLESS_DEFAULT, Airframe::CRAZYFLIE_2_1_BRUSHLESS),
 ];
 
-const fn known(name: &str, id: u32, airframe: Airframe) -> Known {
-    Known { airframe, vehicle: Vehicle { name: Name::literal(name), id } }
+const fn known(table: BuiltInCascade, airframe: Airframe) -> Known {
+    Known { airframe, vehicle: table.vehicle, air: table.table.air }
 }
 
 /// Largest relative difference of a figure from the one that the tables were made for: what is left out of it in rounding.
 const TOLERANCE: f32 = 2e-3;
 
-/// Largest relative difference of the mass: half of what the tables are certified for.
-const MASS_TOLERANCE: f32 = 0.1;
+/// Largest relative difference of a stated mass from the craft's own: the inertia, which goes on being the craft's own, is then
+/// within what the tables are certified for.
+const MASS_TOLERANCE: f32 = 0.2;
 
 impl Craft {
     /// The craft that the firmware was built for; nothing where no table is for it.
@@ -92,19 +98,23 @@ impl Craft {
         // The mass as the owner has set it: the weight is fed forward.
         let figures = AirframeFigures { mass_kg: platform.mass_kg, ..*known.airframe.figures() };
         let airframe = Airframe::new(figures).ok()?;
-        Self::with(airframe, known.vehicle, index)
+        Self::with(airframe, known, index)
     }
 
-    /// From its parts; nothing where its motors are faster than two control periods.
-    pub const fn with(airframe: Airframe, vehicle: Vehicle, index: usize) -> Option<Self> {
+    /// A known craft with an airframe of its own; nothing where its motors are faster than two control periods.
+    pub const fn with(airframe: Airframe, known: &Known, index: usize) -> Option<Self> {
         let figures = airframe.figures();
-        let (motor_lag_s, per_force_max_1_n) = (figures.motor_lag_s, 1.0 / figures.force_max_n);
-        match Actuation::new(&airframe, RATE) {
-            Ok(actuation) => {
-                Some(Self { actuation, vehicle, index, motor_lag_s, stated_lag_s: None, per_force_max_1_n })
-            }
-            Err(_) => None,
-        }
+        let Ok(actuation) = Actuation::new(&airframe, RATE) else { return None };
+        Some(Self {
+            actuation,
+            vehicle: known.vehicle,
+            index,
+            motor_lag_s: figures.motor_lag_s,
+            stated_lag_s: None,
+            per_force_max_1_n: 1.0 / figures.force_max_n,
+            thrust_max_m_s2: 4.0 * figures.force_max_n / figures.mass_kg,
+            air: known.air,
+        })
     }
 
     /// Its figures, checked.

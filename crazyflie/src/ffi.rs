@@ -8,13 +8,13 @@
 use core::sync::atomic::Ordering::Relaxed;
 
 use crate::abi::{Control, SensorData, Setpoint, State};
-use crate::control::{self, Chore, Controller};
+use crate::control::{self, Controller, Work};
 use crate::craft::Platform;
 use crate::cycles;
-use crate::edge;
 use crate::service::{self, Handover, Service};
 use crate::shared::Shared;
 use crate::try_cell::TryCell;
+use crate::units;
 use crate::upload::Packet;
 
 /// Parameters and log variables; `quatrack.h` has the same struct.
@@ -52,19 +52,19 @@ pub extern "C" fn controllerOutOfTree(
     let begun = cycles::now();
     CONTROLLER.with(|controller| {
         if controller.step(setpoint, sensors, state, step) {
-            edge::put(&controller.outcome().output, controller.craft(), control);
+            units::put(&controller.outcome().output, controller.craft(), control);
             quatrack.log.cycles.store(cycles::since(begun), Relaxed);
             return;
         }
-        match controller.between(setpoint, state, step) {
+        match controller.between(setpoint, sensors, state, step) {
             None => {}
-            Some(Chore::LogErrors) => service::log_errors(&quatrack, controller, state),
-            Some(Chore::LogCounters) => service::log_counters(&quatrack, controller),
-            Some(Chore::TakeOver) => {
+            Some(Work::LogErrors) => service::log_errors(&quatrack, controller, state),
+            Some(Work::LogCounters) => service::log_counters(&quatrack, controller),
+            Some(Work::LogLearned) => service::log_learned(&quatrack, controller),
+            Some(Work::TakeOver) => {
                 HANDOVER.with(|handover| handover.take_over(controller));
             }
         }
-        controller.prepare(state, step.wrapping_add(1));
     });
 }
 

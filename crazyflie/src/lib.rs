@@ -1,21 +1,36 @@
 //! The quatrack controller in the Crazyflie's own firmware: an out-of-tree controller.
 //!
-//! Setpoints of any commander, the firmware's estimate and the gyroscope go in at 1 kHz; force and torque, or the four
-//! motors' forces, come out at 500 Hz.
+//! Setpoints of any commander, the firmware's estimate, gyroscope and accelerometer go in at 1 kHz; the four motors' forces, or
+//! force and torque, come out at 500 Hz.
 //!
 //! ```text
-//! ffi            the symbols that the firmware and our app call; what they share
-//!   service      parameters, logs, tables that are sent
-//!     upload     the packets of a table that is sent
-//!     control    one step; changes of the table
-//!       guide    demands -> a motion with heading
-//!         stream, turning  setpoints at 100 Hz -> position to crackle, heading to its jerk, at every step
-//!       tables   gains as flown
-//!       edge     the firmware's units and conventions -> SI
-//!         abi, demand, output
-//!           craft  what the firmware was built for -> which craft
-//!             builtin  the tables in the image
-//!               shared, try_cell, cycles  what two tasks share, and without waiting; the cycle counter
+//! ffi                  the symbols that the firmware and our app call; what they share
+//!   service            parameters, logs, tables that are sent
+//!     parameters       what the owner has set, in range
+//!     upload           the packets of a table that is sent
+//!     control          one step; observers and background work between steps; changes of the table
+//!       inbox          the firmware's setpoint -> what changed; below it there is no C setpoint
+//!       shaping        requests that are no motion -> a motion with heading
+//!         heading      headings, dated -> heading to its jerk, at every step
+//!         stream       motions, dated -> position to crackle, at every step
+//!           request    what a setpoint asks for
+//!       tables         gains as flown
+//!         units        the firmware's units and conventions -> SI
+//!           abi, motion, output
+//!             craft    what the firmware was built for -> which craft
+//!               builtin  the tables in the image
+//!                 shared, try_cell, cycles  what two tasks share, and without waiting; the cycle counter
+//! ```
+//!
+//! The way of a setpoint goes down through each of these once:
+//!
+//! ```text
+//! abi::Setpoint ──▶ inbox ──▶ Change ──┬─ Motion ──▶ stream, heading ──▶ sample at each step ──▶ law ──▶ forces
+//!                                      ├─ Request ─▶ Flight::Stream ───────────┘                 ▲
+//!                                      │             Flight::Guided ─▶ shaping ─▶ sample ────────┤
+//!                                      │             Flight::Rates ──────────────▶ body-rate loop, firmware's mixer
+//!                                      ├─ Bad ─────▶ Flight::Guided: to rest, slowly down
+//!                                      └─ Off ─────▶ Flight::Off
 //! ```
 //!
 //! On the target it is linked into one object whose only symbols are those of [`ffi`]; on a desk the same code flies in
@@ -28,17 +43,20 @@ mod builtin;
 pub mod control;
 pub mod craft;
 mod cycles;
-pub mod demand;
-pub mod edge;
 pub mod ffi;
-pub mod guide;
+pub mod heading;
+pub mod inbox;
+pub mod motion;
 pub mod output;
+mod parameters;
+pub mod request;
 pub mod service;
+pub mod shaping;
 pub mod shared;
 pub mod stream;
 pub mod tables;
 mod try_cell;
-pub mod turning;
+pub mod units;
 pub mod upload;
 
 #[cfg(target_os = "none")]

@@ -3,20 +3,19 @@
 
 use core::sync::atomic::Ordering::Relaxed;
 
-use quatrack::gains::Scales;
+use quatrack::Limits;
 use quatrack::gains::table::GainTable;
 use quatrack::nalgebra::Vector3;
-use quatrack::{FeedForward, Leash, Limits};
 
 use crate::abi;
 use crate::control::{Controller, Settings};
 use crate::craft::{Craft, Platform};
-use crate::edge;
-use crate::guide::Bounds;
 use crate::output::Output;
-use crate::shared::{AtomicF32, Shared};
-use crate::tables::{Refusal, Table};
+use crate::parameters;
+use crate::shared::Shared;
+use crate::tables::{Refusal, Table, Tuning};
 use crate::try_cell::TryCell;
+use crate::units;
 use crate::upload::{Packet, Status, Uploads};
 
 /// What the app's task keeps.
@@ -36,7 +35,7 @@ pub struct Service {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Asked {
     table: u8,
-    scales: Scales,
+    tuning: Tuning,
     motor_lag_s: f32,
     /// Which of the sent tables, counted.
     upload: u8,
@@ -112,7 +111,9 @@ impl Service {
             }
             None if answer.bytes[1] == Status::Table as u8 => refuse(shared, Refusal::Table),
             None if answer.bytes[1] == Status::Vehicle as u8 => refuse(shared, Refusal::Vehicle),
-            None if answer.bytes[1] == Status::Along as u8 => refuse(shared, Refusal::Law),
+            None if [Status::Along as u8, Status::ActuatorAware as u8].contains(&answer.bytes[1]) => {
+                refuse(shared, Refusal::Law);
+            }
             None => {}
         }
         answer
@@ -121,18 +122,28 @@ impl Service {
     /// Looks at the parameters and hands over what has changed; to be called a few times a second.
     pub(crate) fn keep_house(&mut self, shared: &Shared, handover: &TryCell<Handover>) {
         let Some(craft) = &self.craft else { return };
-        let asked = Asked::of(shared, self.uploads_taken);
+        if let Some(parameter) = parameters::put_back(&shared.parameters, craft)
+            && !self.is_new
+        {
+            shared.log.put_back.fetch_add(1, Relaxed);
+            shared.log.parameter.store(parameter, Relaxed);
+        }
+        let asked = Asked {
+            table: shared.parameters.table.load(Relaxed),
+            tuning: parameters::tuning(&shared.parameters, craft),
+            motor_lag_s: parameters::motor_lag_s(&shared.parameters),
+            upload: self.uploads_taken,
+        };
         let craft = craft.with_motor_lag(asked.motor_lag_s);
         let is_asked = self.asked != Some(asked);
         let mut table = None;
         if is_asked {
-            let chosen = Table::choose(asked.table, &craft, self.uploaded.as_ref());
-            table = match chosen.map(|table| table.scaled(&asked.scales)) {
+            table = match Table::choose(asked.table, &craft, &asked.tuning, self.uploaded.as_ref()) {
                 Ok(table) => Some(table),
                 Err(refusal) => {
                     refuse(shared, refusal);
                     // There is always one to start with.
-                    if self.is_new { Table::for_any_published_lag(&craft).ok() } else { None }
+                    if self.is_new { Table::for_published_lags(&craft, &asked.tuning).ok() } else { None }
                 }
             };
         }
@@ -144,7 +155,7 @@ impl Service {
             if let Some(table) = &table {
                 place.table = Some(*table);
             }
-            place.settings = Some((settings(shared, &craft, &limits), craft));
+            place.settings = Some((parameters::settings(&shared.parameters, &craft, &limits), craft));
         });
         if handed.is_some() {
             (self.is_new, self.asked, self.limits) = (false, Some(asked), limits);
@@ -155,50 +166,10 @@ impl Service {
     }
 }
 
-impl Asked {
-    fn of(shared: &Shared, upload: u8) -> Self {
-        let parameters = &shared.parameters;
-        Self {
-            table: parameters.table.load(Relaxed),
-            scales: Scales { position: parameters.position_scale.get(), yaw: parameters.yaw_scale.get() },
-            motor_lag_s: within(&parameters.motor_lag_s, 0.0, 1.0),
-            upload,
-        }
-    }
-}
-
 /// Says that a table is not flown.
 fn refuse(shared: &Shared, refusal: Refusal) {
     shared.log.refused_tables.fetch_add(1, Relaxed);
     shared.log.refusal.store(refusal as u16, Relaxed);
-}
-
-/// A parameter within what makes sense; what is not a number counts as the least.
-fn within(value: &AtomicF32, least: f32, most: f32) -> f32 {
-    let value = value.get();
-    if value >= most {
-        most
-    } else if value >= least {
-        value
-    } else {
-        least
-    }
-}
-
-/// What the owner has set, within what the table in the air says of itself.
-fn settings(shared: &Shared, craft: &Craft, table: &Limits) -> Settings {
-    let parameters = &shared.parameters;
-    let roll_pitch = within(&parameters.roll_pitch_rate_rad_s, 0.5, 100.0);
-    let yaw = within(&parameters.yaw_rate_rad_s, 0.5, 100.0);
-    Settings {
-        bounds: Bounds {
-            leash: Leash { length_m: within(&parameters.leash_m, 0.1, 10.0) },
-            speed_m_s: within(&parameters.speed_m_s, 0.1, 5.0),
-            acceleration_m_s2: within(&parameters.acceleration_m_s2, 0.5, 10.0),
-        },
-        limits: Limits::of(craft.airframe(), Vector3::new(roll_pitch, roll_pitch, yaw)).within(table),
-        feed_forward: if parameters.feed_forward.load(Relaxed) == 0 { FeedForward::Without } else { FeedForward::With },
-    }
 }
 
 /// How far the last control step was off, into the log; in the stabilizer's task, between control steps.
@@ -209,7 +180,7 @@ pub fn log_errors(shared: &Shared, controller: &Controller, state: &abi::State) 
     let thousandths = |v: &Vector3<f32>| [(v.x * 1e3) as i16, (v.y * 1e3) as i16, (v.z * 1e3) as i16];
     let outcome = controller.outcome();
     log.error_mm.iter().zip(thousandths(&outcome.error_m)).for_each(|(to, value)| to.store(value, Relaxed));
-    let rotation = thousandths(&controller.rotation_error_rad(edge::state(state).attitude));
+    let rotation = thousandths(&controller.rotation_error_rad(units::state(state).attitude));
     log.rotation_mrad.iter().zip(rotation).for_each(|(to, value)| to.store(value, Relaxed));
 }
 
@@ -232,11 +203,25 @@ pub fn log_counters(shared: &Shared, controller: &Controller) {
     log.jumps.store(counters.jumps, Relaxed);
 }
 
+/// What the cascade has learned, into the log; likewise.
+#[inline(never)]
+pub fn log_learned(shared: &Shared, controller: &Controller) {
+    let Some((drag_per_s, moment_n_s, memory)) = controller.learned() else { return };
+    let learned = &shared.learned;
+    learned.drag_per_s.set(drag_per_s);
+    learned.moment_n_s.iter().zip(moment_n_s).for_each(|(to, moment)| to.set(moment));
+    learned.motor_share.set(memory.motor_share());
+    let v = memory.disturbance_m_s2();
+    learned.disturbance_m_s2.iter().zip([v.x, v.y, v.z]).for_each(|(to, part)| to.set(part));
+    learned.stands.set(if memory.stands() { 1.0 } else { 0.0 });
+}
+
 /// The table in use, its margin and its gain.
 fn show_table(shared: &Shared, table: &Table) {
     shared.log.table.store(table.id as u8, Relaxed);
-    shared.gains.scale_min.set(1.0 / table.margin);
-    shared.gains.scale_max.set(table.margin);
+    let [least, most] = table.scales;
+    shared.gains.scale_min.set(least);
+    shared.gains.scale_max.set(most);
     let shown = table.shown();
     shared.gains.entries.iter().zip(shown).for_each(|(to, entry)| to.set(entry));
 }

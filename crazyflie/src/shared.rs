@@ -34,19 +34,22 @@ pub struct Shared {
     pub parameters: Parameters,
     /// What the owner sees.
     pub log: Log,
+    /// What the flight has shown.
+    pub learned: Learned,
     /// What is flown, to be read.
     pub gains: Gains,
 }
 
-/// Set by the owner; a value out of range counts as the nearest one in it.
+/// Set by the owner; a value out of range counts as the nearest one in it, and what is no number is put back to its default:
+/// for the air the craft's own, which is known once the app has said which craft this is.
 #[repr(C)]
 #[derive(Debug)]
 pub struct Parameters {
-    /// Factor on the feedback that moves the craft: thrust, roll and pitch; within the margin of the table's certificate.
+    /// Stiffness of the cascade in position; of the paper's laws a factor on the feedback of thrust, roll and pitch.
     pub position_scale: AtomicF32,
-    /// Factor on the feedback about the vertical, likewise.
+    /// Factor on the paper's laws' feedback about the vertical.
     pub yaw_scale: AtomicF32,
-    /// Farthest error that is acted on: of position, m, and of velocity, m/s.
+    /// Farthest error that the paper's laws act on: of position, m, and of velocity, m/s.
     pub leash_m: AtomicF32,
     /// Largest speed of a velocity setpoint, m/s.
     pub speed_m_s: AtomicF32,
@@ -58,10 +61,57 @@ pub struct Parameters {
     pub yaw_rate_rad_s: AtomicF32,
     /// Time constant of this craft's motors as its owner knows it, s; 0 where only what is published is known.
     pub motor_lag_s: AtomicF32,
+    /// Linear drag over mass that is told, 1/s.
+    pub drag_per_s: AtomicF32,
+    /// Airflow moment about body x over the velocity along body y that is told, N s.
+    pub moment_x_n_s: AtomicF32,
+    /// The same about y and along x, N s.
+    pub moment_y_n_s: AtomicF32,
+    /// Share of the wind's moment that is fed forward.
+    pub gust: AtomicF32,
+    /// Speed over ground with which the cascade makes a position error good, m/s.
+    pub goal_speed_m_s: AtomicF32,
+    /// The same up and down, m/s.
+    pub goal_climb_m_s: AtomicF32,
+    /// Its largest tilt on the way, degrees.
+    pub tilt_deg: AtomicF32,
     /// The table to fly, by its number.
     pub table: AtomicU8,
     /// Whether the paper's laws are fed forward.
     pub feed_forward: AtomicU8,
+    /// Whether drag and moment are corrected by what the flight shows.
+    pub learn: AtomicU8,
+}
+
+impl Parameters {
+    /// How many are floats.
+    pub const FLOATS: usize = 15;
+
+    /// Sets all that are floats.
+    pub fn set_all(&self, value: f32) {
+        self.floats().iter().for_each(|parameter| parameter.set(value));
+    }
+
+    /// All that are floats, in order.
+    pub(crate) const fn floats(&self) -> [&AtomicF32; Self::FLOATS] {
+        [
+            &self.position_scale,
+            &self.yaw_scale,
+            &self.leash_m,
+            &self.speed_m_s,
+            &self.acceleration_m_s2,
+            &self.roll_pitch_rate_rad_s,
+            &self.yaw_rate_rad_s,
+            &self.motor_lag_s,
+            &self.drag_per_s,
+            &self.moment_x_n_s,
+            &self.moment_y_n_s,
+            &self.gust,
+            &self.goal_speed_m_s,
+            &self.goal_climb_m_s,
+            &self.tilt_deg,
+        ]
+    }
 }
 
 /// Written by the controller: 26 bytes that matter, for one log packet, then counters and figures for others.
@@ -94,13 +144,33 @@ pub struct Log {
     pub refused_tables: AtomicU16,
     /// Why the last of them was not, see `quatrack.h`.
     pub refusal: AtomicU16,
+    /// Parameters that were no numbers and were put back to their defaults.
+    pub put_back: AtomicU16,
+    /// Which of them was the last, counted from 1 in the order of [`Parameters`].
+    pub parameter: AtomicU16,
+}
+
+/// What the cascade flies with, as the flight has shown it.
+#[repr(C)]
+#[derive(Debug)]
+pub struct Learned {
+    /// Drag over mass, 1/s.
+    pub drag_per_s: AtomicF32,
+    /// Airflow moment about body x and y over the velocity along y and x, N s.
+    pub moment_n_s: [AtomicF32; 2],
+    /// Force of the motors over what they are told.
+    pub motor_share: AtomicF32,
+    /// Disturbance: x and y in the world frame and along the thrust, m/s^2.
+    pub disturbance_m_s2: [AtomicF32; 3],
+    /// Whether the craft is taken to stand, 1, or to fly.
+    pub stands: AtomicF32,
 }
 
 /// Read-only: the gain in use, as flown (scales included).
 #[repr(C)]
 #[derive(Debug)]
 pub struct Gains {
-    /// The smallest and the largest factor that the certificate allows.
+    /// The smallest and the largest factor on the feedback that is taken.
     pub scale_min: AtomicF32,
     /// See [`Self::scale_min`].
     pub scale_max: AtomicF32,
@@ -112,7 +182,7 @@ pub struct Gains {
 /// Entries of [`Gains`].
 pub const GAINS: usize = 19;
 
-const _: () = assert!(size_of::<Parameters>() == 36 && size_of::<Log>() == 38);
+const _: () = assert!(size_of::<Parameters>() == 64 && size_of::<Log>() == 42);
 const _: () = assert!(core::mem::offset_of!(Log, bad_states) == 26, "one log packet");
 
 impl Shared {
@@ -128,8 +198,16 @@ impl Shared {
                 roll_pitch_rate_rad_s: AtomicF32::new(20.0),
                 yaw_rate_rad_s: AtomicF32::new(10.0),
                 motor_lag_s: AtomicF32::new(0.0),
+                drag_per_s: AtomicF32::new(f32::NAN),
+                moment_x_n_s: AtomicF32::new(f32::NAN),
+                moment_y_n_s: AtomicF32::new(f32::NAN),
+                gust: AtomicF32::new(f32::NAN),
+                goal_speed_m_s: AtomicF32::new(f32::NAN),
+                goal_climb_m_s: AtomicF32::new(f32::NAN),
+                tilt_deg: AtomicF32::new(f32::NAN),
                 table: AtomicU8::new(0),
                 feed_forward: AtomicU8::new(1),
+                learn: AtomicU8::new(1),
             },
             log: Log {
                 error_mm: [const { AtomicI16::new(0) }; 3],
@@ -145,6 +223,15 @@ impl Shared {
                 jumps: AtomicU16::new(0),
                 refused_tables: AtomicU16::new(0),
                 refusal: AtomicU16::new(0),
+                put_back: AtomicU16::new(0),
+                parameter: AtomicU16::new(0),
+            },
+            learned: Learned {
+                drag_per_s: AtomicF32::new(0.0),
+                moment_n_s: [const { AtomicF32::new(0.0) }; 2],
+                motor_share: AtomicF32::new(1.0),
+                disturbance_m_s2: [const { AtomicF32::new(0.0) }; 3],
+                stands: AtomicF32::new(0.0),
             },
             gains: Gains {
                 scale_min: AtomicF32::new(1.0),

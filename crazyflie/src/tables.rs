@@ -1,15 +1,14 @@
 //! Tables to fly: those in the image and an uploaded one in; gains as flown, scaled within what their certificate allows,
 //! out.
 
-use quatrack::gains::table::{AcceptError, GainTable, margin_behind};
+use quatrack::gains::table::{AcceptError, CascadeTable, GainTable, margin_behind};
 use quatrack::gains::{ConstantGain, Decoupled, Scales, paper};
-use quatrack::law::ActuatorAwareGain;
 use quatrack::{
-    Actuation, ControllerError, FeedForward, Law, Limits, Measured, Memory, Output as LawOutput, Settings, StepError,
-    Target,
+    Actuation, Air, Cascade, CascadeGains, CascadeLimits, Controller, ControllerError, FeedForward, Law, Limits,
+    Measured, Memory, Output as LawOutput, Settings, StepError, Target,
 };
 
-use crate::builtin;
+use crate::builtin::{self, STATED_FROM_S};
 use crate::craft::{Craft, RATE};
 use crate::shared::GAINS;
 
@@ -17,8 +16,8 @@ use crate::shared::GAINS;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum TableId {
-    /// The craft's own actuator-aware one, for the motor lag that is stated or else for any that is published of it.
-    ActuatorAware = 0,
+    /// The craft's own cascade, for the motor lag that is stated or else for those that are published of it.
+    Cascade = 0,
     /// (LYAP-E) of the paper.
     LyapE = 1,
     /// (LQR-E) of the paper.
@@ -35,7 +34,7 @@ impl TableId {
     /// By its number.
     pub const fn numbered(number: u8) -> Option<Self> {
         match number {
-            0 => Some(Self::ActuatorAware),
+            0 => Some(Self::Cascade),
             1 => Some(Self::LyapE),
             2 => Some(Self::LqrE),
             3 => Some(Self::LyapF),
@@ -46,19 +45,41 @@ impl TableId {
     }
 }
 
-/// A table as it is flown.
+/// What the owner may change of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Factors on the feedback; of the cascade the first is its stiffness in position.
+    pub scales: Scales,
+    /// What the cascade is told of the air.
+    pub air: Air,
+    /// On its way to a place that is far off.
+    pub limits: CascadeLimits,
+}
+
+/// A table as it is flown.
+#[derive(Clone, Copy, Debug)]
 pub struct Table {
     /// Which.
     pub id: TableId,
     /// Its gain.
-    pub gain: ConstantGain,
+    pub gain: Gain,
     /// The craft's way to its motors, as the table reckons with it.
     pub actuation: Actuation,
-    /// The loop stays stable with each of its channels weakened or strengthened by this factor, all at once.
-    pub margin: f32,
+    /// Within which its feedback may be scaled: of the paper's laws the loop stays stable with each of its channels weakened or
+    /// strengthened as much, all at once.
+    pub scales: [f32; 2],
     /// What it may command; what its own head says, or nothing.
     pub limits: Limits,
+}
+
+/// A gain with what flies it.
+#[allow(clippy::large_enum_variant, reason = "there is no heap to put the larger one on")]
+#[derive(Clone, Copy, Debug)]
+pub enum Gain {
+    /// In nested loops, with the gains that it was made of.
+    Cascade(Cascade, CascadeGains),
+    /// Any of the others.
+    Constant(ConstantGain),
 }
 
 /// Why a table is not flown.
@@ -79,93 +100,142 @@ pub enum Refusal {
     Law = 6,
 }
 
+/// Within which the stiffness of a cascade may be scaled.
+const STIFFNESS: [f32; 2] = [0.5, 1.3];
+
 impl Table {
     /// A table in the image, or the uploaded one, for a craft.
     ///
     /// # Errors
     /// [`Refusal`].
     #[inline(never)]
-    pub fn choose(number: u8, craft: &Craft, uploaded: Option<&GainTable<'static>>) -> Result<Self, Refusal> {
+    pub fn choose(
+        number: u8,
+        craft: &Craft,
+        tuning: &Tuning,
+        uploaded: Option<&GainTable<'static>>,
+    ) -> Result<Self, Refusal> {
         let id = TableId::numbered(number).ok_or(Refusal::Unknown)?;
         let (gain, (margin, lag_max_s)) = match id {
-            TableId::ActuatorAware => return Self::actuator_aware(craft),
+            TableId::Cascade => return Self::cascade(craft, tuning),
             TableId::LyapE => (ConstantGain::Equilibrium(paper::LYAP_E), builtin::LYAP_E),
             TableId::LqrE => (ConstantGain::Equilibrium(paper::LQR_E), builtin::LQR_E),
             TableId::LyapF => (ConstantGain::FlatOutput(paper::LYAP_F), builtin::LYAP_F),
             TableId::LqrF => (ConstantGain::FlatOutput(paper::LQR_F), builtin::LQR_F),
-            TableId::Uploaded => return Self::uploaded(uploaded.ok_or(Refusal::NothingUploaded)?, craft),
+            TableId::Uploaded => return Self::uploaded(uploaded.ok_or(Refusal::NothingUploaded)?, craft, tuning),
         };
         let margin = margin_behind(margin, lag_max_s, craft.motor_lag_s)?;
-        Ok(Self { id, gain, actuation: craft.actuation, margin, limits: Limits::NONE })
+        Ok(Self::constant(id, &gain, craft.actuation, margin, Limits::NONE, tuning))
     }
 
-    /// The craft's own: the gain that is certified for the stated lag, flown with it; with none stated the one for any
-    /// published lag, flown with that of its design.
+    /// The craft's own: the gains that are certified for the stated lag, flown with it; with none stated those for the published
+    /// lags, flown with that of their design.
     ///
     /// # Errors
     /// [`Refusal::MotorLag`] for a stated lag that none is certified for, [`Refusal::Unknown`] where the craft has none.
     #[inline(never)]
-    pub fn actuator_aware(craft: &Craft) -> Result<Self, Refusal> {
-        let Some(lag_s) = craft.stated_lag_s else { return Self::for_any_published_lag(craft) };
-        let designs = builtin::ACTUATOR_AWARE.get(craft.index).ok_or(Refusal::Unknown)?;
-        let holds = |design: &&builtin::Design| {
-            let [shortest_s, longest_s] = design.stated_s;
-            lag_s >= shortest_s && lag_s <= longest_s
-        };
-        let design = designs.iter().find(holds).ok_or(Refusal::MotorLag)?;
-        Self::designed(design, craft, lag_s, design.margin)
+    pub fn cascade(craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
+        let Some(lag_s) = craft.stated_lag_s else { return Self::for_published_lags(craft, tuning) };
+        let (cascades, _) = builtin::CASCADES.get(craft.index).ok_or(Refusal::Unknown)?;
+        let holds = |cascade: &&builtin::Cascade| lag_s <= cascade.stated_to_s;
+        let found = cascades.iter().find(holds).filter(|_| lag_s >= STATED_FROM_S).ok_or(Refusal::MotorLag)?;
+        Self::of_cascade(&found.gains, if found.as_stated { lag_s } else { found.lag_s }, craft, tuning)
     }
 
-    /// The craft's own for any motor lag that is published of it.
+    /// The craft's own for the motor lags that are published of it.
     ///
     /// # Errors
     /// [`Refusal::Unknown`] where there is none.
     #[inline(never)]
-    pub fn for_any_published_lag(craft: &Craft) -> Result<Self, Refusal> {
-        let [.., design] = builtin::ACTUATOR_AWARE.get(craft.index).ok_or(Refusal::Unknown)?;
-        let (lag_s, margin) = builtin::ANY_LAG.get(craft.index).ok_or(Refusal::Unknown)?;
-        Self::designed(design, craft, *lag_s, *margin)
+    pub fn for_published_lags(craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
+        let (_, unstated) = builtin::CASCADES.get(craft.index).ok_or(Refusal::Unknown)?;
+        Self::of_cascade(&unstated.gains, unstated.lag_s, craft, tuning)
     }
 
-    fn designed(design: &builtin::Design, craft: &Craft, lag_s: f32, margin: f32) -> Result<Self, Refusal> {
-        Self::to_motors(TableId::ActuatorAware, design.gain, lag_s, craft, margin)
-    }
-
-    /// For motor forces, reckoning with motors of a lag.
-    pub(crate) const fn to_motors(
-        id: TableId,
-        gain: ActuatorAwareGain,
+    /// Gains of a cascade on a craft whose motors are taken to have a lag.
+    pub(crate) const fn of_cascade(
+        gains: &CascadeGains,
         lag_s: f32,
         craft: &Craft,
-        margin: f32,
+        tuning: &Tuning,
     ) -> Result<Self, Refusal> {
         let Ok(airframe) = craft.airframe().with_motor_lag(lag_s) else { return Err(Refusal::MotorLag) };
-        let gain = ConstantGain::ActuatorAware(gain);
-        match Actuation::new(&airframe.commanded_at(RATE), RATE) {
-            Ok(actuation) => Ok(Self { id, gain, actuation, margin, limits: Limits::NONE }),
-            Err(_) => Err(Refusal::MotorLag),
+        let Ok(cascade) = Cascade::new(gains, &airframe, RATE, &tuning.limits, &tuning.air) else {
+            return Err(Refusal::MotorLag);
+        };
+        let [least, most] = STIFFNESS;
+        let asked = tuning.scales.position;
+        let stiffness = if asked >= most {
+            most
+        } else if asked >= least {
+            asked
+        } else {
+            least
+        };
+        let cascade = cascade.with_stiffness(stiffness);
+        Ok(Self {
+            id: TableId::Cascade,
+            actuation: *cascade.actuation(),
+            gain: Gain::Cascade(cascade, gains.scaled(stiffness)),
+            scales: STIFFNESS,
+            limits: Limits::NONE,
+        })
+    }
+
+    #[inline(never)]
+    fn uploaded(table: &GainTable<'static>, craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
+        let accepted = table.accept_for(&craft.vehicle, RATE)?;
+        if let Some(cascade) = accepted.cascade() {
+            return Self::sent_cascade(cascade, craft, tuning);
+        }
+        let gain = table.gain().filter(|gain| !gain.gives_forces()).ok_or(Refusal::Law)?;
+        let margin = accepted.margin_behind(craft.motor_lag_s)?;
+        let actuation = accepted.actuation(&craft.actuation);
+        Ok(Self::constant(TableId::Uploaded, gain, actuation, margin, accepted.limits(), tuning))
+    }
+
+    /// A cascade that was sent, with its own air where the owner has not stated another than the craft's.
+    fn sent_cascade(table: &CascadeTable, craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
+        if !table.certified.holds_lag(craft.motor_lag_s) {
+            return Err(Refusal::MotorLag);
+        }
+        let air = if tuning.air == craft.air { table.air } else { tuning.air };
+        let found = Self::of_cascade(&table.gains, table.motor_lag_s, craft, &Tuning { air, ..*tuning })?;
+        Ok(Self { id: TableId::Uploaded, ..found })
+    }
+
+    /// Of a gain whose feedback is scaled as far as its margin allows.
+    fn constant(
+        id: TableId,
+        gain: &ConstantGain,
+        actuation: Actuation,
+        margin: f32,
+        limits: Limits,
+        tuning: &Tuning,
+    ) -> Self {
+        let gain = Gain::Constant(gain.scaled(&tuning.scales.within(margin)));
+        Self { id, gain, actuation, scales: [1.0 / margin, margin], limits }
+    }
+
+    /// Whether its law gives motor forces, and looks beyond the jerk for that.
+    #[inline(always)]
+    pub const fn gives_forces(&self) -> bool {
+        matches!(self.gain, Gain::Cascade(..))
+    }
+
+    /// The cascade, if it is one.
+    #[inline(always)]
+    pub const fn as_cascade(&self) -> Option<&Cascade> {
+        match &self.gain {
+            Gain::Cascade(cascade, _) => Some(cascade),
+            Gain::Constant(_) => None,
         }
     }
 
-    #[inline(never)]
-    fn uploaded(table: &GainTable<'static>, craft: &Craft) -> Result<Self, Refusal> {
-        let accepted = table.accept_for(&craft.vehicle, RATE)?;
-        let gain = *table.gain().ok_or(Refusal::Law)?;
-        let margin = accepted.margin_behind(craft.motor_lag_s)?;
-        let actuation = accepted.actuation(&craft.actuation);
-        Ok(Self { id: TableId::Uploaded, gain, actuation, margin, limits: accepted.limits() })
-    }
-
-    /// The same with its feedback scaled, as far as its margin allows.
-    #[inline(never)]
-    pub fn scaled(&self, scales: &Scales) -> Self {
-        Self { gain: self.gain.scaled(&scales.within(self.margin)), ..*self }
-    }
-
-    /// A step of the table's controller within limits.
+    /// A step of the table's controller within limits, but for what follows it ([`Controller::observe`]).
     ///
     /// # Errors
-    /// As [`quatrack::Controller::step`].
+    /// As [`Controller::step`].
     #[inline(always)]
     pub fn step(
         &self,
@@ -174,7 +244,14 @@ impl Table {
         measured: Measured<'_>,
         target: Target<'_>,
     ) -> Result<LawOutput, StepError> {
-        self.gain.step(RATE, &self.settings(limits, feed_forward), memory, measured, target)
+        match &self.gain {
+            Gain::Cascade(cascade, _) => {
+                Controller::new(cascade, Limits::NONE).step_unobserved(memory, measured, target)
+            }
+            // Refused when it was chosen: said here, nothing of its law is linked.
+            Gain::Constant(ConstantGain::ActuatorAware(_)) => Err(StepError::NoForces),
+            Gain::Constant(gain) => gain.step(RATE, &self.settings(limits, feed_forward), memory, measured, target),
+        }
     }
 
     /// Its law.
@@ -182,7 +259,10 @@ impl Table {
     /// # Errors
     /// None: a table has its actuation.
     pub fn law(&self, feed_forward: FeedForward) -> Result<Law<'_>, ControllerError> {
-        self.gain.law(RATE, &self.settings(Limits::NONE, feed_forward))
+        match &self.gain {
+            Gain::Cascade(cascade, _) => Ok(Law::Cascade(cascade)),
+            Gain::Constant(gain) => gain.law(RATE, &self.settings(Limits::NONE, feed_forward)),
+        }
     }
 
     #[inline(always)]
@@ -193,9 +273,17 @@ impl Table {
     /// The entries that make up the gain where it decouples as designs at hover do: thrust from height, roll from y,
     /// pitch from x, yaw from heading. [`crate::shared::Gains`] has what is where.
     pub fn shown(&self) -> [f32; GAINS] {
-        let Decoupled { thrust: [t0, t1, t2, t3], roll, pitch, yaw: [y0, y1, y2] } = self.gain.decoupled();
-        let ([r0, r1, r2, r3, r4, r5], [p0, p1, p2, p3, p4, p5]) = (roll, pitch);
-        [t0, t1, t2, t3, r0, r1, r2, r3, r4, r5, p0, p1, p2, p3, p4, p5, y0, y1, y2]
+        match &self.gain {
+            Gain::Cascade(_, gains) => {
+                let [z, vz, fz, y, vy, roll, p, fr, x, vx, pitch, q, fp, yaw, r, fy] = gains.numbers();
+                [z, vz, fz, 0.0, y, vy, roll, p, fr, 0.0, x, vx, pitch, q, fp, 0.0, yaw, r, fy]
+            }
+            Gain::Constant(gain) => {
+                let Decoupled { thrust: [t0, t1, t2, t3], roll, pitch, yaw: [y0, y1, y2] } = gain.decoupled();
+                let ([r0, r1, r2, r3, r4, r5], [p0, p1, p2, p3, p4, p5]) = (roll, pitch);
+                [t0, t1, t2, t3, r0, r1, r2, r3, r4, r5, p0, p1, p2, p3, p4, p5, y0, y1, y2]
+            }
+        }
     }
 }
 

@@ -57,6 +57,8 @@ pub enum Status {
     Busy = 9,
     /// A table of gains along a trajectory: setpoints do not say which trajectory they are on, or where on it.
     Along = 10,
+    /// A table of the actuator-aware law, which the cascade has taken the place of: design a cascade.
+    ActuatorAware = 11,
 }
 
 impl Status {
@@ -73,6 +75,7 @@ impl Status {
             Self::Table => b"no certified gain table",
             Self::Vehicle => b"for another craft or rate",
             Self::Along => b"gains along a trajectory",
+            Self::ActuatorAware => b"actuator-aware: outdated",
         }
     }
 }
@@ -138,16 +141,31 @@ impl Uploads {
         match read(blob, vehicle) {
             Ok(Some(table)) => (Status::Taken, Some(table)),
             Ok(None) => (Status::Along, None),
-            Err(LoadError::Accept(_)) => (Status::Vehicle, None),
+            Err(Unread::ActuatorAware) => (Status::ActuatorAware, None),
+            Err(Unread::Load(LoadError::Accept(_))) => (Status::Vehicle, None),
             Err(_) => (Status::Table, None),
         }
     }
 }
 
+/// Why what was sent is not read.
+enum Unread {
+    Load(LoadError),
+    ActuatorAware,
+}
+
+impl<E: Into<LoadError>> From<E> for Unread {
+    fn from(error: E) -> Self {
+        Self::Load(error.into())
+    }
+}
+
 /// A table for this craft; nothing for gains along a trajectory.
-fn read(blob: &[u8], vehicle: &Vehicle) -> Result<Option<GainTable<'static>>, LoadError> {
-    if TableKind::of(blob)? == TableKind::AlongTrajectory {
-        return Ok(None);
+fn read(blob: &[u8], vehicle: &Vehicle) -> Result<Option<GainTable<'static>>, Unread> {
+    match TableKind::of(blob)? {
+        TableKind::AlongTrajectory => return Ok(None),
+        TableKind::ActuatorAware => return Err(Unread::ActuatorAware),
+        _ => {}
     }
     let table = GainTable::from_bytes(blob)?;
     table.accept_for(vehicle, RATE)?;

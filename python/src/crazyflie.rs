@@ -2,7 +2,7 @@
 //!
 //! There is one controller in a process, as in a craft: switching another one on ends the flight of the one before.
 
-use std::sync::atomic::Ordering::Relaxed;
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::exceptions::PyKeyError;
@@ -29,18 +29,32 @@ pub(crate) fn end_the_one_before() {
 }
 
 /// A parameter's name in the firmware, and where it is.
-type Named = (&'static str, fn(&Parameters) -> &AtomicF32);
+type Named<T> = (&'static str, fn(&Parameters) -> &T);
 
 /// The parameters of the group `quatrack` that hold a number.
-const FLOATS: [Named; 8] = [
+const FLOATS: [Named<AtomicF32>; Parameters::FLOATS] = [
     ("posScale", |parameters| &parameters.position_scale),
     ("yawScale", |parameters| &parameters.yaw_scale),
     ("motorLag", |parameters| &parameters.motor_lag_s),
+    ("drag", |parameters| &parameters.drag_per_s),
+    ("momentX", |parameters| &parameters.moment_x_n_s),
+    ("momentY", |parameters| &parameters.moment_y_n_s),
+    ("gust", |parameters| &parameters.gust),
+    ("speed", |parameters| &parameters.goal_speed_m_s),
+    ("climb", |parameters| &parameters.goal_climb_m_s),
+    ("tilt", |parameters| &parameters.tilt_deg),
     ("leash", |parameters| &parameters.leash_m),
     ("speedMax", |parameters| &parameters.speed_m_s),
     ("accMax", |parameters| &parameters.acceleration_m_s2),
     ("rpRateMax", |parameters| &parameters.roll_pitch_rate_rad_s),
     ("yawRateMax", |parameters| &parameters.yaw_rate_rad_s),
+];
+
+/// Likewise, those that hold a whole number.
+const WHOLE: [Named<AtomicU8>; 3] = [
+    ("table", |parameters| &parameters.table),
+    ("feedForward", |parameters| &parameters.feed_forward),
+    ("learn", |parameters| &parameters.learn),
 ];
 
 /// The object as the firmware calls it, at 1 kHz.
@@ -174,9 +188,15 @@ impl CrazyflieController {
         let built_for = Platform { mass_kg: mass_kg.unwrap_or(built_for.mass_kg), ..built_for };
         let mut number = switched_on();
         *number += 1;
+        let parameters = &ffi::quatrack.parameters;
+        // As switched on: what is no number is put back to its default.
+        parameters.set_all(f32::NAN);
+        parameters.table.store(0, Relaxed);
+        parameters.feed_forward.store(1, Relaxed);
+        parameters.learn.store(1, Relaxed);
         if !ffi::quatrackPlatform(&built_for) {
             return Err(refused(format!(
-                "the Crazyflie controller has no table for {} told {} kg; tell a mass within 10 % of a built-in vehicle's",
+                "the Crazyflie controller has no table for {} told {} kg; tell a mass within 20 % of a built-in vehicle's",
                 vehicle.name(),
                 built_for.mass_kg
             )));
@@ -213,18 +233,18 @@ impl CrazyflieController {
     /// Names of the parameters of the firmware's group `quatrack` that can be set.
     #[getter]
     fn parameters(&self) -> Vec<&'static str> {
-        ["table", "feedForward"].into_iter().chain(FLOATS.map(|(name, _)| name)).collect()
+        WHOLE.map(|(name, _)| name).into_iter().chain(FLOATS.map(|(name, _)| name)).collect()
     }
 
     /// Sets a parameter, by its name in the firmware, and lets the app look at it.
     fn set(&self, name: &str, value: f32) -> PyResult<()> {
         let _own = self.own()?;
         let parameters = &ffi::quatrack.parameters;
-        match (name, FLOATS.iter().find(|(known, _)| *known == name)) {
-            (_, Some((_, of))) => of(parameters).set(value),
-            ("table", _) => parameters.table.store(value as u8, Relaxed),
-            ("feedForward", _) => parameters.feed_forward.store(value as u8, Relaxed),
-            _ => return Err(self.unknown(name)),
+        let whole = WHOLE.iter().find(|(known, _)| *known == name);
+        match (FLOATS.iter().find(|(known, _)| *known == name), whole) {
+            (Some((_, of)), _) => of(parameters).set(value),
+            (None, Some((_, of))) => of(parameters).store(value as u8, Relaxed),
+            (None, None) => return Err(self.unknown(name)),
         }
         ffi::quatrackService();
         Ok(())
@@ -234,11 +254,11 @@ impl CrazyflieController {
     fn get(&self, name: &str) -> PyResult<f32> {
         let _own = self.own()?;
         let parameters = &ffi::quatrack.parameters;
-        match (name, FLOATS.iter().find(|(known, _)| *known == name)) {
-            (_, Some((_, of))) => Ok(of(parameters).get()),
-            ("table", _) => Ok(f32::from(parameters.table.load(Relaxed))),
-            ("feedForward", _) => Ok(f32::from(parameters.feed_forward.load(Relaxed))),
-            _ => Err(self.unknown(name)),
+        let whole = WHOLE.iter().find(|(known, _)| *known == name);
+        match (FLOATS.iter().find(|(known, _)| *known == name), whole) {
+            (Some((_, of)), _) => Ok(of(parameters).get()),
+            (None, Some((_, of))) => Ok(f32::from(of(parameters).load(Relaxed))),
+            (None, None) => Err(self.unknown(name)),
         }
     }
 

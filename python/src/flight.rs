@@ -12,14 +12,13 @@ use quatrack_simulation::flight::motor_laws::CraftLaw;
 use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::rigid_loop::RigidSample;
 use quatrack_simulation::scenario::compare::Table;
-use quatrack_simulation::scenario::{CascadeLaw, Law, Recording, Scenario, TableLaw};
+use quatrack_simulation::scenario::{Law, Recording, Scenario, TableLaw, start_table};
 use quatrack_simulation::vehicles;
 
 use crate::arrays::array;
 use crate::crazyflie;
 use crate::error::refused;
 use crate::gains::GainTable;
-use crate::law::cascade_of_table;
 use crate::long_call::{Cancelled, long_call};
 use crate::own_law::{Interruptible, OwnLaw};
 use crate::scenario;
@@ -97,10 +96,16 @@ fn record_table(
         return Err(refused(format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name())));
     }
     let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| refused(error.to_string()))?;
-    if let Some(table) = accepted.cascade() {
-        let cascade = cascade_of_table(table, RATE, &scenario.vehicle, &scenario.told);
-        let cascade = cascade.map_err(|error| refused(error.to_string()))?;
-        return record(scenario, &mut CascadeLaw::hovering(cascade), course, cancelled);
+    if let Some(cascade) = accepted.cascade() {
+        let (own_kg, told_kg) = (scenario.vehicle.mass_kg() as f32, scenario.told.mass_kg as f32);
+        if !cascade.certified.holds_mass(own_kg, told_kg) {
+            let percent = 100.0 * cascade.certified.mass_share;
+            let reason = format!("told {told_kg} kg; it is certified for {own_kg} kg and {percent:.0} % more or less");
+            return Err(refused(reason));
+        }
+        let law = start_table(&scenario.vehicle, &scenario.told, cascade);
+        let mut law = law.map_err(|error| refused(error.to_string()))?;
+        return record(scenario, law.as_mut(), course, cancelled);
     }
     let law = CraftLaw::of_table(&scenario.vehicle, accepted).map_err(|error| refused(error.to_string()))?;
     let mut flying = TableLaw::hovering(&law, scenario.vehicle.hover_thrust_n())

@@ -2,14 +2,12 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyString;
-use quatrack::cascade::{Air, CascadeLimits};
 use quatrack::gains::ConstantGain;
 use quatrack::gains::paper;
-use quatrack::gains::table::{CascadeTable, GainTable as CoreTable};
+use quatrack::gains::table::GainTable as CoreTable;
 use quatrack::{Actuation, Cascade, Controller, ErrorForm, FeedForward, Limits, Memory, Rate, Settings};
 use quatrack_design::vehicle::Vehicle;
-use quatrack_simulation::flight::motor_laws::FlightError;
-use quatrack_simulation::scenario::{ToldFigures, actuation_of, actuator_aware_of, cascade_of};
+use quatrack_simulation::scenario::{ToldFigures, actuation_of, actuator_aware_of, cascade_of, cascade_of_table};
 use quatrack_simulation::vehicles;
 
 use crate::error::refused;
@@ -60,20 +58,6 @@ impl Options<'_, '_> {
         let told = vehicle::told(&vehicle, self.mass_kg, self.lag_s, self.drag_per_s, self.moment_n_m_per_m_s);
         Ok(Some((vehicle, told)))
     }
-}
-
-/// The cascade of a table on its vehicle, told of other air than the table's where something is said of it.
-pub(crate) fn cascade_of_table(
-    table: &CascadeTable,
-    rate: Rate,
-    vehicle: &Vehicle,
-    told: &ToldFigures,
-) -> Result<Cascade, FlightError> {
-    let board = actuation_of(vehicle, told, f64::from(table.motor_lag_s), rate)?;
-    let drag_per_s = told.drag_per_s.map_or(table.air.drag_per_s, |drag| drag as f32);
-    let moment_n_s = told.moment_n_m_per_m_s.map_or(table.air.moment_n_s, |moment| moment.map(|share| share as f32));
-    let air = Air { drag_per_s, moment_n_s, ..table.air }.checked()?;
-    Ok(table.flown(board.airframe(), rate, &CascadeLimits::STANDARD, &air)?)
 }
 
 /// As every law by its name flies here and in simulation.
@@ -175,7 +159,7 @@ impl OwnedLaw {
             (None, _) => None,
             (Some(_), None) => return Err(refused(format!("{}: it gives motor forces; name a vehicle", head.name))),
             (Some(table), Some((vehicle, told))) => {
-                Some(Box::new(cascade_of_table(table, head.rate, vehicle, told).map_err(refused)?))
+                Some(Box::new(cascade_of_table(vehicle, told, table).map_err(refused)?))
             }
         };
         let actuation = match &craft {

@@ -25,6 +25,7 @@ pub struct Air {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum AirError {
     /// Drag outside 0 to [`Air::DRAG_MAX_PER_S`].
     Drag {

@@ -84,7 +84,7 @@ pub(super) struct SeenAir {
     products: [f32; 3],
     squares: [f32; 3],
     /// Steps until the next update.
-    wait: u8,
+    pub(super) wait: u8,
 }
 
 /// What an update looks at.
@@ -144,8 +144,8 @@ impl AirLearner {
     /// The air that is flown with.
     pub(super) const fn now(&self, seen: &SeenAir) -> Coefficients {
         match seen.learned {
-            Some(learned) => learned,
-            None => self.told,
+            Some(learned) if self.learn => learned,
+            _ => self.told,
         }
     }
 

@@ -146,6 +146,21 @@ impl CascadeGains {
         ]
     }
 
+    /// Stiffer or softer in position by a factor, as [`super::Cascade::with_stiffness`] flies them.
+    pub const fn scaled(&self, factor: f32) -> Self {
+        let Self { height, roll, pitch, yaw } = *self;
+        Self {
+            height: HeightGains {
+                position: height.position * factor * factor,
+                velocity: height.velocity * factor,
+                ..height
+            },
+            roll: TiltGains { position: roll.position * factor * factor, velocity: roll.velocity * factor, ..roll },
+            pitch: TiltGains { position: pitch.position * factor * factor, velocity: pitch.velocity * factor, ..pitch },
+            yaw,
+        }
+    }
+
     /// Of height.
     pub const fn height(&self) -> &HeightGains {
         &self.height

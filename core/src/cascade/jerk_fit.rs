@@ -11,7 +11,9 @@ const KEPT: usize = 8;
 /// The last jerks, newest first, dated.
 #[derive(Clone, Copy, Debug)]
 pub struct JerkFit {
-    jerks: [Vector3<f32>; KEPT],
+    x: [f32; KEPT],
+    y: [f32; KEPT],
+    z: [f32; KEPT],
     /// How long before the newest each was, s.
     ages_s: [f32; KEPT],
     count: u8,
@@ -19,7 +21,7 @@ pub struct JerkFit {
 
 impl JerkFit {
     /// None yet.
-    pub const NONE: Self = Self { jerks: [Vector3::new(0.0, 0.0, 0.0); KEPT], ages_s: [0.0; KEPT], count: 0 };
+    pub const NONE: Self = Self { x: [0.0; KEPT], y: [0.0; KEPT], z: [0.0; KEPT], ages_s: [0.0; KEPT], count: 0 };
 
     /// Forgets the jerks: before a motion that does not continue the last one.
     pub const fn forget(&mut self) {
@@ -28,10 +30,10 @@ impl JerkFit {
 
     /// Takes a jerk (m/s^3), so many seconds after the last one.
     pub fn accept(&mut self, jerk_m_s3: &Vector3<f32>, after_s: f32) {
-        let [a, b, c, d, e, f, g, _] = self.jerks;
-        self.jerks = [*jerk_m_s3, a, b, c, d, e, f, g];
-        let [s, t, u, v, w, x, y, _] = self.ages_s.map(|age| age + after_s);
-        self.ages_s = [0.0, s, t, u, v, w, x, y];
+        self.x = pushed(jerk_m_s3.x, &self.x);
+        self.y = pushed(jerk_m_s3.y, &self.y);
+        self.z = pushed(jerk_m_s3.z, &self.z);
+        self.ages_s = pushed(0.0, &self.ages_s.map(|age| age + after_s));
         if usize::from(self.count) < KEPT {
             self.count += 1;
         }
@@ -40,38 +42,44 @@ impl JerkFit {
     /// Snap (m/s^4) at the newest setpoint and crackle (m/s^5); zero as long as there are too few jerks, 2 and 3.
     pub fn snap_and_crackle(&self) -> [Vector3<f32>; 2] {
         let zero = Vector3::new(0.0, 0.0, 0.0);
-        let kept = || self.jerks.iter().zip(&self.ages_s).take(usize::from(self.count));
-        // Powers of time, in units of its mean square: all sums are then of the size of the count.
-        let square = kept().fold(0.0, |sum, (_, age)| sum + age * age);
-        if square.is_nan() || square <= 1e-8 {
+        let count = usize::from(self.count);
+        let oldest_s = self.ages_s.get(count.wrapping_sub(1)).copied().unwrap_or(0.0);
+        if oldest_s.is_nan() || oldest_s <= 1e-4 {
             return [zero; 2];
         }
-        let per = 1.0 / crate::math::sqrt(square / f32::from(self.count));
-        let (mut s0, mut s1, mut s2, mut s3, mut s4) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        let (mut b0, mut b1, mut b2) = (zero, zero, zero);
-        for (jerk, age) in kept() {
+        // Powers of time, in units of half the oldest age: all sums are then of the size of the count.
+        let per = 2.0 / oldest_s;
+        let (mut s1, mut s2, mut s3, mut s4) = (0.0, 0.0, 0.0, 0.0);
+        let (mut bx, mut by, mut bz) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+        for ((age, x), (y, z)) in self.ages_s.iter().zip(&self.x).zip(self.y.iter().zip(&self.z)).take(count) {
             let t = -age * per;
             let t2 = t * t;
-            (s0, s1, s2, s3, s4) = (s0 + 1.0, s1 + t, s2 + t2, s3 + t * t2, s4 + t2 * t2);
-            let j = [jerk.x, jerk.y, jerk.z];
-            for ((sum0, (sum1, sum2)), j) in b0.iter_mut().zip(b1.iter_mut().zip(b2.iter_mut())).zip(j) {
-                (*sum0, *sum1, *sum2) = (*sum0 + j, *sum1 + t * j, *sum2 + t2 * j);
+            (s1, s2, s3, s4) = (s1 + t, s2 + t2, s3 + t * t2, s4 + t2 * t2);
+            for (sums, j) in [(&mut bx, *x), (&mut by, *y), (&mut bz, *z)] {
+                let [b0, b1, b2] = *sums;
+                *sums = [b0 + j, b1 + t * j, b2 + t2 * j];
             }
         }
         // The mean taken off, two equations for the slope and half the curvature.
-        let mean = 1.0 / s0;
+        let mean = 1.0 / f32::from(self.count);
         let (m11, m12, m22) = (s2 - s1 * s1 * mean, s3 - s1 * s2 * mean, s4 - s2 * s2 * mean);
         let line = 1.0 / m11;
         let rest = m22 - m12 * m12 * line;
-        let curves = self.count >= 3 && rest > 1e-4;
-        let solve = |b0: f32, b1: f32, b2: f32| {
+        let curve = if self.count >= 3 && rest > 1e-4 { 1.0 / rest } else { 0.0 };
+        let solve = |[b0, b1, b2]: [f32; 3]| {
             let (r1, r2) = (b1 - s1 * b0 * mean, b2 - s2 * b0 * mean);
-            let curvature = if curves { (r2 - m12 * r1 * line) / rest } else { 0.0 };
+            let curvature = (r2 - m12 * r1 * line) * curve;
             ((r1 - m12 * curvature) * line * per, 2.0 * curvature * per * per)
         };
-        let (x, y, z) = (solve(b0.x, b1.x, b2.x), solve(b0.y, b1.y, b2.y), solve(b0.z, b1.z, b2.z));
+        let (x, y, z) = (solve(bx), solve(by), solve(bz));
         [Vector3::new(x.0, y.0, z.0), Vector3::new(x.1, y.1, z.1)]
     }
+}
+
+/// A value put before others, of which the last falls out.
+#[inline(always)]
+fn pushed(newest: f32, [a, b, c, d, e, f, g, _]: &[f32; KEPT]) -> [f32; KEPT] {
+    [newest, *a, *b, *c, *d, *e, *f, *g]
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ pub struct CascadeLimits {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum CascadeLimitsError {
     /// Speed outside 0.1 to 10 m/s.
     Speed {

@@ -56,6 +56,8 @@ pub(super) struct Seen {
     pub(super) body_velocity: [f32; 2],
     /// Whether the craft was where it was sent, with motors within their range.
     pub(super) undisturbed: bool,
+    /// Half the rotation from the attitude that was wanted, body frame, rad.
+    pub(super) half_rotation: [f32; 3],
 }
 
 impl CascadeMemory {
@@ -88,6 +90,7 @@ impl CascadeMemory {
                 wanted: zero,
                 body_velocity: [0.0; 2],
                 undisturbed: false,
+                half_rotation: [0.0; 3],
             },
         }
     }
@@ -113,9 +116,25 @@ impl CascadeMemory {
         self.ground = Ground::STANDING;
     }
 
+    /// Whether the next look of the observers takes longer than others: every 10 ms they look at the air.
+    pub const fn is_air_due(&self) -> bool {
+        self.air.wait == 0 && matches!(self.ground, Ground::Flying { .. })
+    }
+
     /// Whether the craft is taken to stand, or to be held.
     pub fn stands(&self) -> bool {
         self.ground.is_standing()
+    }
+
+    /// Rotation vector from the attitude that the last step wanted to the craft's, body frame, rad.
+    pub fn rotation_error_rad(&self) -> Vector3<f32> {
+        let [x, y, z] = self.seen.half_rotation;
+        Vector3::new(2.0 * x, 2.0 * y, 2.0 * z)
+    }
+
+    /// Force of the motors over what they are told, as the flight shows it.
+    pub fn motor_share(&self) -> f32 {
+        self.motors.share
     }
 
     /// The disturbance that is seen: x and y in the world frame and along the thrust, m/s^2.

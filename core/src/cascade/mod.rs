@@ -62,6 +62,7 @@ use crate::actuation::Actuation;
 use crate::airframe::Airframe;
 use crate::clock::Rate;
 use crate::error::{StateError, StepError};
+use crate::flatness::GRAVITY_M_S2;
 use crate::law::difference;
 use crate::mixer::{MotorLimited, Parts};
 use crate::motor_lag::{MotorForces, MotorLagError};
@@ -93,6 +94,23 @@ pub struct CascadeInput<'a> {
     pub sample: &'a FifthOrderSample,
     /// The reference's heading.
     pub heading: Heading,
+    /// Which directions of it are followed.
+    pub followed: Followed,
+}
+
+/// Which directions of a reference are followed. Where one is not, a pilot flies the craft: there is no error, no known air and no
+/// observer that answers, and the reference's acceleration is what was asked of tilt or thrust.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Followed {
+    /// Over the ground.
+    pub across: bool,
+    /// Up and down.
+    pub height: bool,
+}
+
+impl Followed {
+    /// All of them.
+    pub const ALL: Self = Self { across: true, height: true };
 }
 
 impl Cascade {
@@ -196,17 +214,27 @@ impl Cascade {
 
         let (standing, disturbance, air) =
             (memory.ground.is_standing(), &memory.disturbance, self.air_learner.now(&memory.air));
-        let around = Surroundings {
-            air: if standing { air.without_moment() } else { air },
-            disturbance: disturbance.across,
-            slope: disturbance.slope,
-            wind: memory.air.wind,
-            approach,
+        let Followed { across, height } = input.followed;
+        let around = if across {
+            Surroundings {
+                air: if standing { air.without_moment() } else { air },
+                disturbance: disturbance.across,
+                slope: disturbance.slope,
+                wind: memory.air.wind,
+                approach,
+            }
+        } else {
+            Surroundings::STILL
         };
         let reference = InAir::of(input.sample, input.heading, &around, now.attitude, self.airframe()).ok()?;
 
-        let correction = self.outer.correction(&position, &velocity, standing);
-        let wanted = self.outer.limited(&reference.acceleration, &correction);
+        let wanted = if height {
+            let correction = self.outer.correction(&position, &velocity, across && !standing);
+            self.outer.limited(&reference.acceleration, &correction)
+        } else {
+            let a = &reference.acceleration;
+            Vector3::new(a.x, a.y, a.z + GRAVITY_M_S2)
+        };
 
         let axis = now.attitude.thrust_axis();
         let [p, q, r] = reference.body_rates;
@@ -216,11 +244,13 @@ impl Cascade {
             body_rates: [w.x - p, w.y - q, w.z - r],
             imbalance: memory.imbalance.parts,
         };
-        let along = axis.x * wanted.x + axis.y * wanted.y + axis.z * wanted.z;
-        let drag_apart = air.drag * (self.drag_along_share - 1.0);
-        let v = &now.velocity;
-        let moved = drag_apart * (axis.x * v.x + axis.y * v.y + axis.z * v.z);
-        let thrust = self.airframe().mixing.quarter_mass_kg * (along - disturbance.along + moved);
+        let mut along = axis.x * wanted.x + axis.y * wanted.y + axis.z * wanted.z;
+        if height {
+            let drag_apart = air.drag * (self.drag_along_share - 1.0);
+            let v = &now.velocity;
+            along = along - disturbance.along + drag_apart * (axis.x * v.x + axis.y * v.y + axis.z * v.z);
+        }
+        let thrust = self.airframe().mixing.quarter_mass_kg * along;
         let MotorYield { share, inverse } = memory.motors;
         let forces = turned(&parts_of(forces_n), share);
         let asked = self.inner.commands(thrust, [&reference.forces, &reference.commands], &forces, &errors);
@@ -237,7 +267,8 @@ impl Cascade {
             answer: reference.answer,
             wanted: flat.velocity_m_s,
             body_velocity: reference.body_velocity,
-            undisturbed: !(far || limited.any()),
+            undisturbed: across && !(far || limited.any()),
+            half_rotation: errors.half_rotation,
         };
         memory.coming = middle(&forces, &turned(&parts_of(forces_n), share));
         (memory.carried, memory.held, memory.approach) = (carried, held, approach);

@@ -52,6 +52,17 @@ impl Approach {
     pub(super) const NONE: Self = Self { velocity: [0.0; 2], acceleration: [0.0; 2] };
 }
 
+impl Surroundings {
+    /// Nothing.
+    pub(super) const STILL: Self = Self {
+        air: Coefficients { drag: 0.0, moment: [0.0; 2] },
+        disturbance: [0.0; 2],
+        slope: [0.0; 2],
+        wind: [0.0; 2],
+        approach: Approach::NONE,
+    };
+}
+
 /// The reference as the loop takes it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InAir {
@@ -197,13 +208,7 @@ mod tests {
         (sample.flat.velocity_m_s, sample.flat.acceleration_m_s2) =
             (Vector3::new(1.0, 2.0, 0.5), Vector3::new(3.0, 1.0, 2.0));
         (sample.flat.jerk_m_s3, sample.snap_m_s4) = (Vector3::new(4.0, -5.0, 6.0), Vector3::new(7.0, 8.0, -9.0));
-        let still = Surroundings {
-            air: Coefficients { drag: 0.0, moment: [0.0; 2] },
-            disturbance: [0.0; 2],
-            slope: [0.0; 2],
-            wind: [0.0; 2],
-            approach: Approach::NONE,
-        };
+        let still = Surroundings::STILL;
         let craft = Airframe::CRAZYFLIE_2_1;
         let found = InAir::of(&sample, Heading::ZERO, &still, Quaternion::IDENTITY, &craft).unwrap();
         let wanted = crate::MotorReference::from_flat(&sample, &craft).unwrap();

@@ -77,6 +77,29 @@ impl<'a> Controller<'a> {
     #[inline(always)]
     pub fn step(&self, memory: &mut Memory, measured: Measured<'_>, target: Target<'_>) -> Result<Output, StepError> {
         match &self.law {
+            #[cfg(feature = "cascade")]
+            Law::Cascade(law) => {
+                let output = cascade(law, memory, measured, target)?;
+                law.observe(&mut memory.cascade, measured.specific_force_m_s2);
+                Ok(output)
+            }
+            _ => self.step_unobserved(memory, measured, target),
+        }
+    }
+
+    /// The same but for what the law looks at once the motors have their forces: for a caller with little time at the step, who
+    /// calls [`Self::observe`] before the next one.
+    ///
+    /// # Errors
+    /// As [`Self::step`].
+    #[inline(always)]
+    pub fn step_unobserved(
+        &self,
+        memory: &mut Memory,
+        measured: Measured<'_>,
+        target: Target<'_>,
+    ) -> Result<Output, StepError> {
+        match &self.law {
             Law::Equilibrium(_) => registers::equilibrium(self, measured.state, target.reference),
             Law::FlatOutput(_) => registers::flat_output(self, measured.state, target.reference),
             Law::IntegralAction(law) => integral(law, &self.limits, memory, measured, target),
@@ -89,6 +112,18 @@ impl<'a> Controller<'a> {
             #[cfg(feature = "cascade")]
             Law::Cascade(law) => cascade(law, memory, measured, target),
         }
+    }
+
+    /// What follows [`Self::step_unobserved`], with the accelerometer's specific force in the body frame, m/s^2: observers, where
+    /// the law has any.
+    #[inline(always)]
+    pub fn observe(&self, memory: &mut Memory, specific_force_m_s2: Option<&Vector3<f32>>) {
+        #[cfg(feature = "cascade")]
+        if let Law::Cascade(law) = &self.law {
+            law.observe(&mut memory.cascade, specific_force_m_s2);
+        }
+        #[cfg(not(feature = "cascade"))]
+        let _ = (memory, specific_force_m_s2);
     }
 
     /// Motor forces for what a step gave, at the body rates that it was taken on; those of a law that gives forces as they
@@ -196,9 +231,9 @@ fn cascade(
 ) -> Result<Output, StepError> {
     let Some(body_rates_rad_s) = measured.body_rates_rad_s else { return Err(StepError::NoBodyRates) };
     let Some((sample, heading)) = target.sample else { return Err(StepError::NoSample) };
-    let input = CascadeInput { state: measured.state, body_rates_rad_s, sample, heading };
+    let input = CascadeInput { state: measured.state, body_rates_rad_s, sample, heading, followed: target.followed };
     let Memory { forces_n, cascade, .. } = memory;
-    let (forces_n, limited) = law.step(cascade, forces_n, &input, measured.specific_force_m_s2)?;
+    let (forces_n, limited) = law.command(cascade, forces_n, &input)?;
     Ok(Output::Forces(MotorStep { forces_n, limited }))
 }
 

@@ -3,6 +3,8 @@
 use nalgebra::Vector3;
 
 #[cfg(feature = "cascade")]
+use crate::cascade::Followed;
+#[cfg(feature = "cascade")]
 use crate::command::Command;
 #[cfg(feature = "cascade")]
 use crate::motor_reference::FifthOrderSample;
@@ -79,6 +81,8 @@ pub struct Target<'a> {
     pub(crate) progress: Option<Progress>,
     #[cfg(feature = "cascade")]
     pub(crate) sample: Option<(&'a FifthOrderSample, Heading)>,
+    #[cfg(feature = "cascade")]
+    pub(crate) followed: Followed,
 }
 
 impl<'a> Target<'a> {
@@ -91,6 +95,8 @@ impl<'a> Target<'a> {
             progress: None,
             #[cfg(feature = "cascade")]
             sample: None,
+            #[cfg(feature = "cascade")]
+            followed: Followed::ALL,
         }
     }
 
@@ -113,6 +119,13 @@ impl<'a> Target<'a> {
     #[inline]
     pub const fn and_sample(self, sample: &'a FifthOrderSample, heading: Heading) -> Self {
         Self { sample: Some((sample, heading)), ..self }
+    }
+
+    #[cfg(feature = "cascade")]
+    /// Of a sample, these directions alone: the rest is flown by a pilot.
+    #[inline]
+    pub const fn following(self, followed: Followed) -> Self {
+        Self { followed, ..self }
     }
 
     /// Where on which trajectory that is, for gains that change along one; without it they are those of its end.

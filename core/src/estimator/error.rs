@@ -59,6 +59,7 @@ impl EstimatorFigure {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum EstimatorError {
     /// A figure is not a number or not within its range. The estimate stays as it was.
     OutOfRange {

@@ -19,18 +19,28 @@ typedef struct {
   uint8_t bytes[30];
 } quatrackPacket_t;
 
-/* Set by the owner; a value out of range counts as the nearest one in it. */
+/* Set by the owner; a value out of range counts as the nearest one in it. One that is no number is put back to its default: as
+ * switched on the seven from dragPerS on are none, and get the craft's own figures once the app has said which craft this is. */
 typedef struct {
-  float positionScale;    /* factor on the feedback of thrust, roll and pitch, within scaleMin..scaleMax */
-  float yawScale;         /* factor on the feedback about the vertical, likewise */
-  float leashM;           /* farthest error that is acted on, 0.1..10: metres, and metres a second */
+  float positionScale;    /* stiffness of the cascade in position, 0.5..1.3; of the paper's laws a factor on the feedback of
+                             thrust, roll and pitch, within scaleMin..scaleMax */
+  float yawScale;         /* factor on the paper's laws' feedback about the vertical, likewise */
+  float leashM;           /* farthest error that the paper's laws act on, 0.1..10: metres, and metres a second */
   float speedMS;          /* largest speed of a velocity setpoint, 0.1..5 */
   float accelerationMS2;  /* its largest acceleration, 0.5..10 */
   float rollPitchRateRadS; /* largest roll and pitch rate that the body-rate loop is asked for, 0.5..100 */
   float yawRateRadS;      /* largest yaw rate, likewise */
   float motorLagS;        /* time constant of this craft's motors as you know it; 0: only what is published is known */
-  uint8_t table;          /* 0 actuator-aware, 1 LYAP-E, 2 LQR-E, 3 LYAP-F, 4 LQR-F, 5 the one sent last */
+  float dragPerS;         /* linear drag over mass, 0..1 1/s */
+  float momentXNS;        /* airflow moment about body x over the velocity along y, 0..0.002 N s */
+  float momentYNS;        /* the same about y, along x */
+  float gust;             /* share of the wind's moment that is told from the accelerometer and fed forward, 0..1 */
+  float goalSpeedMS;      /* speed over ground at which the cascade makes a position error good, 0.1..10 */
+  float goalClimbMS;      /* the same up and down */
+  float tiltDeg;          /* its largest tilt on the way, 6..75 degrees; a trajectory that tilts farther may */
+  uint8_t table;          /* 0 the cascade, 1 LYAP-E, 2 LQR-E, 3 LYAP-F, 4 LQR-F, 5 the one sent last */
   uint8_t feedForward;    /* whether the paper's laws are fed forward */
+  uint8_t learn;          /* whether drag and moment are corrected by what the flight shows */
 } quatrackParameters_t;
 
 typedef struct {
@@ -42,16 +52,27 @@ typedef struct {
   uint8_t mode;             /* 0 off, 1 flying, 2 descending, 3 blind, 4 no craft */
   uint8_t table;            /* in use */
   uint16_t badStates;       /* steps on estimates that nothing can be flown on: motors off */
-  uint16_t badSetpoints;    /* setpoints that make no sense: level and slowly down */
+  uint16_t badSetpoints;    /* setpoints that make no sense: to rest and slowly down */
   uint16_t limitedSteps;    /* steps that gave something up */
   uint16_t jumps;           /* setpoints that were not where the ones before led */
   uint16_t refusedTables;   /* tables asked for or sent that are not flown */
   uint16_t refusal;         /* why: 1 no such table, 2 none sent, 3 motor lag, 4 unsound, 5 vehicle or rate, 6 law */
+  uint16_t putBack;         /* parameters that were no numbers and got their defaults back */
+  uint16_t parameter;       /* which was the last, counted from 1 as they are above */
 } quatrackLog_t;
+
+/* What the cascade flies with, as the flight has shown it. */
+typedef struct {
+  float dragPerS;           /* 1/s */
+  float momentNS[2];        /* N s */
+  float motorShare;         /* force of the motors over what they are told */
+  float disturbanceMS2[3];  /* x and y, world frame, and along the thrust */
+  float stands;             /* 1: taken to stand or to be held */
+} quatrackLearned_t;
 
 /* Read-only. */
 typedef struct {
-  float scaleMin;   /* what the certificate of the table in use allows */
+  float scaleMin;   /* the factors that are taken with the table in use */
   float scaleMax;
   float gains[19];  /* thrust from z, vz, force, integral; roll from y, vy, rotation, rate, force, integral; pitch from x
                        likewise; yaw from rotation, rate, force. 0 where the law has none */
@@ -60,6 +81,7 @@ typedef struct {
 typedef struct {
   quatrackParameters_t parameters;
   quatrackLog_t log;
+  quatrackLearned_t learned;
   quatrackGains_t gains;
 } quatrack_t;
 

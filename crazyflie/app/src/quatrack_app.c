@@ -19,10 +19,28 @@
 
 #define PERIOD_MS 20
 
-_Static_assert(sizeof(quatrackParameters_t) == 36, "as in shared.rs");
-_Static_assert(sizeof(quatrackLog_t) == 38, "as in shared.rs");
-_Static_assert(sizeof(quatrack_t) == 160, "as in shared.rs");
+_Static_assert(sizeof(quatrackParameters_t) == 64, "as in shared.rs");
+_Static_assert(sizeof(quatrackLog_t) == 42, "as in shared.rs");
+_Static_assert(sizeof(quatrack_t) == 224, "as in shared.rs");
 _Static_assert(APPCHANNEL_MTU == sizeof(((quatrackPacket_t *)0)->bytes), "as in upload.rs");
+
+/* As in quatrackParameters_t. */
+static const char *const floats[] = {
+  "posScale", "yawScale", "leash", "speedMax", "accMax", "rpRateMax", "yawRateMax", "motorLag",
+  "drag", "momentX", "momentY", "gust", "speed", "climb", "tilt",
+};
+
+/* Says which parameter was no number. */
+static void sayWhatWasPutBack(void)
+{
+  static uint16_t said;
+  const uint16_t putBack = quatrack.log.putBack;
+  const unsigned index = quatrack.log.parameter - 1u;
+  if (putBack != said && index < sizeof(floats) / sizeof(floats[0])) {
+    DEBUG_PRINT("quatrack.%s was no number: back to its default\n", floats[index]);
+  }
+  said = putBack;
+}
 
 void appMain(void)
 {
@@ -43,6 +61,7 @@ void appMain(void)
   while (1) {
     quatrackPacket_t packet, answer;
     quatrackService();
+    sayWhatWasPutBack();
     packet.length = (uint8_t)appchannelReceiveDataPacket(packet.bytes, sizeof(packet.bytes), PERIOD_MS);
     if (packet.length > 0) {
       memset(&answer, 0, sizeof(answer));
@@ -52,15 +71,27 @@ void appMain(void)
   }
 }
 
+/* What belongs to a craft can be stored on it. */
+#define OWN_FLOAT (PARAM_FLOAT | PARAM_PERSISTENT)
+#define OWN_UINT8 (PARAM_UINT8 | PARAM_PERSISTENT)
+
 PARAM_GROUP_START(quatrack)
-PARAM_ADD(PARAM_UINT8, table, &quatrack.parameters.table)
-PARAM_ADD(PARAM_FLOAT, posScale, &quatrack.parameters.positionScale)
-PARAM_ADD(PARAM_FLOAT, yawScale, &quatrack.parameters.yawScale)
-PARAM_ADD(PARAM_FLOAT, motorLag, &quatrack.parameters.motorLagS)
+PARAM_ADD(OWN_UINT8, table, &quatrack.parameters.table)
+PARAM_ADD(OWN_FLOAT, posScale, &quatrack.parameters.positionScale)
+PARAM_ADD(OWN_FLOAT, yawScale, &quatrack.parameters.yawScale)
+PARAM_ADD(OWN_FLOAT, motorLag, &quatrack.parameters.motorLagS)
+PARAM_ADD(OWN_FLOAT, drag, &quatrack.parameters.dragPerS)
+PARAM_ADD(OWN_FLOAT, momentX, &quatrack.parameters.momentXNS)
+PARAM_ADD(OWN_FLOAT, momentY, &quatrack.parameters.momentYNS)
+PARAM_ADD(OWN_FLOAT, gust, &quatrack.parameters.gust)
+PARAM_ADD(OWN_UINT8, learn, &quatrack.parameters.learn)
+PARAM_ADD(OWN_FLOAT, speed, &quatrack.parameters.goalSpeedMS)
+PARAM_ADD(OWN_FLOAT, climb, &quatrack.parameters.goalClimbMS)
+PARAM_ADD(OWN_FLOAT, tilt, &quatrack.parameters.tiltDeg)
 PARAM_ADD(PARAM_UINT8, feedForward, &quatrack.parameters.feedForward)
-PARAM_ADD(PARAM_FLOAT, leash, &quatrack.parameters.leashM)
-PARAM_ADD(PARAM_FLOAT, speedMax, &quatrack.parameters.speedMS)
-PARAM_ADD(PARAM_FLOAT, accMax, &quatrack.parameters.accelerationMS2)
+PARAM_ADD(OWN_FLOAT, leash, &quatrack.parameters.leashM)
+PARAM_ADD(OWN_FLOAT, speedMax, &quatrack.parameters.speedMS)
+PARAM_ADD(OWN_FLOAT, accMax, &quatrack.parameters.accelerationMS2)
 PARAM_ADD(PARAM_FLOAT, rpRateMax, &quatrack.parameters.rollPitchRateRadS)
 PARAM_ADD(PARAM_FLOAT, yawRateMax, &quatrack.parameters.yawRateRadS)
 PARAM_ADD(PARAM_FLOAT | PARAM_RONLY, scaleMin, &quatrack.gains.scaleMin)
@@ -116,4 +147,18 @@ LOG_ADD(LOG_UINT16, limitedSteps, &quatrack.log.limitedSteps)
 LOG_ADD(LOG_UINT16, jumps, &quatrack.log.jumps)
 LOG_ADD(LOG_UINT16, refused, &quatrack.log.refusedTables)
 LOG_ADD(LOG_UINT16, refusal, &quatrack.log.refusal)
+LOG_ADD(LOG_UINT16, putBack, &quatrack.log.putBack)
+LOG_ADD(LOG_UINT16, parameter, &quatrack.log.parameter)
 LOG_GROUP_STOP(quatrackN)
+
+/* What the flight has shown of the air, the motors and what pushes the craft. */
+LOG_GROUP_START(quatrackA)
+LOG_ADD(LOG_FLOAT, drag, &quatrack.learned.dragPerS)
+LOG_ADD(LOG_FLOAT, momentX, &quatrack.learned.momentNS[0])
+LOG_ADD(LOG_FLOAT, momentY, &quatrack.learned.momentNS[1])
+LOG_ADD(LOG_FLOAT, motors, &quatrack.learned.motorShare)
+LOG_ADD(LOG_FLOAT, pushX, &quatrack.learned.disturbanceMS2[0])
+LOG_ADD(LOG_FLOAT, pushY, &quatrack.learned.disturbanceMS2[1])
+LOG_ADD(LOG_FLOAT, pushT, &quatrack.learned.disturbanceMS2[2])
+LOG_ADD(LOG_FLOAT, stands, &quatrack.learned.stands)
+LOG_GROUP_STOP(quatrackA)

@@ -1,10 +1,10 @@
 //! The tables in the image with what their certificates say.
 
-#[rustfmt::skip]
-mod motor_gains;
 mod paper_limits;
 
-use quatrack::law::ActuatorAwareGain;
+use quatrack::CascadeGains;
+use quatrack::gains::cascade as tables;
+use quatrack::gains::table::BuiltInCascade;
 
 pub(crate) use paper_limits::{LQR_E, LQR_F, LYAP_E, LYAP_F};
 
@@ -12,29 +12,45 @@ pub(crate) use paper_limits::{LQR_E, LQR_F, LYAP_E, LYAP_F};
 /// the longest lag of the motors, s, with which it is flown.
 pub(crate) type Certified = (f32, f32);
 
-/// A gain for motor forces with what it is certified for.
+/// Gains of a cascade with what they are certified for.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Design {
-    /// The gain.
-    pub(crate) gain: ActuatorAwareGain,
-    /// Shortest and longest lag of the motors, s, that it flies with where its owner states it.
-    pub(crate) stated_s: [f32; 2],
-    /// The factor by which its feedback may be off.
-    pub(crate) margin: f32,
+pub(crate) struct Cascade {
+    /// The gains.
+    pub(crate) gains: CascadeGains,
+    /// The lag of the motors that they were designed for, s.
+    pub(crate) lag_s: f32,
+    /// Longest lag of the motors, s, with which they fly where the owner states it.
+    pub(crate) stated_to_s: f32,
+    /// Whether they fly with the stated lag, off by a quarter, or with that of their design, which serves true lags of 50 to
+    /// 126 ms.
+    pub(crate) as_stated: bool,
 }
 
-/// For each of [`crate::craft::KNOWN`], for the shortest lags first; the last one also where none is stated.
-pub(crate) static ACTUATOR_AWARE: [[Design; 3]; 3] =
-    [motor_gains::CRAZYFLIE_2_1, motor_gains::CRAZYFLIE_2_1_UPGRADE_KIT, motor_gains::CRAZYFLIE_2_1_BRUSHLESS];
+/// Shortest lag of the motors, s, that an owner may state.
+pub(crate) const STATED_FROM_S: f32 = 0.004;
 
-/// Lag (s) that the last one of each craft flies with where none is stated, and the factor by which its feedback may be off
-/// then.
-pub(crate) const ANY_LAG: [(f32, f32); 3] = [
-    motor_gains::CRAZYFLIE_2_1_ANY,
-    motor_gains::CRAZYFLIE_2_1_UPGRADE_KIT_ANY,
-    motor_gains::CRAZYFLIE_2_1_BRUSHLESS_ANY,
+/// For each of [`crate::craft::KNOWN`]: the gains for stated lags, the shortest first, and those that are flown where none is
+/// stated.
+pub(crate) static CASCADES: [([Cascade; 3], Cascade); 3] = [
+    (by_lag(&tables::CRAZYFLIE_2_1, [0.036, 0.08, 0.126]), unstated(&tables::CRAZYFLIE_2_1_DEFAULT)),
+    (by_lag(&tables::UPGRADE_KIT, [0.036, 0.08, 0.126]), unstated(&tables::UPGRADE_KIT_DEFAULT)),
+    (
+        {
+            let [short, known, long] = by_lag(&tables::BRUSHLESS, [0.032, 0.07, 0.126]);
+            [short, known, Cascade { as_stated: false, ..long }]
+        },
+        unstated(&tables::BRUSHLESS_DEFAULT),
+    ),
 ];
 
-/// Vehicle id of each.
-pub(crate) const IDS: [u32; 3] =
-    [motor_gains::CRAZYFLIE_2_1_ID, motor_gains::CRAZYFLIE_2_1_UPGRADE_KIT_ID, motor_gains::CRAZYFLIE_2_1_BRUSHLESS_ID];
+const fn by_lag([a, b, c]: &[BuiltInCascade; 3], [to_a_s, to_b_s, to_c_s]: [f32; 3]) -> [Cascade; 3] {
+    [cascade(a, to_a_s), cascade(b, to_b_s), cascade(c, to_c_s)]
+}
+
+const fn unstated(table: &BuiltInCascade) -> Cascade {
+    cascade(table, table.table.motor_lag_s)
+}
+
+const fn cascade(BuiltInCascade { table, .. }: &BuiltInCascade, stated_to_s: f32) -> Cascade {
+    Cascade { gains: table.gains, lag_s: table.motor_lag_s, stated_to_s, as_stated: true }
+}

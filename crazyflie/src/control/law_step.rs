@@ -1,7 +1,7 @@
 //! One step of one table's controller: sample or reference, and state in; the output, into the outcome.
 
 use quatrack::{
-    FifthOrderSample, Handover, Heading, Measured, Memory, MotorReference, Output as LawOutput, Quaternion, Reference,
+    FifthOrderSample, Followed, Handover, Heading, Measured, Memory, Output as LawOutput, Quaternion, Reference,
     ReferenceError, RigidState, StepError, Target,
 };
 
@@ -26,8 +26,11 @@ impl From<ReferenceError> for Unflown {
 }
 
 impl From<StepError> for Unflown {
-    fn from(_: StepError) -> Self {
-        Self::State
+    fn from(error: StepError) -> Self {
+        match error {
+            StepError::Singular => Self::Motion,
+            _ => Self::State,
+        }
     }
 }
 
@@ -37,6 +40,7 @@ pub(super) struct LawStep<'a> {
     pub(super) settings: &'a Settings,
     pub(super) sample: &'a FifthOrderSample,
     pub(super) heading: Heading,
+    pub(super) followed: Followed,
     pub(super) state: &'a RigidState,
 }
 
@@ -44,8 +48,11 @@ impl LawStep<'_> {
     /// Steps the law of a table.
     #[inline(always)]
     pub(super) fn step(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<(), Unflown> {
-        if table.gain.gives_forces() {
-            self.to_motors(table, memory, outcome)
+        if table.gives_forces() {
+            match &self.controlled(table, memory, self.sampled()) {
+                Ok(output) => self.put(output, Quaternion::IDENTITY, outcome),
+                Err(error) => Err(Unflown::from(*error)),
+            }
         } else {
             self.by_rates(table, memory, outcome)
         }
@@ -77,27 +84,12 @@ impl LawStep<'_> {
     /// in one step is then that of one.
     #[inline(never)]
     fn output(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<LawOutput, Unflown> {
-        if table.gain.gives_forces() {
-            let reference = &MotorReference::from_flat_at(self.sample, self.heading, table.actuation.airframe())?;
-            outcome.target = reference.state().attitude;
-            Ok(self.controlled(table, memory, Target::with_forces(reference))?)
-        } else {
-            let reference = &Reference::from_flat_at(&self.sample.flat, self.heading)?;
-            outcome.target = reference.state().attitude;
-            Ok(self.controlled(table, memory, Target::new(reference))?)
+        if table.gives_forces() {
+            return Ok(self.controlled(table, memory, self.sampled())?);
         }
-    }
-
-    #[inline(always)]
-    fn to_motors(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<(), Unflown> {
-        // References are looked at where they lie: to move one out costs as much as the product with a gain.
-        let Ok(reference) = &MotorReference::from_flat_at(self.sample, self.heading, table.actuation.airframe()) else {
-            return Err(Unflown::Motion);
-        };
-        match &self.controlled(table, memory, Target::with_forces(reference)) {
-            Ok(output) => self.put(output, reference.state().attitude, outcome),
-            Err(_) => Err(Unflown::State),
-        }
+        let reference = &Reference::from_flat_at(&self.sample.flat, self.heading)?;
+        outcome.target = reference.state().attitude;
+        Ok(self.controlled(table, memory, Target::new(reference))?)
     }
 
     /// Steps a law of commands on a reference that has to be made.
@@ -115,11 +107,17 @@ impl LawStep<'_> {
         memory: &mut Memory,
         outcome: &mut Outcome,
     ) -> Result<(), Unflown> {
-        // Looked at where it lies, too.
+        // References are looked at where they are: to move one out costs as much as the product with a gain.
         match &self.controlled(table, memory, Target::new(reference)) {
             Ok(output) => self.put(output, reference.state().attitude, outcome),
             Err(_) => Err(Unflown::State),
         }
+    }
+
+    /// The sample, for a law that makes a reference of its own.
+    #[inline(always)]
+    fn sampled(&self) -> Target<'_> {
+        Target::with_sample(self.sample, self.heading).following(self.followed)
     }
 
     /// A step of a table's controller.

@@ -1,74 +1,65 @@
 //! The controller: setpoints, estimates and gyroscope readings at 1 kHz in; thrust and torque, or motor forces, out at
 //! 500 Hz.
 //!
+//! A control step makes an output and does nothing else. The call between takes setpoints, lets the law's observers look, makes
+//! what the next step follows, and does background work.
+//!
 //! A change of the table is faded over [`FADE_STEPS`] control steps, both laws stepping side by side. The stabilizer's
-//! stack is small: what is large lies here and is written in place.
+//! stack is small: what is large is here and is written in place.
 
-mod chores;
+mod ahead;
+mod background;
+mod flight;
 mod law_step;
 mod outcome;
 mod power_on;
 
 use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
-use quatrack::{Command, FifthOrderSample, Handover, Heading, Memory, Quaternion, Reference, RigidState, State};
+use quatrack::{CascadeMemory, Command, FifthOrderSample, Handover, Limits, Memory, Quaternion, RigidState, State};
 
-pub use self::chores::Chore;
-use self::chores::Chores;
+use self::ahead::Ahead;
+use self::background::Background;
+pub use self::background::Work;
+use self::flight::Flight;
 use self::law_step::{LawStep, Unflown};
 pub use self::outcome::{Counters, Mode, Outcome, Settings};
 pub(crate) use self::power_on::CONTROLLER;
 use crate::abi;
 use crate::craft::{Craft, DECIMATION, PERIOD_S};
-use crate::demand::{Demand, Flight, Horizontal, Motion, Turn, Vertical};
-use crate::edge;
-use crate::guide::{Along, Guide};
+use crate::heading::HeadingStream;
+use crate::inbox::{Change, Inbox, News};
 use crate::output::Output;
-use crate::stream::{Arrival, GAP_MAX_MS, Stream};
+use crate::shaping::{Shaped, Shaping};
+use crate::stream::{Arrival, Stream};
 use crate::tables::Table;
-use crate::turning::Turning;
+use crate::units;
 
 /// Control steps that a change of the table takes: a quarter of a second.
 pub const FADE_STEPS: u16 = 125;
 
-/// How fast a craft goes down whose setpoint makes no sense, m/s.
-const DESCENT_M_S: f32 = 0.3;
+/// Time without a control step after which another controller has flown, or nobody, ms.
+const ABSENT_MS: u32 = 25;
 
 /// The controller of a craft.
 ///
-/// In this order: a load of a float reaches a kilobyte from where the controller lies, and what every step looks at is to be
+/// In this order: a load of a float reaches a kilobyte from where the controller is, and what every step looks at is to be
 /// within.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Controller {
-    /// The newest one taken, but for the motion of those that only went on.
-    setpoint: abi::Setpoint,
+    inbox: Inbox,
     stream: Stream,
-    sample: FifthOrderSample,
-    heading: Heading,
-    /// What the sample asks of the paper's laws, and at which step that is still to come.
-    prepared: Option<Reference>,
-    prepared_for: Option<u32>,
-    flight: Option<Flight>,
-    /// When the newest setpoint came that continued it, ms.
-    came_ms: u32,
-    turning: Turning,
-    guide: Guide,
+    headings: HeadingStream,
+    ahead: Ahead,
+    flight: Flight,
+    shaping: Shaping,
     settings: Settings,
     outcome: Outcome,
-    last_step: u32,
-    is_handing_over: bool,
     counters: Counters,
-    mode: Mode,
-    /// The flight goes along the stream.
-    is_along: bool,
-    /// The heading of the newest setpoint is still to be taken.
-    is_turn_due: bool,
-    /// The controller has just been selected.
-    is_selected: bool,
-    /// The last control step could not be flown.
-    is_blind: bool,
-    chores: Chores,
+    /// The last control step; nothing when the controller has just been selected.
+    last_step: Option<u32>,
+    background: Background,
     craft: Craft,
     memory: Memory,
     table: Table,
@@ -80,29 +71,18 @@ pub struct Controller {
 impl Controller {
     /// For a craft, with motors off.
     pub const fn new(craft: Craft, table: Table, settings: Settings) -> Self {
-        const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
         Self {
-            setpoint: abi::Setpoint::OFF,
+            inbox: Inbox::new(),
             stream: Stream::new(),
-            sample: FifthOrderSample::at_rest(ZERO, 0.0),
-            heading: Heading::ZERO,
-            prepared: None,
-            prepared_for: None,
-            flight: None,
-            came_ms: 0,
-            turning: Turning::new(),
-            guide: Guide::new(PERIOD_S),
+            headings: HeadingStream::new(),
+            ahead: Ahead::new(),
+            flight: Flight::NoCraft,
+            shaping: Shaping::new(PERIOD_S),
             settings,
             outcome: Outcome::OFF,
-            last_step: 0,
-            is_handing_over: false,
             counters: Counters { bad_states: 0, bad_setpoints: 0, limited_steps: 0, jumps: 0 },
-            mode: Mode::NoCraft,
-            is_along: false,
-            is_turn_due: false,
-            is_selected: true,
-            is_blind: false,
-            chores: Chores::new(),
+            last_step: None,
+            background: Background::new(),
             craft,
             memory: Memory::at_rest(),
             table,
@@ -117,29 +97,26 @@ impl Controller {
         if !step.is_multiple_of(DECIMATION) {
             return false;
         }
-        if self.mode == Mode::NoCraft {
+        if self.flight == Flight::NoCraft {
             self.outcome.output = Output::OFF;
             return true;
         }
-        let state = RigidState { state: edge::state(state), body_rates_rad_s: edge::body_rates_rad_s(sensors) };
-        let is_late = step.wrapping_sub(self.last_step) > GAP_MAX_MS || self.is_selected;
-        self.last_step = step;
-        if is_late {
-            self.restart();
-        }
-        if is_late || edge::is_urgent(&self.setpoint, setpoint) {
-            self.take(setpoint, &state.state, step);
-        }
-        self.outcome.limited = MotorLimited::NOTHING;
-        match self.flight {
-            None => self.switch_off(),
-            Some(_) => {
-                self.is_blind = self.fly(&state, step).is_err();
-                if self.is_blind {
-                    self.counters.bad_states = self.counters.bad_states.wrapping_add(1);
-                    self.switch_off();
-                }
+        let state = RigidState { state: units::state(state), body_rates_rad_s: units::body_rates_rad_s(sensors) };
+        let is_absent = self.last_step.is_none_or(|last| step.wrapping_sub(last) > ABSENT_MS);
+        if self.inbox.is_urgent(setpoint, step) || is_absent {
+            if is_absent {
+                self.restart();
             }
+            self.take(setpoint, &state.state);
+        }
+        self.last_step = Some(step);
+        self.outcome.limited = MotorLimited::NOTHING;
+        if !self.flight.is_on() {
+            self.switch_off();
+        } else if self.fly(&state, step).is_err() {
+            self.bad_state();
+        } else {
+            self.outcome.is_blind = false;
         }
         if self.outcome.limited.any() {
             self.counters.limited_steps = self.counters.limited_steps.wrapping_add(1);
@@ -147,113 +124,146 @@ impl Controller {
         true
     }
 
-    /// Between control steps: takes a setpoint that continues a flight, so that no control step has to; until then the one
-    /// before is carried on, which leads to the same place unless it jumps. Where there is none, gives what there is time
-    /// for.
+    /// Between control steps. Until a setpoint has been taken here the one before is carried on, which leads to the same place
+    /// unless it jumps. Gives the background work that there is time for.
     #[inline]
-    pub fn between(&mut self, setpoint: &abi::Setpoint, state: &abi::State, step: u32) -> Option<Chore> {
-        let is_new = if self.is_along {
-            !edge::is_same_along(&self.setpoint, self.stream.newest(), setpoint)
-        } else {
-            self.flight.is_some() && !edge::is_same(&self.setpoint, setpoint)
-        };
-        if is_new {
-            // It has come with the control step before.
-            let since_ms = step.wrapping_sub(1);
-            if !(self.is_along && self.go_on(setpoint, since_ms)) {
-                self.take(setpoint, &edge::state(state), since_ms);
-            }
-        } else if self.is_turn_due {
-            if !self.turn_on(setpoint) {
-                self.take(setpoint, &edge::state(state), step);
-            }
-        } else {
-            return Some(self.chores.next());
+    pub fn between(
+        &mut self,
+        setpoint: &abi::Setpoint,
+        sensors: &abi::SensorData,
+        state: &abi::State,
+        step: u32,
+    ) -> Option<Work> {
+        if self.flight == Flight::NoCraft {
+            return Some(self.background.next());
         }
-        self.chores.put_off()
+        // One thing at a time: a setpoint that comes with the longest look of the observers is taken a call later, and is fitted
+        // another one later. It is dated by its stamp.
+        let is_busy = self.observe(sensors);
+        let news = if is_busy { self.inbox.glance(setpoint, step) } else { self.inbox.look(setpoint, step) };
+        let has_time = news == News::Nothing && !is_busy && !self.stream.is_due();
+        match news {
+            News::Nothing if is_busy || has_time => {}
+            News::Nothing => self.stream.catch_up(),
+            News::Motion => self.follow(),
+            News::Other => self.take(setpoint, &units::state(state)),
+        }
+        self.look_ahead(state, step.wrapping_add(1));
+        if has_time { Some(self.background.next()) } else { self.background.put_off() }
     }
 
-    /// Takes one more setpoint of a flight along a trajectory, of which only figures are new; whether it is one. Its heading is
-    /// left to the next call, so that no call has to do everything: till then the last one turns on.
+    /// Lets the observers of the law look at the control step before; whether that took long.
     #[inline(always)]
-    fn go_on(&mut self, setpoint: &abi::Setpoint, since_ms: u32) -> bool {
-        let is_turned = !self.is_turn_due || self.turn_on(setpoint);
-        if !(edge::goes_on(&self.setpoint, setpoint) && is_turned) {
-            return false;
-        }
-        if setpoint.timestamp == self.setpoint.timestamp {
-            // The same one, as collision avoidance has changed it.
-            self.stream.divert(&edge::motion(setpoint));
-            return true;
-        }
-        (self.setpoint.timestamp, self.is_turn_due) = (setpoint.timestamp, true);
-        if self.looks_beyond_jerk() {
-            self.accept(setpoint, since_ms);
-        } else {
-            let arrival = self.stream.accept_to_jerk(&edge::motion(setpoint), since_ms);
-            self.count(arrival);
-        }
-        self.came_ms = since_ms;
-        true
+    fn observe(&mut self, sensors: &abi::SensorData) -> bool {
+        let has_stepped = matches!(self.flight, Flight::Stream | Flight::Guided(_)) && !self.outcome.is_blind;
+        let Some(cascade) = self.table.as_cascade().filter(|_| has_stepped) else { return false };
+        let (felt, is_long) = (units::specific_force_m_s2(sensors), self.memory.cascade().is_air_due());
+        quatrack::Controller::new(cascade, Limits::NONE).observe(&mut self.memory, felt.as_ref());
+        is_long
     }
 
-    /// Takes the heading of the setpoint whose motion was taken before; whether it has one.
+    /// Takes a setpoint, and does what it asks for.
     #[inline(never)]
-    fn turn_on(&mut self, setpoint: &abi::Setpoint) -> bool {
-        self.is_turn_due = false;
-        let Some(rate) = edge::turn_on(self.turning.heading_mut(), &self.setpoint, setpoint) else { return false };
-        let is_differenced = self.looks_beyond_jerk() && edge::is_by_yaw(setpoint);
-        self.turning.go_on(rate, self.came_ms, is_differenced);
-        self.setpoint.attitude.yaw = setpoint.attitude.yaw;
-        true
+    fn take(&mut self, setpoint: &abi::Setpoint, state: &State) {
+        match self.inbox.take(setpoint) {
+            Change::Request(request) => self.begin_or_go_on(Flight::of(&request, &self.craft), state),
+            Change::Off => self.turn_off(),
+            Change::Bad => self.bad_setpoint(state),
+        }
     }
 
-    /// Takes the motion of a setpoint, or the one that is flown instead.
+    /// Takes one more motion of the stream, with its heading.
     #[inline(never)]
-    fn accept(&mut self, setpoint: &abi::Setpoint, since_ms: u32) {
-        let motion = match self.mode {
-            Mode::Descending => Motion { velocity_m_s: Vector3::new(0.0, 0.0, -DESCENT_M_S), ..Motion::ZERO },
-            _ => edge::motion(setpoint),
-        };
-        let arrival = if self.looks_beyond_jerk() {
-            self.stream.accept(&motion, since_ms)
-        } else {
-            self.stream.accept_to_jerk(&motion, since_ms)
-        };
-        self.count(arrival);
-    }
-
-    #[inline(always)]
-    fn count(&mut self, arrival: Arrival) {
+    fn follow(&mut self) {
+        let (newest, beyond_jerk) = (self.inbox.newest(), self.looks_beyond_jerk());
+        let arrival = self.stream.accept(&newest.motion, newest.date_ms, beyond_jerk);
+        let is_differenced = beyond_jerk && newest.is_by_yaw;
+        self.headings.accept(newest.heading, newest.heading_rate_rad_s, newest.date_ms, is_differenced);
         if arrival == Arrival::Jumped {
             self.counters.jumps = self.counters.jumps.wrapping_add(1);
         }
     }
 
+    #[inline(never)]
+    fn begin_or_go_on(&mut self, flight: Flight, state: &State) {
+        if !self.flight.is_like(&flight) {
+            self.begin(&flight, state);
+        }
+        self.flight = flight;
+        self.ahead.forget();
+        self.follow();
+    }
+
+    /// Starts a flight of another kind.
+    #[inline(never)]
+    fn begin(&mut self, flight: &Flight, state: &State) {
+        self.stream = Stream::new();
+        let newest = self.inbox.newest();
+        self.headings.begin(newest.heading, newest.heading_rate_rad_s, newest.date_ms);
+        self.shaping.begin(state, units::heading_rad(&state.attitude));
+        if matches!(self.flight, Flight::Rates { .. }) {
+            // The firmware's mixer has carried the pilot's rates to the motors: what they have by now nobody has kept.
+            self.memory.assume_hovering(self.craft.airframe());
+        }
+        if !flight.followed().across || matches!(flight, Flight::Rates { .. }) {
+            self.memory.clear_integral();
+        }
+    }
+
+    /// Motors off, as asked.
+    #[cold]
+    #[inline(never)]
+    fn turn_off(&mut self) {
+        (self.flight, self.handover) = (Flight::Off, Handover::OVER);
+        self.ahead.forget();
+        self.memory.clear_integral();
+    }
+
+    /// The setpoint makes no sense: what is flown instead.
+    #[cold]
+    #[inline(never)]
+    fn bad_setpoint(&mut self, state: &State) {
+        self.counters.bad_setpoints = self.counters.bad_setpoints.wrapping_add(1);
+        self.begin_or_go_on(Flight::of_bad_setpoint(&self.flight), state);
+    }
+
+    /// Estimate or gyroscope are not to be flown on: motors off for this step.
+    #[cold]
+    #[inline(never)]
+    fn bad_state(&mut self) {
+        self.counters.bad_states = self.counters.bad_states.wrapping_add(1);
+        self.outcome.is_blind = true;
+        self.switch_off();
+    }
+
+    /// Motors off for this step. They run down with their lag: who flies on soon has the rest of their forces.
+    #[cold]
+    #[inline(never)]
+    fn switch_off(&mut self) {
+        self.outcome.output = Output::OFF;
+        self.memory.run_down(self.craft.motor_lag_s / (self.craft.motor_lag_s + PERIOD_S));
+    }
+
     /// Whether a law that is flown takes snap and crackle.
     #[inline(always)]
     fn looks_beyond_jerk(&self) -> bool {
-        self.table.gain.gives_forces() || self.is_handing_over
+        self.table.gives_forces() || !self.handover.is_over()
     }
 
-    /// Between control steps: makes the reference of the next one for the paper's laws along a trajectory. It takes nothing
-    /// from the estimate but where the leash ends.
-    #[inline]
-    pub fn prepare(&mut self, state: &abi::State, next_step: u32) {
-        let Some(flight) = self.flight.as_ref().filter(|_| self.is_along && !self.looks_beyond_jerk()) else { return };
-        let mass_kg = self.craft.airframe().figures().mass_kg;
-        let (stream, turning) = (&self.stream, &self.turning);
-        let along = Along { flight, stream, turning, now_ms: next_step, to_fifth: false, mass_kg };
-        self.heading = along.put(&edge::state(state), &self.settings.bounds, &mut self.sample);
-        let flat = &self.sample.flat;
-        let is_there = match &mut self.prepared {
-            Some(reference) => reference.move_to_finite_flat(flat, self.heading).is_ok(),
-            None => {
-                self.prepared = Reference::from_flat_at(flat, self.heading).ok();
-                self.prepared.is_some()
-            }
-        };
-        self.prepared_for = is_there.then_some(next_step);
+    /// Makes what the next control step follows along a stream. It takes nothing from the estimate but where the leash of the
+    /// paper's laws ends.
+    #[inline(always)]
+    fn look_ahead(&mut self, state: &abi::State, next_step: u32) {
+        if self.flight != Flight::Stream {
+            return;
+        }
+        // The cascade's sample is made at its step, which has the time.
+        if !self.table.gives_forces() && self.handover.is_over() {
+            let leash = &self.settings.bounds.leash;
+            let way = (&self.stream, &self.headings);
+            self.ahead.sample_on_leash_at(next_step, way, (leash, &units::state(state)));
+            self.ahead.refer();
+        }
     }
 
     /// Another controller has flown in the meantime, or nobody: nothing that was remembered holds. The motors are
@@ -262,121 +272,94 @@ impl Controller {
     #[inline(never)]
     fn restart(&mut self) {
         self.memory = Memory::hovering(self.craft.airframe());
-        (self.flight, self.is_along, self.is_handing_over) = (None, false, false);
-        (self.is_blind, self.is_selected) = (false, false);
-        self.prepared_for = None;
+        (self.flight, self.handover) = (Flight::Off, Handover::OVER);
+        self.outcome.is_blind = false;
+        self.ahead.forget();
     }
 
     /// Forgets what it remembers, at the next control step.
     pub fn forget(&mut self) {
-        self.is_selected = true;
+        self.last_step = None;
     }
 
-    /// Takes a setpoint whose contents have changed.
-    #[inline(never)]
-    fn take(&mut self, setpoint: &abi::Setpoint, state: &State, now_ms: u32) {
-        self.setpoint = *setpoint;
-        (self.prepared_for, self.is_turn_due) = (None, false);
-        let thrust_max_n = 4.0 * self.craft.airframe().figures().force_max_n;
-        let flight = match edge::demand(setpoint, thrust_max_n) {
-            Some(Demand::Off) => {
-                (self.flight, self.is_along, self.is_handing_over, self.mode) = (None, false, false, Mode::Off);
-                self.memory.clear_integral();
-                return;
-            }
-            Some(Demand::Fly(flight)) => {
-                self.mode = Mode::Flying;
-                flight
-            }
-            None => {
-                self.mode = Mode::Descending;
-                self.counters.bad_setpoints = self.counters.bad_setpoints.wrapping_add(1);
-                Flight::DESCENT
-            }
-        };
-        let is_another = !self.flight.is_some_and(|before| before.is_like(&flight));
-        if is_another {
-            self.begin(&flight, state);
-        }
-        self.accept(setpoint, now_ms);
-        if let Turn::Heading { heading, rate_rad_s } = flight.turn {
-            self.turning.begin(heading, rate_rad_s, now_ms);
-        }
-        (self.is_along, self.flight) = (flight.is_along(), Some(flight));
-    }
-
-    /// Starts a flight of another kind.
-    #[inline(never)]
-    fn begin(&mut self, flight: &Flight, state: &State) {
-        self.stream = Stream::new();
-        self.guide.begin(state, edge::heading_rad(&state.attitude));
-        if matches!(flight.horizontal, Horizontal::Tilt(_) | Horizontal::Rates(_)) {
-            self.memory.clear_integral();
-        }
-    }
-
-    #[inline]
+    #[inline(always)]
     fn fly(&mut self, state: &RigidState, now_ms: u32) -> Result<(), Unflown> {
-        let Some(flight) = &self.flight else { return Ok(()) };
-        if let Horizontal::Rates([p, q]) = flight.horizontal {
-            return self.turn([p, q], state);
+        if let Flight::Rates { body_rates_rad_s, thrust_m_s2 } = self.flight {
+            return self.turn(&Command { thrust_m_s2, body_rates_rad_s }, state);
         }
-        let reference = self.prepared.as_ref().filter(|_| self.prepared_for == Some(now_ms));
-        if reference.is_none() {
-            let to_fifth = self.looks_beyond_jerk();
-            let mass_kg = self.craft.airframe().figures().mass_kg;
-            let (stream, turning) = (&self.stream, &self.turning);
-            let along = Along { flight, stream, turning, now_ms, to_fifth, mass_kg };
-            self.heading = self.guide.put(&along, &state.state, &self.settings.bounds, &mut self.sample);
+        if !self.ahead.is_for(now_ms) {
+            self.shape(state, now_ms);
         }
-        let (r, p) = (&state.state.position_m, &self.sample.flat.position_m);
+        let (r, p) = (&state.state.position_m, &self.ahead.sample.flat.position_m);
         self.outcome.error_m = Vector3::new(r.x - p.x, r.y - p.y, r.z - p.z);
-        let mut is_upright = false;
-        loop {
-            let (craft, settings, sample, heading) = (&self.craft, &self.settings, &self.sample, self.heading);
-            let law_step = LawStep { craft, settings, sample, heading, state };
-            if let Some(reference) = reference {
-                return law_step.follow(&self.table, reference, &mut self.memory, &mut self.outcome);
-            }
-            let step = if self.is_handing_over {
-                let step = law_step.hand_over(
-                    &mut self.handover,
-                    (&self.before, &self.table),
-                    &mut self.memory,
-                    &mut self.outcome,
-                );
-                self.is_handing_over = !self.handover.is_over();
-                step
-            } else {
-                law_step.step(&self.table, &mut self.memory, &mut self.outcome)
-            };
-            match step {
-                Err(Unflown::Motion) if !is_upright => make_upright(&mut self.sample),
-                other => return other,
-            }
-            is_upright = true;
+        let law_step = LawStep {
+            craft: &self.craft,
+            settings: &self.settings,
+            sample: &self.ahead.sample,
+            heading: self.ahead.heading,
+            followed: self.flight.followed(),
+            state,
+        };
+        if let Some(reference) = self.ahead.reference_for(now_ms) {
+            return law_step.follow(&self.table, reference, &mut self.memory, &mut self.outcome);
         }
+        let step = if self.handover.is_over() {
+            law_step.step(&self.table, &mut self.memory, &mut self.outcome)
+        } else {
+            let tables = (&self.before, &self.table);
+            law_step.hand_over(&mut self.handover, tables, &mut self.memory, &mut self.outcome)
+        };
+        match step {
+            Err(Unflown::Motion) => self.fly_upright(state),
+            other => other,
+        }
+    }
+
+    /// What the step follows where nobody has looked ahead: the motion of a stream, or what setpoint shaping makes.
+    #[inline(never)]
+    fn shape(&mut self, state: &RigidState, now_ms: u32) {
+        let beyond_jerk = self.looks_beyond_jerk();
+        let ahead = &mut self.ahead;
+        match &self.flight {
+            Flight::Guided(request) => {
+                let (stream, headings, thrust_max_m_s2) = (&self.stream, &self.headings, self.craft.thrust_max_m_s2);
+                let shaped = Shaped { request, stream, headings, now_ms, beyond_jerk, thrust_max_m_s2 };
+                ahead.heading = self.shaping.put(&shaped, &state.state, &self.settings.bounds, &mut ahead.sample);
+            }
+            _ => {
+                self.stream.at(now_ms, beyond_jerk, &mut ahead.sample);
+                ahead.heading = self.headings.at(now_ms, &mut ahead.sample);
+            }
+        }
+        if !self.table.gives_forces() {
+            let flat = &mut ahead.sample.flat;
+            self.settings.bounds.leash.draw(&mut flat.position_m, &mut flat.velocity_m_s, &state.state);
+        }
+    }
+
+    /// Where the motion asks for what no thrust does, its position and velocity alone.
+    #[cold]
+    #[inline(never)]
+    fn fly_upright(&mut self, state: &RigidState) -> Result<(), Unflown> {
+        let flat = &self.ahead.sample.flat;
+        let mut sample = FifthOrderSample::at_rest(flat.position_m, 0.0);
+        sample.flat.velocity_m_s = flat.velocity_m_s;
+        let law_step = LawStep {
+            craft: &self.craft,
+            settings: &self.settings,
+            sample: &sample,
+            heading: self.ahead.heading,
+            followed: self.flight.followed(),
+            state,
+        };
+        self.handover = Handover::OVER;
+        law_step.step(&self.table, &mut self.memory, &mut self.outcome)
     }
 
     /// Manual flight by body rates: the same under every table.
     #[inline(never)]
-    fn turn(&mut self, [p, q]: [f32; 2], state: &RigidState) -> Result<(), Unflown> {
-        let mass_kg = self.craft.airframe().figures().mass_kg;
-        let (vertical, turn) = match &self.flight {
-            Some(flight) => (flight.vertical, flight.turn),
-            None => return Ok(()),
-        };
-        let thrust_m_s2 = match vertical {
-            Vertical::Thrust(thrust_n) => thrust_n / mass_kg,
-            // A height that is held while the craft turns over is nothing that anybody asks for.
-            _ => quatrack::flatness::GRAVITY_M_S2,
-        };
-        let r = match turn {
-            Turn::Rate(rate) => rate,
-            Turn::Heading { .. } => 0.0,
-        };
-        let command = Command { thrust_m_s2, body_rates_rad_s: Vector3::new(p, q, r) };
-        let wrench = self.settings.limits.saturate(&command).map(|(command, limited)| {
+    fn turn(&mut self, command: &Command, state: &RigidState) -> Result<(), Unflown> {
+        let wrench = self.settings.limits.saturate(command).map(|(command, limited)| {
             self.outcome.limited = MotorLimited::of_command(limited);
             self.craft.actuation.wrench(&command, &state.body_rates_rad_s)
         });
@@ -389,20 +372,13 @@ impl Controller {
         }
     }
 
-    /// Motors off for this step. They run down with their lag: who flies on soon has the rest of their forces.
-    #[cold]
-    #[inline(never)]
-    fn switch_off(&mut self) {
-        self.outcome.output = Output::OFF;
-        self.memory.run_down(self.craft.motor_lag_s / (self.craft.motor_lag_s + PERIOD_S));
-    }
-
-    /// Flies another table from the next control step on; in flight over [`FADE_STEPS`] of them.
+    /// Flies another table from the next control step on; in flight over [`FADE_STEPS`] of them, but for a cascade that takes over
+    /// from another one: what they remember is the same, and their limits hold at once.
     #[inline(never)]
     pub fn change_table(&mut self, table: &Table) {
-        if self.flight.is_some() {
+        if self.flight.is_on() && !(self.table.gives_forces() && table.gives_forces()) {
             self.before = self.table;
-            if !self.before.gain.gives_forces() {
+            if !self.before.gives_forces() {
                 // The firmware's mixer has carried its commands to the motors: what they have by now nobody has kept.
                 self.memory.assume_hovering(self.craft.airframe());
             }
@@ -411,18 +387,17 @@ impl Controller {
             if let (Ok(old), Ok(new)) = (old, new) {
                 self.handover = Handover::begin(FADE_STEPS, &old, &new, &mut self.memory);
             }
-            self.is_handing_over = !self.handover.is_over();
         }
         self.table = *table;
-        self.prepared_for = None;
+        self.ahead.forget();
     }
 
     /// Starts for a craft: motors off until a setpoint comes.
     #[inline(never)]
     pub fn change_craft(&mut self, craft: &Craft) {
         self.craft = *craft;
-        (self.flight, self.is_along, self.is_handing_over) = (None, false, false);
-        (self.mode, self.is_selected) = (Mode::Off, true);
+        (self.flight, self.handover) = (Flight::Off, Handover::OVER);
+        self.last_step = None;
         self.counters = Counters::default();
     }
 
@@ -431,11 +406,12 @@ impl Controller {
     pub fn set(&mut self, settings: &Settings, craft: &Craft) {
         self.settings = *settings;
         self.craft.actuation = craft.actuation;
+        self.craft.motor_lag_s = craft.motor_lag_s;
     }
 
     /// How the last setpoint is flown.
     pub fn mode(&self) -> Mode {
-        if self.flight.is_some() && self.is_blind { Mode::Blind } else { self.mode }
+        if self.flight.is_on() && self.outcome.is_blind { Mode::Blind } else { self.flight.mode() }
     }
 
     /// The craft.
@@ -453,19 +429,20 @@ impl Controller {
         &self.outcome
     }
 
-    /// Rotation vector from the last control step's reference to an attitude, body frame, rad.
+    /// Drag (1/s) and moment (N s) that are flown with, and what else the cascade has seen; nothing under another law.
+    pub fn learned(&self) -> Option<(f32, [f32; 2], &CascadeMemory)> {
+        let cascade = self.table.as_cascade()?;
+        let memory = self.memory.cascade();
+        let (drag_per_s, moment_n_s) = cascade.air(memory);
+        Some((drag_per_s, moment_n_s, memory))
+    }
+
+    /// Rotation vector from what the last control step wanted to the craft's attitude, body frame, rad.
     pub fn rotation_error_rad(&self, attitude: Quaternion) -> Vector3<f32> {
+        if self.table.gives_forces() {
+            return self.memory.cascade().rotation_error_rad();
+        }
         let q = self.outcome.target.conjugate() * attitude;
         q.vector() * if q.w < 0.0 { -2.0 } else { 2.0 }
     }
-}
-
-/// Where the motion asks for what no thrust does, its position and velocity alone.
-#[cold]
-#[inline(never)]
-fn make_upright(sample: &mut FifthOrderSample) {
-    let flat = &sample.flat;
-    let mut upright = FifthOrderSample::at_rest(flat.position_m, 0.0);
-    upright.flat.velocity_m_s = flat.velocity_m_s;
-    *sample = upright;
 }

@@ -5,8 +5,8 @@ use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
 use quatrack::{FeedForward, Limits, Quaternion};
 
-use crate::guide::Bounds;
 use crate::output::Output;
+use crate::shaping::Bounds;
 
 /// How the last setpoint is flown, for the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum Mode {
     Off = 0,
     /// As asked.
     Flying = 1,
-    /// Level and slowly down: the setpoint makes no sense.
+    /// To rest and slowly down: the setpoint makes no sense.
     Descending = 2,
     /// Motors off: the estimate or the gyroscope is not to be flown on.
     Blind = 3,
@@ -24,7 +24,7 @@ pub enum Mode {
     NoCraft = 4,
 }
 
-/// What the owner may change, as the steps take it.
+/// What the owner may change beside the table, as the steps take it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Of setpoints.
@@ -59,6 +59,8 @@ pub struct Outcome {
     pub target: Quaternion,
     /// Measured position less asked, world frame, m.
     pub error_m: Vector3<f32>,
+    /// Whether nothing could be flown on: motors off.
+    pub is_blind: bool,
 }
 
 impl Outcome {
@@ -68,5 +70,6 @@ impl Outcome {
         limited: MotorLimited::NOTHING,
         target: Quaternion::IDENTITY,
         error_m: Vector3::new(0.0, 0.0, 0.0),
+        is_blind: false,
     };
 }

@@ -23,7 +23,7 @@ mod image {
 
     /// Where the object's variables have the motors' lag and the number of the table.
     const MOTOR_LAG_AT: usize = 28;
-    const TABLE_AT: usize = 32;
+    const TABLE_AT: usize = 60;
 
     /// Rounds of a loop of two instructions: the costs differ by 2000.
     const LOOPS: [u32; 2] = [100, 1100];
@@ -46,7 +46,7 @@ mod image {
             pub(super) safe fn controllerOutOfTreeInit();
             pub(super) safe fn quatrackService();
             pub(super) safe fn quatrackPlatform(platform: &[f32; 4]) -> bool;
-            pub(super) static mut quatrack: [u8; 160];
+            pub(super) static mut quatrack: [u8; 224];
         }
 
         /// Sets a parameter, as the firmware's parameter task does.

@@ -2,12 +2,17 @@
 //! out.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 
-use quatrack_simulation::scenario::{Law, Scenario};
+use quatrack_simulation::control_law::ControlLaw;
+use quatrack_simulation::plant::PlantGroup;
+use quatrack_simulation::scenario::course::Flown;
+use quatrack_simulation::scenario::flight::Setpoints;
+use quatrack_simulation::scenario::{CourseChoice, Law, LawError, Prototype, Scenario, Side, Tally, Track};
 
-use crate::definition::Campaign;
+use crate::definition::{Campaign, Run};
 use crate::error::CampaignError;
 use crate::folder::Folder;
 use crate::row::{Outcome, Row};
@@ -78,6 +83,7 @@ pub fn fly(
         for _ in 0..threads.max(1) {
             scope.spawn(|| {
                 let over = Over(&desk);
+                let mut crew = Crew::default();
                 loop {
                     let mut shared = desk.lock();
                     while !shared.over && shared.next < blocks && shared.next >= shared.written + AHEAD * threads as u64
@@ -92,7 +98,7 @@ pub fn fly(
                     let index = shared.next;
                     shared.next += 1;
                     drop(shared);
-                    let rows: Vec<Row> = block(index).flat_map(|run| fly_run(campaign, run)).collect();
+                    let rows = crew.fly(campaign, block(index));
                     desk.lock().flown.insert(index, Row::to_csv(&rows));
                     desk.changed.notify_all();
                 }
@@ -122,49 +128,130 @@ pub fn fly(
     })
 }
 
-/// The rows of one run, law by law.
-pub fn fly_run(campaign: &Campaign, run: u64) -> Vec<Row> {
-    let drawn = campaign.run(run);
-    let row = |law: &Law| {
-        let refused = |reason: String| Row {
-            run,
-            law: *law,
-            seed: drawn.seed,
-            outcome: Outcome::Refused,
-            iae_m_s: None,
-            max_error_m: None,
-            saturated_steps: None,
-            lost_s: None,
-            reason: one_line(&reason),
-            drawn: drawn.drawn.clone(),
-        };
-        match &drawn.scenario {
-            Ok(scenario) => flown(campaign, scenario, *law, &refused),
-            Err(error) => refused(error.to_string()),
-        }
-    };
-    campaign.laws().iter().map(row).collect()
+/// Laws that were designed, and courses that were evaluated, for the flights before: most flights of a campaign share them.
+#[derive(Default)]
+pub struct Crew {
+    course: Option<Course>,
+    laws: Vec<Prototype>,
 }
 
-fn flown(campaign: &Campaign, scenario: &Scenario, law: Law, refused: &dyn Fn(String) -> Row) -> Row {
-    let mut flying = match law.start(&scenario.vehicle, &scenario.told) {
-        Ok(flying) => flying,
-        Err(error) => return refused(error.to_string()),
-    };
-    let flight = match scenario.fly(flying.as_mut(), &scenario.flown(campaign.trajectory().cloned())) {
-        Ok(flight) => flight,
-        Err(error) => return refused(error.to_string()),
-    };
-    let row = refused(String::new());
-    Row {
-        outcome: if flight.lost.is_some() { Outcome::Lost } else { Outcome::Flown },
-        iae_m_s: flight.iae_m_s(),
-        max_error_m: Some(flight.max_error_m()),
-        saturated_steps: Some(flight.saturated_steps),
-        lost_s: flight.lost.as_ref().map(|lost| lost.time_s),
-        reason: flight.lost.map_or_else(String::new, |lost| one_line(&lost.reason)),
-        ..row
+struct Course {
+    choice: CourseChoice,
+    duration_s: Option<f64>,
+    setpoints: Setpoints,
+    flown: Flown,
+    track: Track,
+}
+
+/// A flight that can be flown.
+struct Ready<'a> {
+    /// Its place among the rows.
+    place: usize,
+    scenario: &'a Scenario,
+    law: Box<dyn ControlLaw>,
+}
+
+impl Crew {
+    /// The rows of some runs, run by run and law by law.
+    pub fn fly(&mut self, campaign: &Campaign, runs: Range<u64>) -> Vec<Row> {
+        let drawn: Vec<Run> = runs.clone().map(|run| campaign.run(run)).collect();
+        let laws = campaign.laws();
+        let mut rows: Vec<Row> = Vec::with_capacity(drawn.len() * laws.len());
+        for (run, drawn) in runs.zip(&drawn) {
+            rows.extend(laws.iter().map(|law| blank(run, *law, drawn)));
+        }
+        for (number, law) in laws.iter().enumerate() {
+            let most = if law.flies_alone() { 1 } else { PlantGroup::MOST };
+            let mut ready: Vec<Ready<'_>> = Vec::new();
+            for (index, drawn) in drawn.iter().enumerate() {
+                let place = index * laws.len() + number;
+                let Ok(scenario) = &drawn.scenario else { continue };
+                // Flights side by side are along one course.
+                if ready.len() == most || !ready.is_empty() && !self.is_along(scenario) {
+                    self.fly_ready(&mut ready, &mut rows);
+                }
+                self.along(scenario, campaign);
+                match self.law(*law, scenario) {
+                    Ok(law) => ready.push(Ready { place, scenario, law }),
+                    Err(error) => rows[place].reason = one_line(&error.to_string()),
+                }
+            }
+            self.fly_ready(&mut ready, &mut rows);
+        }
+        rows
     }
+
+    fn is_along(&self, scenario: &Scenario) -> bool {
+        self.course.as_ref().is_some_and(|course| {
+            course.choice == scenario.course
+                && course.duration_s == scenario.duration_s
+                && course.setpoints == scenario.setpoints
+        })
+    }
+
+    fn along(&mut self, scenario: &Scenario, campaign: &Campaign) {
+        if !self.is_along(scenario) {
+            let flown = scenario.flown(campaign.trajectory().cloned());
+            let track = Track::of(&flown, scenario.setpoints);
+            let (choice, duration_s, setpoints) = (scenario.course.clone(), scenario.duration_s, scenario.setpoints);
+            self.course = Some(Course { choice, duration_s, setpoints, flown, track });
+            self.laws.clear();
+        }
+    }
+
+    fn law(&mut self, law: Law, scenario: &Scenario) -> Result<Box<dyn ControlLaw>, LawError> {
+        let (vehicle, told) = (&scenario.vehicle, &scenario.told);
+        if let Some(known) = self.laws.iter().find(|known| known.is_for(law, vehicle, told)) {
+            return known.start();
+        }
+        let mut made = Prototype::new(law, vehicle, told)?;
+        if let Some(course) = &self.course {
+            made = made.along(&course.track);
+        }
+        let started = made.start();
+        self.laws.retain(|known| known.law() != law);
+        self.laws.push(made);
+        started
+    }
+
+    fn fly_ready(&self, ready: &mut Vec<Ready<'_>>, rows: &mut [Row]) {
+        let Some(Course { flown, track, .. }) = &self.course else { return };
+        let places: Vec<usize> = ready.iter().map(|ready| ready.place).collect();
+        let mut sides: Vec<Side<'_>> =
+            ready.drain(..).map(|Ready { scenario, law, .. }| Side { scenario, flown, track, law }).collect();
+        for (place, outcome) in places.into_iter().zip(Scenario::fly_together(&mut sides)) {
+            let row = &mut rows[place];
+            match outcome {
+                Ok(tally) => put(row, tally),
+                Err(error) => row.reason = one_line(&error.to_string()),
+            }
+        }
+    }
+}
+
+/// Before it is flown.
+fn blank(run: u64, law: Law, drawn: &Run) -> Row {
+    Row {
+        run,
+        law,
+        seed: drawn.seed,
+        outcome: Outcome::Refused,
+        iae_m_s: None,
+        max_error_m: None,
+        saturated_steps: None,
+        lost_s: None,
+        reason: drawn.scenario.as_ref().err().map_or_else(String::new, |error| one_line(&error.to_string())),
+        drawn: drawn.drawn.clone(),
+    }
+}
+
+fn put(row: &mut Row, tally: Tally) {
+    row.outcome = if tally.lost.is_some() { Outcome::Lost } else { Outcome::Flown };
+    row.iae_m_s = tally.iae_m_s;
+    row.max_error_m = Some(tally.max_error_m);
+    row.saturated_steps = Some(tally.saturated_steps);
+    row.lost_s = tally.lost.as_ref().map(|lost| lost.time_s);
+    row.reason = tally.lost.map_or_else(String::new, |lost| one_line(&lost.reason));
 }
 
 /// A row is one line.

@@ -2,17 +2,19 @@
 //! say of each law, and a page to look at, out.
 //!
 //! ```text
-//! report             a folder -> a page to look at
-//! summary            rows -> success, percentiles, worst flights, what matters most
-//!   statistics       intervals, quantiles, ranks
-//! merge              shards -> one folder; which shard is missing
-//!   fly              runs on all cores -> rows in order, resumed where they end
-//!     folder         what is on disk: the definition, rows as CSV, the same as Parquet
-//!       row          one flight of one law
-//! definition         a file -> scenarios by number
-//!   vary             distributions over the figures of a file
-//!     draws          random numbers by seed, run and figure
-//! shard              which runs are whose
+//! report, picture    a folder -> a page to look at; success over every drawn figure
+//!   mcap             a flight for Foxglove and PlotJuggler
+//!   summary          rows -> success, percentiles, worst flights, what matters most
+//!     statistics     intervals, quantiles, ranks
+//!   merge            shards -> one folder; which shard is missing
+//!     fly            runs on all cores -> rows in order, resumed where they end
+//!       folder       what is on disk: the definition, rows as CSV, the same as Parquet
+//!         definition  a file -> scenarios by number
+//!           vary     distributions over the figures of a file
+//!             draws  random numbers by seed, run and figure
+//!         row        one flight of one law
+//!         shard      which runs are whose
+//!           error    why there is no campaign
 //! ```
 //!
 //! Run k is the same alone, in any shard and on any number of cores, to the byte: its figures and the seed of its noise are
@@ -23,7 +25,10 @@ pub mod draws;
 mod error;
 pub mod fly;
 pub mod folder;
+#[cfg(feature = "mcap")]
+pub mod mcap;
 pub mod merge;
+pub mod picture;
 pub mod report;
 pub mod row;
 pub mod shard;

@@ -9,3 +9,8 @@
 
 pub mod plan;
 pub mod trajectory;
+
+/// The examples of the README, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

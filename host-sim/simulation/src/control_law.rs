@@ -16,6 +16,12 @@ pub trait ControlLaw {
     /// Control steps a second: a divisor of [`STEPS_HZ`]. Forces are held in between.
     fn rate_hz(&self) -> u32;
 
+    /// Whether it looks at the accelerometer. To one that does not, a campaign tells 0: the specific force costs a flight as much
+    /// as a quarter of its steps.
+    fn feels(&self) -> bool {
+        true
+    }
+
     /// One control step: the forces asked of the four motors, N, numbered as in [`quatrack_design::vehicle`]. The
     /// motors then do what they can of them.
     ///

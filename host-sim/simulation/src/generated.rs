@@ -6,7 +6,6 @@
 //! | `gains/generated/*` | `gains/*.toml` |
 //! | `core/src/gains/paper.rs` | the paper's weights |
 //! | `core/src/gains/cascade.rs` | `gains/cascade-*.toml` |
-//! | `crazyflie/src/builtin/motor_gains.rs` | `gains/actuator-*.toml` |
 //! | `crazyflie/src/builtin/paper_limits.rs` | `gains/lyap-*.toml`, `gains/lqr-*.toml` |
 //! | `plans/*.rs` | `plans/*.toml` |
 
@@ -18,7 +17,7 @@ use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::{PiecewisePolynomial, PolynomialError};
 use thiserror::Error;
 
-use crate::crazyflie::{CodegenError, motor_gains, paper_limits};
+use crate::crazyflie::{CodegenError, paper_limits};
 use crate::gains::{BuiltInError, Checked, Comparison, Failed, built_in_source, check_folder};
 
 /// A solver's last digits differ between machines, and with them those of the coefficients: by at most this share of a
@@ -27,6 +26,7 @@ const SAME_COEFFICIENT: f64 = 1e-6;
 
 /// Why there is nothing to compare with.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum GenerateError {
     /// A design gives no table, or the folder cannot be read.
     #[error("{}: {}", .0.path.display(), .0.error)]
@@ -75,7 +75,6 @@ fn sources(root: &Path) -> Result<Vec<Checked>, GenerateError> {
     Ok(vec![
         exact("core/src/gains/paper.rs", codegen::paper_tables()?),
         exact("core/src/gains/cascade.rs", built_in_source(&at("gains"))?),
-        exact("crazyflie/src/builtin/motor_gains.rs", motor_gains()?),
         exact("crazyflie/src/builtin/paper_limits.rs", paper_limits()?),
         planned("plans/mild.rs", "MILD", paper::mild()?)?,
         planned("plans/aggressive.rs", "AGGRESSIVE", paper::aggressive()?)?,

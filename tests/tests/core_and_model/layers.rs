@@ -8,8 +8,17 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 7] =
-    ["core", "crazyflie", "firmware", "host-sim/design", "host-sim/plan", "host-sim/simulation", "host-sim/cli"];
+const CRATES: [&str; 9] = [
+    "core",
+    "crazyflie",
+    "firmware",
+    "host-sim/campaign",
+    "host-sim/design",
+    "host-sim/plan",
+    "host-sim/identify",
+    "host-sim/simulation",
+    "host-sim/cli",
+];
 
 /// Each module that is drawn, with its line, counted from the top.
 fn drawn(lib: &str) -> BTreeMap<String, usize> {

@@ -112,7 +112,7 @@ proptest! {
         first_step in prop_oneof![Just(10_u32), Just(u32::MAX - 101)],
     ) {
         let vehicle = vehicles::by_name(name).unwrap();
-        let tune = Tune { table: 0, motor_lag_s: 0.0 };
+        let tune = Tune::new(0, 0.0);
         let _alone = Firmware::start(&vehicle, &tune, Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 });
         let mut control = Control::default();
         let mut step = first_step;

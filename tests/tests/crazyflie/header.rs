@@ -4,7 +4,7 @@ use std::mem::{align_of, offset_of, size_of};
 use std::path::Path;
 
 use quatrack_crazyflie::craft::Platform;
-use quatrack_crazyflie::shared::{Gains, Log, Parameters, Shared};
+use quatrack_crazyflie::shared::{Gains, Learned, Log, Parameters, Shared};
 use quatrack_crazyflie::upload::Packet;
 
 /// A struct of the header: where its fields lie by the rules of C, and its size.
@@ -60,8 +60,16 @@ fn every_field_of_the_header_lies_where_the_objects_does() {
             roll_pitch_rate_rad_s,
             yaw_rate_rad_s,
             motor_lag_s,
+            drag_per_s,
+            moment_x_n_s,
+            moment_y_n_s,
+            gust,
+            goal_speed_m_s,
+            goal_climb_m_s,
+            tilt_deg,
             table,
-            feed_forward
+            feed_forward,
+            learn
         ]
     );
     assert_lies_as!(
@@ -81,8 +89,16 @@ fn every_field_of_the_header_lies_where_the_objects_does() {
             limited_steps,
             jumps,
             refused_tables,
-            refusal
+            refusal,
+            put_back,
+            parameter
         ]
+    );
+    assert_lies_as!(
+        header,
+        "quatrackLearned_t",
+        Learned,
+        [drag_per_s, moment_n_s, motor_share, disturbance_m_s2, stands]
     );
     assert_lies_as!(header, "quatrackGains_t", Gains, [scale_min, scale_max, entries]);
     assert_lies_as!(header, "quatrackPlatform_t", Platform, [mass_kg, arm_m, thrust_max_n, torque_per_thrust_m]);
@@ -91,7 +107,10 @@ fn every_field_of_the_header_lies_where_the_objects_does() {
     let (_, parameters) = layout(header, "quatrackParameters_t");
     let (_, log) = layout(header, "quatrackLog_t");
     assert_eq!(offset_of!(Shared, log), parameters);
-    assert_eq!(offset_of!(Shared, gains), (parameters + log).next_multiple_of(align_of::<Gains>()));
+    let (_, learned) = layout(header, "quatrackLearned_t");
+    let learned_at = (parameters + log).next_multiple_of(align_of::<Learned>());
+    assert_eq!(offset_of!(Shared, learned), learned_at);
+    assert_eq!(offset_of!(Shared, gains), learned_at + learned);
     // One log packet.
     assert_eq!(offset_of!(Log, bad_states), 26);
 }

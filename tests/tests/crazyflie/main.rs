@@ -3,7 +3,9 @@
 mod any;
 mod flights;
 mod header;
+mod in_air;
 mod object;
 mod setpoints;
 mod stream;
+mod survival;
 mod tables;

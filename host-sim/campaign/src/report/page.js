@@ -122,6 +122,6 @@
     }
   }
   // A page that is asked to plays at once.
-  if (location.hash === "#play") replay.setPlaying(true);
+  if (location.hash === "#replay") replay.setPlaying(true);
   document.body.dataset.ready = "true";
 })();

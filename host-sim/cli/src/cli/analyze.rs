@@ -29,7 +29,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let section = SectionThree::new().map_err(Failure::input)?;
     output::print(&text(&section))?;
     if let Some(path) = &args.json {
-        output::write_json(path, &Document::new(&section))?;
+        output::write_json(path, &output::Named::new("analyze", &Document::new(&section)))?;
         output::print(&format!("\nwrote {}\n", path.display()))?;
     }
     Ok(())

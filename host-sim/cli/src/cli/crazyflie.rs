@@ -9,6 +9,7 @@ use quatrack_simulation::scenario::{Law, Scenario};
 use quatrack_simulation::vehicles;
 
 use super::scenario::ScenarioArgs;
+use super::transform::TransformArgs;
 use super::{Failure, fly, output};
 
 /// Flies the Crazyflie controller through its C interface on the rigid plant, with the firmware's setpoints, rates and
@@ -34,7 +35,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.count {
         let counts = image::checkout().and_then(|checkout| count(&checkout)).map_err(Failure::input)?;
-        return report(args, &counts);
+        return report(args, "crazyflie-count", &counts);
     }
     if args.scenario.any_but_vehicle() {
         if args.scenario.law.is_some_and(|law| law != Law::Crazyflie) {
@@ -43,7 +44,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             ));
         }
         let scenario = Scenario { law: Law::Crazyflie, ..args.scenario.checked()? };
-        let (figures, _) = fly::scenario::fly_and_print(&scenario)?;
+        let (figures, _) = fly::scenario::fly_and_print(&scenario, &TransformArgs::default())?;
         if let Some(path) = &args.json {
             output::write_json(path, &figures)?;
             output::print(&format!("wrote {}\n", path.display()))?;
@@ -52,13 +53,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let name = args.scenario.vehicle.as_deref().unwrap_or("crazyflie-2.1");
     let vehicle = vehicles::by_name(name).map_err(Failure::input)?;
-    report(args, &CrazyflieReport::of(&vehicle).map_err(Failure::input)?)
+    report(args, "crazyflie", &CrazyflieReport::of(&vehicle).map_err(Failure::input)?)
 }
 
-fn report(args: &Args, figures: &(impl std::fmt::Display + serde::Serialize)) -> Result<(), Failure> {
+fn report(args: &Args, name: &str, figures: &(impl std::fmt::Display + serde::Serialize)) -> Result<(), Failure> {
     output::print(&figures.to_string())?;
     if let Some(path) = &args.json {
-        output::write_json(path, figures)?;
+        output::write_json(path, &output::Named::new(name, figures))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use quatrack_simulation::gains::{Design, Export};
 
+use super::names::did_you_mean;
 use super::{Failure, gains, output};
 
 /// Writes A, B, Q, R, K, P, the poles and T_e of a design, with the names and units of every row and column.
@@ -49,8 +50,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         None => {
             let names = PAPER.map(|(name, _)| name).join(", ");
             return Err(Failure::input(format!(
-                "--design {}: neither one of {names} nor a design, a file ending in .toml",
-                args.design
+                "--design {}: neither one of {names} nor a design, a file ending in .toml{}",
+                args.design,
+                did_you_mean(&args.design, PAPER.map(|(name, _)| name))
             )));
         }
     };

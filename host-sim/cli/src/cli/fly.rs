@@ -12,11 +12,11 @@ use clap::ValueEnum;
 use quatrack::{Equilibrium, ErrorForm, FeedForward, FlatOutput, Law as CoreLaw, Limits, Rate};
 use quatrack_design::design::codegen::rounded;
 use quatrack_design::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
-use quatrack_plan::plan::{self, Plan, PlanError};
+use quatrack_plan::plan;
 use quatrack_plan::trajectory::Trajectory;
 use quatrack_plan::trajectory::bspline::BSpline;
 use quatrack_plan::trajectory::file::{self, TrajectoryFile};
-use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::on_board::{self, OnBoardError};
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
 use quatrack_simulation::flight::core_loop::{self, CoreLoop};
@@ -24,21 +24,25 @@ use quatrack_simulation::flight::law::{EquilibriumGain, Feedback, FlatOutputGain
 use quatrack_simulation::flight::log;
 use quatrack_simulation::flight::metrics::Metrics;
 use quatrack_simulation::flight::reference::{Exact, Reference};
+use quatrack_simulation::flight::reference_check::ReferenceCheck;
 use quatrack_simulation::integrator::Method;
 use serde::Serialize;
 
 use super::limits::LimitsChoice;
 use super::scenario::ScenarioArgs;
+use super::transform::TransformArgs;
 use super::{Failure, output};
 
 /// Flies a scenario with its law, or one trajectory with one controller or gain table.
 ///
 /// With --scenario or --vehicle the law of a scenario flies on a rigid craft with motors, in
-/// air where it has some. Every key of the file has a flag, which goes before the file. A lost
-/// craft gives exit code 3.
+/// air where it has some. Every key of the file has a flag, which goes before the file.
 ///
 /// With --controller the paper's model flies, in vacuum, its state known exactly; so it does
 /// with --gains, but for tables for motor forces, which fly on a rigid craft.
+///
+/// Exit code 0: flown to the end. 2: an input that cannot be used. 3: the craft was lost; what
+/// was measured until then is printed and written.
 ///
 /// Examples:
 ///   quatrack fly --scenario my.toml --wind-m-s 1,0,0 --out out/windy --plot out/windy.png
@@ -47,6 +51,7 @@ use super::{Failure, output};
 ///   quatrack fly --controller lqr-e --trajectory my.csv --rate-hz 500 --feed-forward --limits crazyflie-2.1
 ///   quatrack fly --controller lyap-e --mu 1 --trajectory aggressive --precision f64 --out out/crash
 ///   quatrack fly --gains gains/generated/sampled-lqr-e.bin --trajectory aggressive --feed-forward
+///   quatrack fly --controller lqr-e --trajectory my.csv --time-scale 1.5 --reverse --start 0,0,1
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
@@ -58,8 +63,8 @@ pub(crate) struct Args {
     /// --scenario such a table is the scenario's law.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["mu", "law"])]
     gains: Option<PathBuf>,
-    /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), or a plan
-    /// (TOML, planned first).
+    /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), a plan (TOML,
+    /// planned first), or the Crazyflie's compressed form.
     #[arg(long, value_name = "mild|aggressive|FILE", default_value = "", hide_default_value = true)]
     trajectory: String,
     /// Control steps a second, 1 to 10000, commands held in between. Without it a table flies at its own, f32 at 500 Hz
@@ -92,6 +97,14 @@ pub(crate) struct Args {
     /// Of a scenario: write a picture of the flight, its errors, tilt, motor forces and wind, .svg or .png.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    /// Of a scenario: write a log as a craft records it, which `quatrack identify` reads (CSV, the columns of cflib).
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
+    /// Of a scenario: write the flight for Foxglove and PlotJuggler, .mcap. Needs a command built with --features mcap.
+    #[arg(long, value_name = "FILE")]
+    mcap: Option<PathBuf>,
+    #[command(flatten)]
+    transform: TransformArgs,
     #[command(flatten)]
     scenario: ScenarioArgs,
 }
@@ -135,9 +148,12 @@ impl fmt::Display for Controller {
 /// The flight as it is written to a file: figures, and when and why it was lost.
 #[derive(Serialize)]
 struct FlightReport {
+    /// None where it was lost before anything was measured.
     #[serde(flatten)]
-    metrics: Metrics,
+    metrics: Option<Metrics>,
     lost: Option<String>,
+    /// What the reference itself asks for that no law can follow.
+    reference: Option<String>,
 }
 
 /// A gain of either law, in f64.
@@ -156,6 +172,8 @@ struct DescribedFlight {
     limits: String,
     duration_s: f64,
     flight: Flight,
+    /// What the reference itself asks for that no law can follow.
+    reference: Option<String>,
 }
 
 /// Said where no law is asked for.
@@ -181,6 +199,7 @@ fn fly_paper(args: &Args, controller: Controller, rate: Option<Rate>) -> Result<
     let gain = design(args, controller)?;
     let trajectory = load(args)?;
     let limits = args.limits.clone().unwrap_or_else(LimitsChoice::none);
+    let reference = ReferenceCheck::of(&trajectory, &limits.limits).line();
     let (flight, clock) = match (args.precision, rate) {
         (Precision::F32, rate) => {
             let rate = rate.map_or_else(default_rate, Ok)?;
@@ -199,6 +218,7 @@ fn fly_paper(args: &Args, controller: Controller, rate: Option<Rate>) -> Result<
         limits: limits.name,
         duration_s: trajectory.duration_s(),
         flight,
+        reference,
     })
 }
 
@@ -237,9 +257,15 @@ fn design(args: &Args, controller: Controller) -> Result<Gain, Failure> {
 
 /// The trajectory by name or from a file, as the pieces that the board flies; and the folder for the log.
 fn load(args: &Args) -> Result<PiecewisePolynomial, Failure> {
-    let trajectory = trajectory(&args.trajectory)?;
+    let trajectory = transformed(&args.trajectory, &args.transform)?;
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
     Ok(trajectory)
+}
+
+/// The same flown slower, backwards, elsewhere, turned or larger.
+pub(super) fn transformed(name: &str, args: &TransformArgs) -> Result<PiecewisePolynomial, Failure> {
+    let transform = args.transform()?;
+    transform.apply(&trajectory(name)?).map_err(|error| Failure::input(format!("{name}: {error}")))
 }
 
 /// A trajectory by name or from a file, as the pieces that the board flies.
@@ -247,17 +273,17 @@ pub(super) fn trajectory(name: &str) -> Result<PiecewisePolynomial, Failure> {
     let from_spline = |spline: &BSpline| {
         PiecewisePolynomial::from_bspline(spline).map_err(|error| Failure::input(format!("{name}: {error}")))
     };
-    let planned = |plan: Result<Plan, PlanError>| {
-        let curve = plan.and_then(|plan| plan.solve()).map_err(|error| super::plan::failed(Path::new(name), &error))?;
-        from_spline(&curve)
+    let planned = |text: &str| {
+        let flight = super::plan::of_text(Path::new(name), text)?;
+        flight.pieces().map_err(|error| Failure::input(format!("{name}: {error}")))
     };
     match name {
-        "mild" => planned(plan::paper::mild()),
-        "aggressive" => planned(plan::paper::aggressive()),
+        "mild" => planned(plan::paper::MILD_TOML),
+        "aggressive" => planned(plan::paper::AGGRESSIVE_TOML),
         path => match file::read(Path::new(path)).map_err(Failure::input)? {
             TrajectoryFile::Pieces(pieces) => Ok(pieces),
             TrajectoryFile::Spline(spline) => from_spline(&spline),
-            TrajectoryFile::Plan(text) => planned(Plan::from_toml(&text)),
+            TrajectoryFile::Plan(text) => planned(&text),
         },
     }
 }
@@ -306,6 +332,12 @@ fn fly_core(
     fly_law(args, law, trajectory, rate, limits)
 }
 
+/// Says what a board does not fly; a start elsewhere is one way on.
+pub(super) fn not_on_board(name: &str, error: &OnBoardError) -> Failure {
+    let how = if matches!(error, OnBoardError::Coarse { .. }) { " by --start 0,0,0" } else { "" };
+    Failure::input(format!("{name}: {error}{how}"))
+}
+
 /// Flies a law of the core.
 fn fly_law(
     args: &Args,
@@ -314,7 +346,7 @@ fn fly_law(
     rate: Rate,
     limits: Limits,
 ) -> Result<Flight, Failure> {
-    let pieces = on_board::pieces(trajectory);
+    let pieces = on_board::checked(trajectory).map_err(|error| not_on_board(&args.trajectory, &error))?;
     let mut core = CoreLoop::new(&pieces, rate, law, limits)
         .map_err(|error| Failure::input(format!("{}: {error}", args.trajectory)))?;
     Ok(fly_sampled(&Exact(trajectory), rate.hz(), |tick, _, x| core.step(tick, x)))
@@ -349,14 +381,36 @@ fn fly_f64_continuous(
 }
 
 fn report(args: &Args, flown: &DescribedFlight) -> Result<(), Failure> {
-    let DescribedFlight { law, clock, limits, duration_s, flight } = flown;
-    let metrics = Metrics::of(flight);
+    let DescribedFlight { law, clock, limits, duration_s, flight, reference } = flown;
+    // One sample is the start, before anything was flown.
+    let metrics = (flight.samples.len() > 1 || flight.lost.is_none()).then(|| Metrics::of(flight));
     let feed = if args.feed_forward { ", feed-forward" } else { "" };
     let trajectory = &args.trajectory;
+    output::print(&format!("{law} on {trajectory}, {duration_s:.2} s, {clock}{feed}, limits {limits}\n"))?;
+    if let Some(metrics) = &metrics {
+        output::print(&figures(metrics))?;
+    }
+    if let Some(reference) = reference {
+        output::print(&format!("  note: {reference}\n"))?;
+    }
+    if let Some(dir) = &args.out {
+        let path = dir.join("flight.csv");
+        output::write(&path, log::to_csv(flight).as_bytes())?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    let lost = flight.lost.as_ref().map(|lost| format!("{:.2} s: {}", lost.time_s, lost.reason));
+    if let Some(path) = &args.json {
+        let report = FlightReport { metrics, lost: lost.clone(), reference: reference.clone() };
+        output::write_json(path, &output::Named::new("fly-trajectory", &report))?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    lost.map_or(Ok(()), |lost| Err(Failure::lost(format!("{law} was lost at {lost}"))))
+}
+
+fn figures(metrics: &Metrics) -> String {
     let iae = |v: Option<f64>| v.map_or_else(|| "none: the flight was lost".to_owned(), |v| format!("{v:.6} m s"));
-    output::print(&format!(
-        "{law} on {trajectory}, {duration_s:.2} s, {clock}{feed}, limits {limits}\n\
-         \x20 IAE, sum (23) times T_s   {}\n\
+    format!(
+        "\x20 IAE, sum (23) times T_s   {}\n\
          \x20 IAE, integral (22)        {}\n\
          \x20 largest position error    {:.6} m\n\
          \x20 RMS position error        {:.6} m\n\
@@ -375,19 +429,5 @@ fn report(args: &Args, flown: &DescribedFlight) -> Result<(), Failure> {
         metrics.max_thrust_m_s2,
         metrics.max_body_rate_rad_s,
         metrics.saturated_steps,
-    ))?;
-    if let Some(lost) = &flight.lost {
-        output::print(&format!("  lost at {:.2} s: {}\n", lost.time_s, lost.reason))?;
-    }
-    if let Some(dir) = &args.out {
-        let path = dir.join("flight.csv");
-        output::write(&path, log::to_csv(flight).as_bytes())?;
-        output::print(&format!("wrote {}\n", path.display()))?;
-    }
-    if let Some(path) = &args.json {
-        let lost = flight.lost.as_ref().map(|lost| format!("{:.2} s: {}", lost.time_s, lost.reason));
-        output::write_json(path, &FlightReport { metrics, lost })?;
-        output::print(&format!("wrote {}\n", path.display()))?;
-    }
-    Ok(())
+    )
 }

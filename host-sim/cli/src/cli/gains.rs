@@ -44,7 +44,7 @@ enum Command {
         json: Option<PathBuf>,
     },
     /// Writes every generated file that is not what its design gives: the tables of a folder and, in a checkout, the
-    /// sources made of them: core/src/gains/paper.rs and cascade.rs, crazyflie/src/builtin/motor_gains.rs and paper_limits.rs, plans/*.rs.
+    /// sources made of them: core/src/gains/paper.rs and cascade.rs, crazyflie/src/builtin/paper_limits.rs, plans/*.rs.
     ///
     /// A file that `check` passes stays as it is. Exit code 1 for a file that no design gives.
     Generate {
@@ -121,6 +121,7 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
         output::create_dir(&folder)?;
         let document = gains::json_document(&certified);
         let mut text = format!("{}\n{}", path.display(), figures(&document));
+        text += &notes(&certified);
         for file in gains::artifacts(&certified, &folder) {
             output::write(&file.path, &file.contents)?;
             wrote(&mut text, &file.path);
@@ -133,9 +134,25 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
         summaries.push(json!({ "design": path, "name": document["name"], "figures": document["figures"] }));
     }
     if let Some(path) = json {
-        output::write_json(path, &summaries)?;
+        output::write_json(path, &output::Named::new("gains-design", &json!({ "designs": summaries })))?;
     }
     Ok(())
+}
+
+/// What an owner has to know of the method.
+fn notes(certified: &Certified) -> String {
+    let (method, mass_kg) = (certified.design.problem.named().1, certified.design.vehicle.mass_kg());
+    if !matches!(method, "cascade" | "actuator-aware") {
+        return String::new();
+    }
+    let mut text = format!(
+        "  weights are as written and do not scale with the mass, {mass_kg} kg: twice the mass and inertia fly alike with a quarter \
+         of force_input\n"
+    );
+    if method == "actuator-aware" {
+        text += "  this is the law before the cascade: for a table of that write method = \"cascade\" and leave [weights] out\n";
+    }
+    text
 }
 
 /// Every figure that a design can ask for, beside what this one asks.
@@ -202,7 +219,7 @@ fn check(paths: &[PathBuf], json: Option<&Path>) -> Result<(), Failure> {
     if let Some(path) = json {
         let files: Vec<Value> =
             checked.iter().map(|file| json!({ "file": file.path, "difference": file.difference })).collect();
-        output::write_json(path, &files)?;
+        output::write_json(path, &output::Named::new("gains-check", &json!({ "files": files })))?;
     }
     let differing: Vec<&Checked> = checked.iter().filter(|file| file.difference.is_some()).collect();
     match differing.split_first() {
@@ -295,5 +312,7 @@ fn list(folder: Option<&Path>, json: Option<&Path>) -> Result<(), Failure> {
         );
     }
     output::print(&text)?;
-    json.map_or(Ok(()), |path| output::write_json(path, &entries))
+    json.map_or(Ok(()), |path| {
+        output::write_json(path, &output::Named::new("gains-list", &json!({ "designs": entries })))
+    })
 }

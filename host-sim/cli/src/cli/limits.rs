@@ -6,6 +6,8 @@ use quatrack::Limits;
 use quatrack::nalgebra::Vector3;
 use quatrack_simulation::vehicles;
 
+use super::names::did_you_mean;
+
 /// Limits by vehicle or by numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct LimitsChoice {
@@ -36,8 +38,9 @@ impl FromStr for LimitsChoice {
         let numbers: Result<Vec<f32>, _> = text.split(',').map(|number| number.trim().parse()).collect();
         let Ok([min, max, rate]) = numbers.as_deref() else {
             return Err(format!(
-                "neither a vehicle ({}), none, nor THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s",
-                vehicles::names().join(", ")
+                "neither a vehicle ({}), none, nor THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s{}",
+                vehicles::names().join(", "),
+                did_you_mean(text, vehicles::names())
             ));
         };
         let limits = Limits::new(*min, *max, Vector3::new(*rate, *rate, *rate)).map_err(|error| error.to_string())?;

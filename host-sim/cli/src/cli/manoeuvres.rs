@@ -27,7 +27,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "VEHICLE", default_value = "crazyflie-2.1")]
     vehicle: VehicleChoice,
     /// Time constant of the motors, ms; by default the vehicle's own.
-    #[arg(long, value_name = "MS")]
+    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
     lag_ms: Option<f64>,
     /// Folder for figures, created where it is missing.
     #[arg(long, value_name = "DIR")]
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     if let Some(path) = &args.json {
-        output::write_json(path, &report)?;
+        output::write_json(path, &output::Named::new("manoeuvres", &report))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

@@ -32,7 +32,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let report = counted(args).map_err(Failure::input)?;
     output::print(&report.to_string())?;
     if let Some(path) = &args.json {
-        output::write_json(path, &report)?;
+        output::write_json(path, &output::Named::new("measure", &report))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

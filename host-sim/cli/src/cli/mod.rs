@@ -7,9 +7,11 @@ mod crazyflie;
 mod export;
 mod fly;
 mod gains;
+mod identify;
 mod limits;
 mod manoeuvres;
 mod measure;
+mod names;
 mod output;
 mod pil;
 mod plan;
@@ -18,6 +20,8 @@ mod report;
 mod reproduce;
 mod robustness;
 mod scenario;
+mod shell;
+mod transform;
 mod vehicle;
 
 use std::process::ExitCode;
@@ -61,10 +65,13 @@ enum Command {
     Analyze(analyze::Args),
     Campaign(campaign::Args),
     Compare(compare::Args),
+    Completions(shell::CompletionArgs),
     Crazyflie(crazyflie::Args),
     Export(export::Args),
     Fly(fly::Args),
     Gains(gains::Args),
+    Identify(identify::Args),
+    Man(shell::ManArgs),
     Manoeuvres(manoeuvres::Args),
     Measure(measure::Args),
     Pil(pil::Args),
@@ -85,10 +92,13 @@ pub(crate) fn main() -> ExitCode {
         Command::Analyze(args) => analyze::run(args),
         Command::Campaign(args) => campaign::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Completions(args) => shell::completions(args),
         Command::Crazyflie(args) => crazyflie::run(args),
         Command::Export(args) => export::run(args),
         Command::Fly(args) => fly::run(args),
         Command::Gains(args) => gains::run(args),
+        Command::Identify(args) => identify::run(args),
+        Command::Man(args) => shell::man(args),
         Command::Manoeuvres(args) => manoeuvres::run(args),
         Command::Measure(args) => measure::run(args),
         Command::Pil(args) => pil::run(args),

@@ -1,4 +1,4 @@
-//! What every command writes: files that are whole or absent, JSON, and argument errors of one line.
+//! What every command writes: files that are whole or absent, JSON, and argument errors.
 
 use std::fs;
 use std::io::{self, Write as _};
@@ -9,18 +9,11 @@ use serde::Serialize;
 
 use super::Failure;
 
-/// Prints help and version as they are, and an argument error as one line with exit code 2.
+/// Prints help, version or an argument error as clap does, which knows what may have been meant; exit code 2 for an error.
 pub(crate) fn argument_error(error: &clap::Error) -> ExitCode {
-    if !error.use_stderr() || error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        // Whether or not anybody reads the help, there is nothing more to do.
-        let _ = print(&error.to_string());
-        return if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS };
-    }
-    let text = error.to_string();
-    let line: Vec<&str> =
-        text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("Usage:")).collect();
-    eprintln!("quatrack: {}", line.join(" ").trim_start_matches("error: "));
-    ExitCode::from(2)
+    // Whether or not anybody reads it, there is nothing more to do.
+    let _ = error.print();
+    if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS }
 }
 
 /// Prints a text as it is. A reader that has seen enough and closed the pipe is no failure.
@@ -50,6 +43,21 @@ pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
         let _ = fs::remove_file(&partial);
         Failure::input(format!("{}: cannot write this file ({error}); choose another place", path.display()))
     })
+}
+
+/// A value with what it is before its own keys: `"schema": "quatrack/NAME/1"`. The forms are in `docs/json.md`.
+#[derive(Serialize)]
+pub(crate) struct Named<'a, T> {
+    schema: String,
+    #[serde(flatten)]
+    value: &'a T,
+}
+
+impl<'a, T: Serialize> Named<'a, T> {
+    /// Of a value with keys.
+    pub(crate) fn new(name: &str, value: &'a T) -> Self {
+        Self { schema: format!("quatrack/{name}/1"), value }
+    }
 }
 
 /// Writes `value` as JSON, ended by a line feed.

@@ -58,7 +58,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let report = flown(args).map_err(Failure::input)?;
     output::print(&report.to_string())?;
     if let Some(path) = &args.json {
-        output::write_json(path, &report)?;
+        output::write_json(path, &output::Named::new("pil", &report))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     if report.bit_exact && report.motors.bit_exact {

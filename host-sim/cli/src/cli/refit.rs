@@ -10,6 +10,7 @@ use quatrack::{Equilibrium, ErrorForm, FeedForward, Limits, Rate};
 use quatrack_design::design::codegen::rounded;
 use quatrack_design::design::synthesis::{self, EquilibriumWeights};
 use quatrack_plan::trajectory::Trajectory;
+use quatrack_plan::trajectory::compressed;
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::poly4d::{MEMORY_BYTES, PIECES_MAX, StoredTrajectory};
 use quatrack_plan::trajectory::polynomial::{PiecewisePolynomial, csv};
@@ -19,8 +20,11 @@ use quatrack_simulation::flight::core_loop::CoreLoop;
 use quatrack_simulation::flight::deviation::Deviation;
 use quatrack_simulation::flight::metrics::Metrics;
 use quatrack_simulation::flight::reference::Exact;
+use quatrack_simulation::flight::reference_check::ReferenceCheck;
 use serde::Serialize;
 
+use super::limits::LimitsChoice;
+use super::transform::TransformArgs;
 use super::{Failure, output};
 
 /// Control steps a second of the flights that compare the two trajectories.
@@ -30,14 +34,18 @@ const RATE_HZ: u32 = 500;
 ///
 /// The pieces have degree 7 and meet up to jerk. A trajectory that already has few enough pieces keeps them.
 ///
+/// Exit code 1, and nothing is written, where the fit is further off than --tolerance-m or LQR-E is lost on either
+/// trajectory. 2: an input that cannot be used.
+///
 /// Examples:
 ///   quatrack refit aggressive --csv w.csv
 ///   quatrack refit my.csv --pieces 15 --tolerance-m 0.001 --csv short.csv --json fit.json
+///   quatrack refit my.csv --time-scale 1.5 --compressed my.ctraj
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
-    /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), or a plan
-    /// (TOML, planned first).
+    /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), a plan (TOML,
+    /// planned first), or the Crazyflie's compressed form.
     #[arg(value_name = "mild|aggressive|FILE")]
     trajectory: String,
     /// Most pieces, 1 to 31, which is what the memory holds.
@@ -49,6 +57,14 @@ pub(crate) struct Args {
     /// Write the pieces as they are stored, in the uav_trajectories form that Bitcraze's tools read.
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
+    /// Write the pieces in Bitcraze's compressed form: control points of 1 mm and 0.1 degrees, in 2 bytes each.
+    #[arg(long, value_name = "FILE")]
+    compressed: Option<PathBuf>,
+    /// Whose limits the reference is compared with: a vehicle, none, or THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s.
+    #[arg(long, value_name = "V", allow_hyphen_values = true, default_value = "crazyflie-2.1")]
+    limits: LimitsChoice,
+    #[command(flatten)]
+    transform: TransformArgs,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -76,6 +92,14 @@ struct Comparison {
     refit_from_original_iae_m_s: Option<f64>,
 }
 
+impl RefitReport {
+    fn lost(&self) -> bool {
+        [&self.lqr_e, &self.lqr_e_feed_forward]
+            .iter()
+            .any(|law| law.original_iae_m_s.is_none() || law.refit_iae_m_s.is_none())
+    }
+}
+
 fn pieces_parser() -> RangedU64ValueParser<usize> {
     RangedU64ValueParser::new().range(1..=PIECES_MAX as u64)
 }
@@ -87,10 +111,13 @@ fn tolerance(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let name = &args.trajectory;
-    let original = super::fly::trajectory(name)?;
+    let original = super::fly::transformed(name, &args.transform)?;
     let failed = |error: &dyn std::fmt::Display| Failure::input(format!("{name}: {error}"));
     let pieces = NonZeroUsize::new(args.pieces).unwrap_or(NonZeroUsize::MIN);
     let fitted = refit(&original, pieces).map_err(|error| failed(&error))?;
+    for trajectory in [&original, &fitted] {
+        on_board::checked(trajectory).map_err(|error| super::fly::not_on_board(name, &error))?;
+    }
     let stored = StoredTrajectory::new(&fitted).map_err(|error| failed(&error))?;
     let gain = synthesis::lqr_equilibrium(&EquilibriumWeights::paper()).map_err(Failure::input)?.gain;
     let gain = EquilibriumGain::new(rounded(&gain)).map_err(Failure::input)?;
@@ -106,6 +133,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         lqr_e_feed_forward: compare(FeedForward::With)?,
     };
     output::print(&text(name, &report))?;
+    if let Some(reference) = ReferenceCheck::of(&original, &args.limits.limits).line() {
+        output::print(&format!("\nnote: {reference}\n"))?;
+    }
+    if report.lost() {
+        return Err(Failure::verdict(format!(
+            "{name}: LQR-E is lost on it; fly it slower (--time-scale 2), or look at what it asks for; nothing is written"
+        )));
+    }
     let off_m = report.largest_difference.position_m;
     if let Some(tolerance_m) = args.tolerance_m.filter(|tolerance_m| off_m.is_nan() || off_m > *tolerance_m) {
         return Err(Failure::verdict(format!(
@@ -118,8 +153,22 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         output::write(path, csv::write(stored.polynomials()).as_bytes())?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
+    if let Some(path) = &args.compressed {
+        let bytes = compressed::to_bytes(&fitted).map_err(|error| failed(&error))?;
+        let off = compressed::from_bytes(&bytes).map_err(|error| failed(&error))?;
+        let off = Deviation::between(&Exact(&original), &Exact(&off));
+        output::write(path, &bytes)?;
+        output::print(&format!(
+            "wrote {}: {} of {MEMORY_BYTES} bytes, at most {:.2e} m, {:.2e} m/s and {:.2e} m/s^2 off\n",
+            path.display(),
+            bytes.len(),
+            off.position_m,
+            off.velocity_m_s,
+            off.acceleration_m_s2
+        ))?;
+    }
     if let Some(path) = &args.json {
-        output::write_json(path, &report)?;
+        output::write_json(path, &output::Named::new("refit", &report))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

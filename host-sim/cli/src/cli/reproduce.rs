@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     write_figures(&reproduction, &args.out)?;
     if let Some(path) = &args.json {
-        output::write_json(path, &reproduction.report().with(beyond.as_ref()))?;
+        output::write_json(path, &output::Named::new("reproduce", &reproduction.report().with(beyond.as_ref())))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     if reproduction.is_reproduced() {

@@ -35,7 +35,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let report = robustness::report(&vehicle.map_err(Failure::input)?.0).map_err(Failure::input)?;
     output::print(&table(&report))?;
     if let Some(path) = &args.json {
-        output::write_json(path, &report)?;
+        output::write_json(path, &output::Named::new("robustness", &report))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())

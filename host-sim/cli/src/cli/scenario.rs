@@ -1,7 +1,7 @@
 //! `--scenario` and a flag for each of its keys: a file, flags over it, or flags alone in; a scenario whose every value has been
 //! looked at out.
 
-mod values;
+pub(super) mod values;
 
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ use quatrack_simulation::scenario::flight::Setpoints;
 use quatrack_simulation::scenario::{Law, Scenario};
 
 use super::Failure;
-use values::{List, estimator, from_here, over, over_list, setpoints};
+use values::{List, estimator, from_here, law, over, over_list, setpoints};
 
 /// A scenario by file and flags; a flag goes before the file.
 #[derive(clap::Args)]
@@ -23,8 +23,8 @@ pub(crate) struct ScenarioArgs {
     /// A built-in vehicle, or a TOML file.
     #[arg(long, value_name = "VEHICLE")]
     pub(super) vehicle: Option<String>,
-    /// quatrack, actuator-aware, lqr-e, lyap-e, lqr-f, lyap-f, mellinger, lee or pid.
-    #[arg(long, value_name = "NAME")]
+    /// quatrack, crazyflie, actuator-aware, lqr-e, lyap-e, lqr-f, lyap-f, mellinger, lee or pid.
+    #[arg(long, value_name = "NAME", value_parser = law)]
     pub(super) law: Option<Law>,
     /// eight, hover, step, mild, aggressive, or a trajectory's file.
     #[arg(long, value_name = "COURSE")]

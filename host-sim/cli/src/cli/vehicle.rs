@@ -6,6 +6,8 @@ use std::str::FromStr;
 use quatrack_design::vehicle::Vehicle;
 use quatrack_simulation::vehicles;
 
+use super::names::did_you_mean;
+
 /// A vehicle as it was asked for.
 #[derive(Clone, Debug)]
 pub(crate) struct VehicleChoice(pub(crate) Vehicle);
@@ -20,6 +22,6 @@ impl FromStr for VehicleChoice {
         } else {
             vehicles::by_name(text)
         };
-        found.map(Self).map_err(|error| error.to_string())
+        found.map(Self).map_err(|error| format!("{error}{}", did_you_mean(text, vehicles::names())))
     }
 }

@@ -75,31 +75,40 @@ impl FlightFigure<'_> {
     }
 
     fn draw_panels(&self, sheet: &mut Sheet) -> Result<(), FigureError> {
-        let times = self.tracking.reference.time_s;
-        // Checked: there are at least two times, and they increase.
-        let range = Range { low: times[0], high: times[times.len() - 1] };
-        let time_s = Scale { range, step: axis::step(range.extent(), 8.0) };
-        let count = self.quantities.len();
-        let height = (PANELS.bottom - PANELS.top - (count.max(1) - 1) as f64 * GAP) / count.max(1) as f64;
-        for (i, quantity) in self.quantities.iter().enumerate() {
-            let top = PANELS.top + i as f64 * (height + GAP);
-            let values = Range::of(quantity.traces.iter().flat_map(|trace| trace.values.iter().copied()));
-            let range = values.unwrap_or(Range { low: 0.0, high: 0.0 });
-            let range = range.widened(PADDING * range.extent()).at_least(quantity.shortest);
-            let value = Scale::clear_of_ticks(range, axis::step(range.extent(), 5.0));
-            let panel = Panel { frame: Frame { top, bottom: top + height, ..PANELS }, time_s, value };
-            panel.draw_grid(sheet, i + 1 == count);
-            for (trace, stroke) in quantity.strokes() {
-                panel.draw_samples(sheet, times.iter().zip(&trace.values).map(|(t, v)| [*t, *v]), stroke);
-            }
-            panel.draw_outline(sheet);
-            quantity.legend(sheet, PANELS.right, top - 9.0)?;
-            sheet.text_upwards(quantity.name, [PANELS.left - 50.0, top + 0.5 * height], LABEL);
-        }
-        let middle = 0.5 * (PANELS.left + PANELS.right);
-        sheet.text("time (s)", [middle, PANELS.bottom + 40.0], LABEL, Anchor::Middle);
-        Ok(())
+        draw_quantities(sheet, PANELS, "time (s)", self.tracking.reference.time_s, &self.quantities)
     }
+}
+
+/// Draws panels over one axis, from top to bottom of a frame; there are at least two places on the axis, and they increase.
+pub(super) fn draw_quantities(
+    sheet: &mut Sheet,
+    frame: Frame,
+    axis_name: &str,
+    places: &[f64],
+    quantities: &[Quantity<'_>],
+) -> Result<(), FigureError> {
+    let range = Range { low: places[0], high: places[places.len() - 1] };
+    let time_s = Scale { range, step: axis::step(range.extent(), 8.0) };
+    let count = quantities.len();
+    let height = (frame.bottom - frame.top - (count.max(1) - 1) as f64 * GAP) / count.max(1) as f64;
+    for (i, quantity) in quantities.iter().enumerate() {
+        let top = frame.top + i as f64 * (height + GAP);
+        let values = Range::of(quantity.traces.iter().flat_map(|trace| trace.values.iter().copied()));
+        let range = values.unwrap_or(Range { low: 0.0, high: 0.0 });
+        let range = range.widened(PADDING * range.extent()).at_least(quantity.shortest);
+        let value = Scale::clear_of_ticks(range, axis::step(range.extent(), 5.0));
+        let panel = Panel { frame: Frame { top, bottom: top + height, ..frame }, time_s, value };
+        panel.draw_grid(sheet, i + 1 == count);
+        for (trace, stroke) in quantity.strokes() {
+            panel.draw_samples(sheet, places.iter().zip(&trace.values).map(|(t, v)| [*t, *v]), stroke);
+        }
+        panel.draw_outline(sheet);
+        quantity.legend(sheet, frame.right, top - 9.0)?;
+        sheet.text_upwards(quantity.name, [frame.left - 50.0, top + 0.5 * height], LABEL);
+    }
+    let middle = 0.5 * (frame.left + frame.right);
+    sheet.text(axis_name, [middle, frame.bottom + 40.0], LABEL, Anchor::Middle);
+    Ok(())
 }
 
 impl Quantity<'_> {

@@ -5,6 +5,7 @@
 //! in, bytes out, the same bytes for the same data: nothing here knows controllers or writes files.
 
 mod axis;
+mod chart;
 mod compose;
 mod flight;
 mod panels;
@@ -17,6 +18,7 @@ mod svg;
 
 use nalgebra::Vector3;
 
+pub use chart::ChartFigure;
 pub use flight::{FlightFigure, Quantity, Trace};
 pub use plots::{Plot, PlotsFigure};
 

@@ -34,7 +34,7 @@ const FIRST_STEP: u32 = 200;
 
 /// The tables that are counted, with the motors' lag (s) at which they fly.
 const TABLES: [(&str, u8, f64); 5] =
-    [("actuator-aware", 0, 0.126), ("lyap-e", 1, 0.02), ("lqr-e", 2, 0.02), ("lyap-f", 3, 0.005), ("lqr-f", 4, 0.005)];
+    [("cascade", 0, 0.1), ("lyap-e", 1, 0.02), ("lqr-e", 2, 0.02), ("lyap-f", 3, 0.005), ("lqr-f", 4, 0.005)];
 
 /// How the setpoints come.
 const SETPOINTS: [(Setpoints, &str); 4] = [
@@ -85,7 +85,7 @@ pub fn count(checkout: &Path) -> Result<Counts, PilError> {
     let sensors = Sensors { gyro_noise_rad_s: 0.02, estimate_steps: 1 };
     for (table, number, lag_s) in TABLES {
         for (setpoints, name) in SETPOINTS {
-            let tune = Tune { table: number, motor_lag_s: if number == 0 { 0.0 } else { lag_s } };
+            let tune = Tune::new(number, if number == 0 { 0.0 } else { lag_s });
             let case = Case { sensors, setpoints, ..Case::of_lag(lag_s) };
             let course = Course::FigureEight(if number < 3 { 1.485 } else { 0.601 });
             let recording = fly_recorded(&vehicle, &course, &tune, &case, Recorded { steps: STEPS, then: None });
@@ -93,7 +93,7 @@ pub fn count(checkout: &Path) -> Result<Counts, PilError> {
         }
     }
     let ([from, to], (setpoints, name)) = (CHANGED, SETPOINTS[1]);
-    let tune = Tune { table: from, motor_lag_s: 0.02 };
+    let tune = Tune::new(from, 0.02);
     let case = Case { sensors, setpoints, ..Case::of_lag(tune.motor_lag_s) };
     let recorded = Recorded { steps: STEPS, then: Some(to) };
     flights.push((CHANGE, name, tune, fly_recorded(&vehicle, &Course::FigureEight(1.485), &tune, &case, recorded)));

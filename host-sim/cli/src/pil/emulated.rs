@@ -1,6 +1,5 @@
 //! A board in an emulator: an image and how to talk to it in; a connected board out.
 
-use std::os::unix::fs::symlink;
 use std::path::{Path, absolute};
 
 use super::PilError;
@@ -45,7 +44,7 @@ pub fn connect(
     if let Some(log) = log {
         // The image opens its log in the folder; the link that it finds there leads out of it.
         let log = absolute(log).map_err(PilError::io(format!("finding {}", log.display())))?;
-        symlink(log, folder.path().join("log.defmt")).map_err(PilError::io("placing the log"))?;
+        link(&log, &folder.path().join("log.defmt")).map_err(PilError::io("placing the log"))?;
     }
     let (line, arguments): (Line, &[&str]) = match transport {
         Transport::Pipes => {
@@ -62,4 +61,14 @@ pub fn connect(
     };
     let emulator = Emulator::start(image, folder.path(), arguments)?;
     Client::connect(line, Some(emulator), interrupt)
+}
+
+#[cfg(unix)]
+fn link(to: &Path, at: &Path) -> std::io::Result<()> {
+    std::os::unix::fs::symlink(to, at)
+}
+
+#[cfg(not(unix))]
+fn link(_to: &Path, _at: &Path) -> std::io::Result<()> {
+    Err(std::io::Error::new(std::io::ErrorKind::Unsupported, "an emulated board needs Linux or macOS"))
 }

@@ -7,4 +7,6 @@ mod figures;
 mod figures_png;
 mod fly_scenario;
 mod gains;
+mod identify;
 mod pil;
+mod trajectories;

@@ -5,6 +5,7 @@ use thiserror::Error;
 
 /// A matrix that cannot be worked with: its name, its fault, a remedy.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum MatrixError {
     /// Rows and columns differ where they must agree.
     #[error("{name} is {rows}x{columns}; it must be square")]

@@ -19,6 +19,7 @@ mod singular;
 
 pub(crate) use balance::balance;
 pub use claims::Claim;
+pub(crate) use controllability::moves;
 pub use controllability::{PbhTest, Staircase, controllability_matrix, pbh_test, staircase};
 pub use error::MatrixError;
 pub(crate) use error::{require_finite, require_square};

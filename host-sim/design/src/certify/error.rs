@@ -7,6 +7,7 @@ use crate::design::DesignError;
 
 /// A gain that cannot be certified.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum CertifyError {
     /// A matrix that cannot be worked with.
     #[error(transparent)]

@@ -7,6 +7,7 @@ use crate::analysis::MatrixError;
 
 /// A design problem without an answer, or one whose answer was not found to working precision.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum DesignError {
     /// A matrix that cannot be worked with.
     #[error(transparent)]

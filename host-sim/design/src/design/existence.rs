@@ -9,7 +9,7 @@ use num_complex::Complex64;
 use super::DesignError;
 use super::equation::Equation;
 use super::newton::Refined;
-use crate::analysis::{balance, eigenvalues, pbh_test, staircase};
+use crate::analysis::{balance, eigenvalues, moves, staircase};
 
 /// States up to which a singular value decomposition per unstable eigenvalue costs little.
 const MAX_PBH_STATES: usize = 40;
@@ -53,8 +53,9 @@ pub(super) fn require_stabilisable(equation: &Equation) -> Result<(), DesignErro
     // The size of B says nothing about the states that it reaches.
     let size = if norm > 0.0 { norm } else { 1.0 };
     let input = &equation.factor.hi * (size / equation.factor.hi.norm().max(f64::MIN_POSITIVE));
-    for eigenvalue in eigenvalues(&equation.a)?.into_iter().filter(|value| value.re >= -tolerance) {
-        if !pbh_test(&equation.a, &input, eigenvalue)?.controllable {
+    // Of a pair of conjugates, one tells.
+    for eigenvalue in eigenvalues(&equation.a)?.into_iter().filter(|value| value.re >= -tolerance && value.im >= 0.0) {
+        if !moves(&equation.a, &input, eigenvalue)? {
             return Err(DesignError::NotStabilisable { eigenvalue: snapped(eigenvalue, tolerance) });
         }
     }

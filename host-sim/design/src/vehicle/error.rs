@@ -2,6 +2,7 @@
 
 /// Why there is no vehicle.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum VehicleError {
     /// A name that the head of a table cannot carry.
     #[error("vehicle: name = \"{name}\": must be 1 to {longest} letters, digits or any of - . _")]

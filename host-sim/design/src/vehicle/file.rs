@@ -5,6 +5,7 @@ use serde::Deserialize;
 
 use super::check::{LARGEST, check, lag, one_body, positive};
 use super::flown::{AirFigures, BatteryFigures, FlightFigures, ForceFigures, MotorFigures, PropellerFigures};
+use super::identified::{Identified, sound};
 use super::{Motors, Vehicle, VehicleError};
 use crate::model::GRAVITY_M_S2;
 
@@ -17,7 +18,7 @@ const LONGEST_NAME: usize = 64;
 /// `name`; `body` with `mass_kg` and `inertia_kg_m2`, by rows; `motors` with `arm_m`, `thrust_min_n`, `thrust_max_n`,
 /// `torque_per_thrust_m`, `lag_s` and `published_lag_s`; `limits` with `body_rates_rad_s`; and its figures in flight,
 /// each where somebody has measured it: `air`, `motors.flown`, `motors.force`, `propeller`, `battery`, with the keys of
-/// [`super::FlightFigures`].
+/// [`super::FlightFigures`]; and `identified`, the intervals of what was identified from its flights.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleFile {
@@ -28,6 +29,8 @@ pub struct VehicleFile {
     air: Option<AirFigures>,
     propeller: Option<PropellerFigures>,
     battery: Option<BatteryFigures>,
+    #[serde(default)]
+    identified: Identified,
 }
 
 #[derive(Deserialize)]
@@ -81,6 +84,7 @@ impl TryFrom<VehicleFile> for Vehicle {
             battery: file.battery,
         };
         flown.check(file.motors.arm_m)?;
+        sound(&file.identified)?;
         let rates = file.limits.body_rates_rad_s;
         rates.iter().try_for_each(|rate| positive("limits.body_rates_rad_s", *rate))?;
         Ok(Self {
@@ -91,6 +95,7 @@ impl TryFrom<VehicleFile> for Vehicle {
             inverse_inertia,
             body_rates_max_rad_s: Vector3::from(rates),
             flown,
+            identified: file.identified,
         })
     }
 }

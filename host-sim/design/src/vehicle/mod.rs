@@ -8,12 +8,14 @@ mod check;
 mod error;
 mod file;
 mod flown;
+mod identified;
 
 use nalgebra::{Matrix3, Matrix4, Vector3};
 
 pub use error::VehicleError;
 pub use file::VehicleFile;
 pub use flown::{AirFigures, BatteryFigures, FlightFigures, ForceFigures, MotorFigures, PropellerFigures};
+pub use identified::{Identified, Interval};
 
 use crate::model::GRAVITY_M_S2;
 
@@ -33,6 +35,7 @@ pub struct Vehicle {
     motors: Motors,
     body_rates_max_rad_s: Vector3<f64>,
     flown: FlightFigures,
+    identified: Identified,
 }
 
 /// Four equal motors in an X.
@@ -107,6 +110,11 @@ impl Vehicle {
     /// Its figures in flight.
     pub fn flown(&self) -> &FlightFigures {
         &self.flown
+    }
+
+    /// Intervals of figures that were identified from its flights; part of its identity as little as those figures are.
+    pub fn identified(&self) -> &Identified {
+        &self.identified
     }
 
     /// Body rates that a rate loop of this vehicle follows, rad/s.

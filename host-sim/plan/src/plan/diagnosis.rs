@@ -1,36 +1,46 @@
 //! Why no curve meets a plan: an infeasible plan in, the limits that are too tight and what would do out.
 //!
 //! Each limit in turn gets a slack, and the least slack is sought with all others kept; where there is one, that limit
-//! alone explains the failure. Speed, thrust, corridors and tolerances are linear in the slack and one solution gives
-//! the least value. Tilt and body rate bound ratios, `|a_xy| / (a_z + g)` and `|jerk| / zeta`: there the largest ratio of
-//! the solution is the next bound to try, which descends to the least one (Dinkelbach's method).
+//! alone explains the failure. Speed, acceleration, thrust, corridors and tolerances are linear in the slack and one solution
+//! gives the least value. Tilt and body rate bound ratios, `|a_xy| / (a_z + g)` and `|jerk| / zeta`: there the largest ratio of
+//! the solution is the next bound to try, which descends to the least one (Dinkelbach's method). A longer duration loosens
+//! every bound; the least is found by halving. What is told has been tried, as it is printed.
 
 use std::fmt;
 
 use nalgebra::Vector3;
 use quatrack_design::model::GRAVITY_M_S2;
 
+use super::budget::Budget;
+use super::leg::NoCurve;
 use super::program::Program;
 use super::socp::{self, Accuracy, Outcome};
-use super::{Corridor, Plan};
+use super::{Corridor, Plan, PlanError};
 use crate::trajectory::Trajectory;
 use crate::trajectory::bspline::BSpline;
 
 /// Most descents of a ratio; it converges faster than linearly, four are usual.
 const MOST_DESCENTS: usize = 12;
-/// A descent by less than this part ends the search; the value is printed to three digits.
-const DESCENT_END: f64 = 1e-3;
-/// Added to a value that would do, so that it does with room for the solver.
-const ROOM: f64 = 1e-3;
+/// A descent by less than this part ends the search; the value is printed to four digits.
+const DESCENT_END: f64 = 1e-4;
+/// Parts of a value that are added until it does as printed: the solver needs some room, mostly none.
+const ROOMS: [f64; 7] = [0.0, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 3e-2];
+/// Longest flight that is tried, over the one that is asked for.
+const LONGEST: f64 = 64.0;
+/// The duration is told within this part.
+const DURATION_WITHIN: f64 = 1e-3;
 
 /// A limit exceeded by less than this part, or this many metres, is met: ten times what the solver is asked to leave.
 const TOUCHED: f64 = 1e-6;
 
 /// Something that bounds a flight and can be relaxed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Limit {
     /// `bounds.speed_max_m_s`.
     Speed,
+    /// `bounds.acceleration_max_m_s2`.
+    Acceleration,
     /// `bounds.tilt_max_deg`.
     Tilt,
     /// `bounds.thrust_min_m_s2`.
@@ -43,6 +53,8 @@ pub enum Limit {
     Corridor(usize),
     /// `tolerance_m` of every waypoint between start and end.
     Waypoints,
+    /// `duration_s`.
+    Duration,
 }
 
 /// A limit and what would do instead.
@@ -64,12 +76,25 @@ pub struct Infeasibility {
     pub ways_out: Vec<Vec<Remedy>>,
 }
 
+impl Remedy {
+    /// Whether a plan file may say so.
+    fn is_readable(&self) -> bool {
+        let most = match self.limit {
+            Limit::Tilt => 90_f64.to_radians() * (1.0 - 1e-9),
+            Limit::BodyRate => 1e6_f64.to_radians(),
+            Limit::Waypoints | Limit::Corridor(_) => 1e5,
+            _ => 1e6,
+        };
+        self.enough >= 0.0 && self.enough <= most
+    }
+}
+
 impl fmt::Display for Infeasibility {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("no curve meets the plan: ")?;
         if self.ways_out.is_empty() {
             return f.write_str(
-                "no values of its bounds were found with which one does; allow a longer duration_s, or move waypoints",
+                "no values of its bounds and no duration_s were found with which one does; move waypoints, or raise spans",
             );
         }
         let way = |remedies: &Vec<Remedy>| remedies.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and ");
@@ -81,61 +106,137 @@ impl fmt::Display for Remedy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (key, [given, enough]) = match self.limit {
             Limit::Speed => ("speed_max_m_s", [self.given, self.enough]),
+            Limit::Acceleration => ("acceleration_max_m_s2", [self.given, self.enough]),
+            Limit::Duration => {
+                let [given, enough] = [self.given, self.enough].map(|value| (value * 1e9).round() / 1e9);
+                return write!(f, "duration_s = {given} is too short (duration_s = {enough} would do)");
+            }
             Limit::Tilt => ("tilt_max_deg", [self.given, self.enough].map(f64::to_degrees)),
             Limit::ThrustMin => ("thrust_min_m_s2", [self.given, self.enough]),
             Limit::ThrustMax => ("thrust_max_m_s2", [self.given, self.enough]),
             Limit::BodyRate => ("body_rate_max_deg_s", [self.given, self.enough].map(f64::to_degrees)),
             Limit::Corridor(index) => {
-                let enough = outwards(self.enough);
-                return write!(f, "corridor {} is too tight (every side {enough} m further out would do)", index + 1);
+                return write!(
+                    f,
+                    "corridor {} is too tight (every side {} m further out would do)",
+                    index + 1,
+                    self.enough
+                );
             }
             Limit::Waypoints => {
-                let enough = outwards(self.enough);
-                return write!(f, "the waypoints' tolerance_m is too tight ({enough} m more for each would do)");
+                return write!(f, "the waypoints' tolerance_m is too tight ({} m more for each would do)", self.enough);
             }
         };
-        // Of a thrust, what counts is its distance to hover.
-        let hover = if matches!(self.limit, Limit::ThrustMin | Limit::ThrustMax) { GRAVITY_M_S2 } else { 0.0 };
-        // Sums with g and degrees from radians are a rounding off.
-        let [given, enough] = [given, hover + outwards(enough - hover)].map(|value| (value * 1e9).round() / 1e9);
+        // Degrees from radians are a rounding off.
+        let [given, enough] = [given, enough].map(|value| (value * 1e9).round() / 1e9);
         write!(f, "{key} = {given} is too tight ({enough} would do)")
     }
 }
 
-/// A value to three digits, rounded away from 0.
+/// A value to four digits, rounded away from 0.
 fn outwards(value: f64) -> f64 {
-    let digits = 2.0 - value.abs().max(1e-9).log10().floor();
+    let digits = 3.0 - value.abs().max(1e-9).log10().floor();
     let scale = 10_f64.powf(digits);
-    (value.abs() * scale).ceil() / scale * value.signum()
+    // A value of four digits is not moved by its own rounding.
+    (value.abs() * scale * (1.0 - 1e-12)).ceil() / scale * value.signum()
 }
 
-/// Finds what is too tight in a plan that no curve meets: first each limit alone; then, if that leaves only the
-/// waypoints to give way, all bounds and corridors together; at last everything.
-pub(super) fn diagnose(plan: &Plan) -> Infeasibility {
-    let limits = plan.limits();
-    let alone = limits.iter().filter_map(|&limit| plan.remedy(limit, enough(plan, limit)?));
-    let mut ways_out: Vec<Vec<Remedy>> = alone.map(|remedy| vec![remedy]).collect();
-    let bounds: Vec<Limit> = limits.iter().copied().filter(|limit| *limit != Limit::Waypoints).collect();
-    if !ways_out.iter().flatten().any(|remedy| remedy.limit != Limit::Waypoints) {
-        ways_out.splice(0..0, together(plan, &bounds));
+/// What is said of curves one after the other of which one has `reason` not to be: what is too tight in them, first each
+/// limit alone; if that leaves only the waypoints to give way, all bounds and corridors together, at last everything; and
+/// how much longer it would have to be.
+pub(super) fn diagnose(legs: &[Plan], reason: &NoCurve, budget: &Budget<'_>) -> PlanError {
+    let mut ways_out: Vec<Vec<Remedy>> = Vec::new();
+    if *reason != NoCurve::OutOfTime {
+        let duration = longer(legs, budget);
+        // The limits are those of all; each leg may have corridors and waypoints of its own.
+        let limits: Vec<Limit> = legs[0].limits();
+        for &limit in &limits {
+            budget.say(&format!("looking for what is too tight: {limit:?}"));
+            ways_out.extend(tried(legs, &[limit], budget));
+        }
+        let bounds: Vec<Limit> = limits.iter().copied().filter(|limit| *limit != Limit::Waypoints).collect();
+        if !ways_out.iter().flatten().any(|remedy| remedy.limit != Limit::Waypoints) {
+            ways_out.splice(0..0, tried(legs, &bounds, budget));
+        }
+        if ways_out.is_empty() {
+            ways_out.extend(tried(legs, &limits, budget));
+        }
+        ways_out.extend(duration.map(|remedy| vec![remedy]));
     }
-    if ways_out.is_empty() {
-        ways_out.extend(together(plan, &limits));
+    match reason {
+        _ if !ways_out.is_empty() => PlanError::Infeasible(Infeasibility { ways_out }),
+        _ if budget.is_over() => PlanError::TimeLimit { limit_s: budget.limit_s() },
+        NoCurve::Failed(reason) => PlanError::NotConverged(reason.clone()),
+        NoCurve::Infeasible | NoCurve::OutOfTime => PlanError::Infeasible(Infeasibility { ways_out }),
     }
-    Infeasibility { ways_out }
 }
 
-/// What is needed of several limits at once for their weighted sum to be least.
-fn together(plan: &Plan, limits: &[Limit]) -> Option<Vec<Remedy>> {
-    let curve = relaxed(plan, limits)?;
-    let needed: Option<Vec<_>> = limits.iter().map(|&limit| Some((limit, plan.needed(limit, &curve)?))).collect();
-    let remedies: Vec<_> = needed?.into_iter().filter_map(|(limit, needed)| plan.remedy(limit, needed)).collect();
-    (!remedies.is_empty()).then_some(remedies)
+/// Whether every leg has a curve.
+fn all_solve(legs: &[Plan], budget: &Budget<'_>) -> bool {
+    legs.iter().all(|leg| leg.curve_within(budget).is_ok())
+}
+
+/// What is needed of several limits at once, as it is printed and tried.
+fn tried(legs: &[Plan], limits: &[Limit], budget: &Budget<'_>) -> Option<Vec<Remedy>> {
+    // Of a leg that has a curve nothing is needed.
+    let needed: Vec<Vec<f64>> = legs.iter().filter_map(|leg| least(leg, limits, budget)).collect();
+    if needed.is_empty() {
+        return None;
+    }
+    let of_all = |index: usize| {
+        let values = needed.iter().map(|values| values[index]);
+        if limits[index] == Limit::ThrustMin { values.fold(f64::INFINITY, f64::min) } else { largest(values) }
+    };
+    ROOMS.iter().find_map(|room| {
+        let remedies: Vec<Remedy> = limits
+            .iter()
+            .enumerate()
+            .filter_map(|(index, &limit)| legs[0].remedy(limit, of_all(index), *room))
+            .collect();
+        let readable = !remedies.is_empty() && remedies.iter().all(Remedy::is_readable);
+        let relaxed: Vec<Plan> = legs.iter().map(|leg| leg.with(&remedies)).collect();
+        (readable && !budget.is_over() && all_solve(&relaxed, budget)).then_some(remedies)
+    })
+}
+
+/// The least values of limits with which a leg has a curve.
+fn least(leg: &Plan, limits: &[Limit], budget: &Budget<'_>) -> Option<Vec<f64>> {
+    match limits {
+        [limit] => Some(vec![enough(leg, *limit, budget)?]),
+        limits => {
+            let curve = relaxed(leg, limits, budget)?;
+            limits.iter().map(|&limit| leg.needed(limit, &curve)).collect()
+        }
+    }
+}
+
+/// The least duration with which all have a curve, as it is printed and tried.
+fn longer(legs: &[Plan], budget: &Budget<'_>) -> Option<Remedy> {
+    let given: f64 = legs.iter().map(Plan::duration_s).sum();
+    let does = |enough: f64| {
+        let stretched: Option<Vec<Plan>> = legs.iter().map(|leg| leg.stretched(enough / given)).collect();
+        !budget.is_over() && stretched.is_some_and(|legs| all_solve(&legs, budget))
+    };
+    budget.say("looking for a longer duration");
+    let (mut short, mut long) = (given, 1.02 * given);
+    while !does(long) {
+        if long > LONGEST * given || budget.is_over() {
+            return None;
+        }
+        (short, long) = (long, given + 2.0 * (long - given));
+    }
+    while long > short * (1.0 + DURATION_WITHIN) {
+        let middle = 0.5 * (short + long);
+        if does(middle) { long = middle } else { short = middle }
+    }
+    let candidates = ROOMS.iter().map(|room| outwards(long * (1.0 + room)));
+    let enough = candidates.into_iter().find(|enough| does(*enough))?;
+    Some(Remedy { limit: Limit::Duration, given, enough })
 }
 
 /// The least value of one limit with which a curve exists, all others kept.
-fn enough(plan: &Plan, limit: Limit) -> Option<f64> {
-    let mut least = plan.needed(limit, &relaxed(plan, &[limit])?)?;
+fn enough(plan: &Plan, limit: Limit, budget: &Budget<'_>) -> Option<f64> {
+    let mut least = plan.needed(limit, &relaxed(plan, &[limit], budget)?)?;
     let ratio = matches!(limit, Limit::Tilt | Limit::BodyRate);
     for _ in 0..if ratio { MOST_DESCENTS } else { 0 } {
         let mut trial = plan.clone();
@@ -143,7 +244,7 @@ fn enough(plan: &Plan, limit: Limit) -> Option<f64> {
             Limit::Tilt => trial.bounds.tilt_max_rad = Some(least),
             _ => trial.bounds.body_rate_max_rad_s = Some(least),
         }
-        let Some(next) = relaxed(&trial, &[limit]).and_then(|curve| plan.needed(limit, &curve)) else { break };
+        let Some(next) = relaxed(&trial, &[limit], budget).and_then(|curve| plan.needed(limit, &curve)) else { break };
         if next > least * (1.0 - DESCENT_END) {
             break;
         }
@@ -153,11 +254,17 @@ fn enough(plan: &Plan, limit: Limit) -> Option<f64> {
 }
 
 /// The curve with the least slack in the limits given, which are weighed by their size.
-fn relaxed(plan: &Plan, limits: &[Limit]) -> Option<BSpline> {
+fn relaxed(plan: &Plan, limits: &[Limit], budget: &Budget<'_>) -> Option<BSpline> {
+    let origin_m = plan.waypoints().first()?.position_m;
+    if origin_m != Vector3::zeros() {
+        let curve = relaxed(&plan.moved(&-origin_m), limits, budget)?;
+        let points = curve.control_points_m().iter().map(|point| point + origin_m).collect();
+        return BSpline::new(plan.degree(), plan.duration_s(), points).ok();
+    }
     let weighted: Vec<(Limit, f64)> = limits.iter().map(|&limit| (limit, 1.0 / plan.slack_scale(limit))).collect();
-    match socp::solve(&Program::new(plan, &weighted), Accuracy::THREE_DIGITS) {
+    match socp::solve(&Program::new(plan, &weighted), Accuracy::THREE_DIGITS, budget) {
         Outcome::Solved(values) => plan.curve(&values).ok(),
-        Outcome::Infeasible | Outcome::Failed(_) => None,
+        Outcome::Infeasible | Outcome::Failed(_) | Outcome::OutOfTime => None,
     }
 }
 
@@ -167,6 +274,7 @@ impl Plan {
         let bounds = &self.bounds;
         let bounded = [
             (Limit::Speed, bounds.speed_max_m_s),
+            (Limit::Acceleration, bounds.acceleration_max_m_s2),
             (Limit::Tilt, bounds.tilt_max_rad),
             (Limit::ThrustMin, bounds.thrust_min_m_s2),
             (Limit::ThrustMax, bounds.thrust_max_m_s2),
@@ -180,21 +288,56 @@ impl Plan {
 
     /// Whether a curve keeps to every limit, by its control points and at the waypoints.
     pub(super) fn kept_by(&self, curve: &BSpline) -> bool {
-        let kept = |limit| self.needed(limit, curve).is_some_and(|needed| self.remedy(limit, needed).is_none());
+        let kept = |limit| self.needed(limit, curve).is_some_and(|needed| !self.is_too_tight(limit, needed));
         self.limits().into_iter().all(kept)
     }
 
-    /// A limit and what is needed of it, with room; `None` if it is not too tight at all.
-    fn remedy(&self, limit: Limit, needed: f64) -> Option<Remedy> {
+    /// Whether more is needed of a limit than is given.
+    fn is_too_tight(&self, limit: Limit, needed: f64) -> bool {
         let given = self.given(limit);
-        let too_tight = if limit == Limit::ThrustMin {
-            needed < given - TOUCHED
-        } else {
-            needed > given * (1.0 + TOUCHED) + TOUCHED
-        };
-        // Room is a part of the value, but for thrust of its distance to hover.
+        if limit == Limit::ThrustMin { needed < given - TOUCHED } else { needed > given * (1.0 + TOUCHED) + TOUCHED }
+    }
+
+    /// A limit and what is needed of it, with room and as it is printed; `None` if it is not too tight at all.
+    fn remedy(&self, limit: Limit, needed: f64, room: f64) -> Option<Remedy> {
+        let given = self.given(limit);
+        // Of a thrust, what counts is its distance to hover.
         let hover = if matches!(limit, Limit::ThrustMin | Limit::ThrustMax) { GRAVITY_M_S2 } else { 0.0 };
-        too_tight.then_some(Remedy { limit, given, enough: needed + ROOM * (needed - hover) })
+        let with_room = needed + room * (needed - hover);
+        let enough = match limit {
+            Limit::Tilt | Limit::BodyRate => outwards(with_room.to_degrees()).to_radians(),
+            // Sums with g are a rounding off.
+            _ => ((hover + outwards(with_room - hover)) * 1e9).round() / 1e9,
+        };
+        self.is_too_tight(limit, needed).then_some(Remedy { limit, given, enough })
+    }
+
+    /// The plan with remedies taken.
+    fn with(&self, remedies: &[Remedy]) -> Self {
+        let mut plan = self.clone();
+        for Remedy { limit, enough, .. } in remedies {
+            let bounds = &mut plan.bounds;
+            match *limit {
+                Limit::Speed => bounds.speed_max_m_s = Some(*enough),
+                Limit::Acceleration => bounds.acceleration_max_m_s2 = Some(*enough),
+                Limit::Tilt => bounds.tilt_max_rad = Some(*enough),
+                Limit::ThrustMin => bounds.thrust_min_m_s2 = Some(*enough),
+                Limit::ThrustMax => bounds.thrust_max_m_s2 = Some(*enough),
+                Limit::BodyRate => bounds.body_rate_max_rad_s = Some(*enough),
+                Limit::Corridor(index) => {
+                    if let Some(corridor) = plan.corridors.get_mut(index) {
+                        corridor.min_m.add_scalar_mut(-enough);
+                        corridor.max_m.add_scalar_mut(*enough);
+                    }
+                }
+                Limit::Waypoints => {
+                    let last = plan.waypoints.len().saturating_sub(1);
+                    plan.waypoints.iter_mut().take(last).skip(1).for_each(|waypoint| waypoint.tolerance_m += enough);
+                }
+                Limit::Duration => {}
+            }
+        }
+        plan
     }
 
     /// Value of a limit, SI; 0 where none is given, and for corridors and waypoints, which count what is added.
@@ -202,11 +345,12 @@ impl Plan {
         let bounds = &self.bounds;
         let bound = match limit {
             Limit::Speed => bounds.speed_max_m_s,
+            Limit::Acceleration => bounds.acceleration_max_m_s2,
             Limit::Tilt => bounds.tilt_max_rad,
             Limit::ThrustMin => bounds.thrust_min_m_s2,
             Limit::ThrustMax => bounds.thrust_max_m_s2,
             Limit::BodyRate => bounds.body_rate_max_rad_s,
-            Limit::Corridor(_) | Limit::Waypoints => None,
+            Limit::Corridor(_) | Limit::Waypoints | Limit::Duration => None,
         };
         bound.unwrap_or(0.0)
     }
@@ -215,7 +359,7 @@ impl Plan {
     fn slack_scale(&self, limit: Limit) -> f64 {
         let given = self.given(limit);
         match limit {
-            Limit::Speed => given,
+            Limit::Speed | Limit::Acceleration | Limit::Duration => given,
             Limit::Tilt => given.tan() * GRAVITY_M_S2,
             Limit::ThrustMin | Limit::ThrustMax => (given - GRAVITY_M_S2).abs(),
             Limit::BodyRate => given * GRAVITY_M_S2,
@@ -232,6 +376,8 @@ impl Plan {
         let thrusts = || curve.derivative_control_points(2).into_iter().map(|acceleration| acceleration + gravity);
         match limit {
             Limit::Speed => Some(largest(curve.derivative_control_points(1).iter().map(Vector3::norm))),
+            Limit::Acceleration => Some(largest(curve.derivative_control_points(2).iter().map(Vector3::norm))),
+            Limit::Duration => None,
             Limit::Tilt => {
                 let tilt_rad = largest(thrusts().map(|thrust| thrust.xy().norm().atan2(thrust.z)));
                 (tilt_rad < std::f64::consts::FRAC_PI_2).then_some(tilt_rad)

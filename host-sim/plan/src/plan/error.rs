@@ -4,15 +4,18 @@ use std::fmt;
 
 use super::diagnosis::Infeasibility;
 use crate::trajectory::bspline::BSplineError;
+use crate::trajectory::waypoints::WaypointsError;
 
 /// Why a plan gives no curve.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PlanError {
     /// Nothing in the file.
-    #[error(
-        "the plan is empty: it needs degree, spans, duration_s, snap_sample_period_s and at least two [[waypoints]]"
-    )]
+    #[error("the plan is empty: it needs at least two [[waypoints]] with position_m, and time_s or [bounds]")]
     Empty,
+    /// Rows of waypoints that cannot be used.
+    #[error(transparent)]
+    Rows(#[from] WaypointsError),
     /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
     #[error("line {line}: {reason}")]
     Syntax {
@@ -44,7 +47,7 @@ pub enum PlanError {
     #[error("{waypoint}: {}", if *.twice {
         "has time_s, and segment_shares is given too: keep one of the two"
     } else {
-        "has no time_s: give it, or segment_shares for all"
+        "has no time_s: give it, or segment_shares for all, or no times at all to have them found from the bounds"
     })]
     WaypointTime {
         /// Which one.
@@ -68,14 +71,71 @@ pub enum PlanError {
         /// The time of the one before, s.
         before_s: f64,
     },
-    /// The first waypoint is not at 0 or the last not at the end.
-    #[error("{waypoint}: must be at {expected_s} s, since the {} waypoint is where the flight {}",
-        if *expected_s == 0.0 { "first" } else { "last" }, if *expected_s == 0.0 { "starts" } else { "ends (duration_s)" })]
-    EndTime {
-        /// The first or the last.
+    /// The first waypoint is not at 0.
+    #[error("{waypoint}: must be at 0 s, since the first waypoint is where the flight starts")]
+    StartTime {
+        /// The first.
         waypoint: WaypointName,
-        /// Where it must be, s.
-        expected_s: f64,
+    },
+    /// Shares of nothing.
+    #[error("segment_shares: shares of duration_s, which is not given; give it, or leave segment_shares out")]
+    SharesWithoutDuration,
+    /// Nothing from which times could be found.
+    #[error(
+        "no times and nothing to find them from: give time_s at the waypoints, or duration_s with segment_shares, or bounds: \
+         speed_max_m_s and acceleration_max_m_s2, or vehicle"
+    )]
+    NothingBounds,
+    /// Velocities at waypoints whose times are to be found.
+    #[error("velocity_m_s and rest_to_rest = false need time_s at the waypoints")]
+    MovingWithoutTimes,
+    /// Corridors over times that are to be found.
+    #[error("[[corridors]]: from_s and to_s need time_s at the waypoints; leave them out for the whole flight")]
+    CorridorWithoutTimes,
+    /// A pause whose length is not said.
+    #[error("{waypoint}: the same place as the one before it; a pause needs time_s at the waypoints")]
+    PauseWithoutTimes {
+        /// The later one.
+        waypoint: WaypointName,
+    },
+    /// No times within the bounds.
+    #[error(
+        "no times were found with which a curve meets the bounds, however slow: give the waypoints room in corridors, more \
+         spans, or a thrust_max_m_s2 further above g"
+    )]
+    NoTimes,
+    /// Rest and motion at one place.
+    #[error("{waypoint}: has a velocity_m_s where the flight rests; leave out the one or the other")]
+    MovingStop {
+        /// Which one.
+        waypoint: WaypointName,
+    },
+    /// A box that would not be one along the axes any more.
+    #[error("[[corridors]]: boxes along the axes cannot be turned; turn the trajectory after it is planned")]
+    TurnedCorridor,
+    /// Several curves where one is asked for.
+    #[error("the flight has stops and so several curves; plan it as a flight (FlightPlan)")]
+    SeveralCurves,
+    /// A vehicle that is not known or cannot fly.
+    #[error("bounds.vehicle = {name:?}: {reason}")]
+    Vehicle {
+        /// As written.
+        name: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A heading that turns too fast for its bound.
+    #[error(
+        "no heading meets the plan: yaw_rate_max_deg_s = {} is too tight ({enough_deg_s} would do), or duration_s is too short \
+         ({duration_s} would do); the rest kept", (given_deg_s * 1e9).round() / 1e9
+    )]
+    HeadingRate {
+        /// The bound, deg/s.
+        given_deg_s: f64,
+        /// A bound that would do, deg/s.
+        enough_deg_s: f64,
+        /// A duration that would do, s.
+        duration_s: f64,
     },
     /// Schoenberg and Whitney's condition fails: two waypoints would have to be met with one control point.
     #[error(
@@ -103,6 +163,12 @@ pub enum PlanError {
     /// No curve meets the plan.
     #[error("{0}")]
     Infeasible(Infeasibility),
+    /// No answer in the time allowed.
+    #[error("no answer within {limit_s} s; take fewer spans or waypoints, or allow more time")]
+    TimeLimit {
+        /// The time allowed, s.
+        limit_s: f64,
+    },
     /// The solver stopped without an answer.
     #[error(
         "the solver stopped without an answer ({0}): the plan is at the edge of what its bounds allow, or its numbers \
@@ -114,7 +180,7 @@ pub enum PlanError {
 impl PlanError {
     /// Whether the plan was understood and found to be impossible, rather than not understood or not solved.
     pub fn is_infeasible(&self) -> bool {
-        matches!(self, Self::Infeasible(_))
+        matches!(self, Self::Infeasible(_) | Self::HeadingRate { .. })
     }
 }
 

@@ -1,272 +1,572 @@
-//! Plan files: TOML in, a [`Plan`] whose numbers are all in range out.
+//! Plan files: TOML, or rows of waypoints, in; a [`FlightPlan`] whose numbers are all in range out.
+
+mod entries;
 
 use nalgebra::Vector3;
 use quatrack_design::model::GRAVITY_M_S2;
-use serde::Deserialize;
+use quatrack_design::vehicle::Vehicle;
 
 use super::error::{PlanError, WaypointName};
-use super::{Bounds, Corridor, Plan, Waypoint};
+use super::times::Free;
+use super::{Bounds, Budget, Corridor, FlightPlan, Plan, Waypoint};
 use crate::trajectory::bspline::UniformBasis;
+use crate::trajectory::transform::Transform;
+use crate::trajectory::waypoints::{self, WaypointRow};
+use entries::{BoundsEntry, CorridorEntry, PlanFile, WaypointEntry, check, check_point};
 
 /// More spans than any flight here needs; keeps a slip of the finger from filling the memory.
 const MOST_SPANS: usize = 500;
-/// Far beyond any flight; keeps products of numbers in range.
-const LARGEST_COORDINATE_M: f64 = 1e5;
-/// Likewise for times.
-const LONGEST_S: f64 = 1e5;
-/// Shortest flight; shorter ones have snaps beyond what the solver can scale.
-const SHORTEST_S: f64 = 1e-2;
+/// Longest and shortest flight, s; shorter ones have snaps beyond what the solver can scale.
+const DURATIONS_S: std::ops::RangeInclusive<f64> = 1e-2..=1e5;
 /// Two times closer than this part of the duration are the same; that of a decimal number written in full.
 const SAME_TIME: f64 = 1e-12;
+/// Room that a flight in the least time is given, so that a curve smoother than the fastest meets its bounds.
+const ROOMS: [f64; 4] = [1.005, 1.01, 1.02, 1.05];
 
-/// A plan as written.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct PlanFile {
-    degree: usize,
-    spans: usize,
-    duration_s: f64,
-    #[serde(default = "yes")]
-    rest_to_rest: bool,
-    snap_sample_period_s: f64,
-    #[serde(default = "one")]
-    body_rate_slack_reward: f64,
-    segment_shares: Option<Vec<f64>>,
-    #[serde(default)]
-    waypoints: Vec<WaypointEntry>,
-    #[serde(default)]
-    bounds: BoundsEntry,
-    #[serde(default)]
-    corridors: Vec<CorridorEntry>,
+/// From the name of a vehicle, as a file has it, to its figures, or to what is wrong with it in one line.
+pub type FindVehicle<'a> = &'a dyn Fn(&str) -> Result<Vehicle, String>;
+
+/// What goes over the keys of a file, each where it is given.
+#[derive(Clone, Copy, Default)]
+pub struct Overrides<'a> {
+    /// Bounds, SI.
+    pub bounds: Bounds,
+    /// A vehicle whose thrust and rates bound the flight.
+    pub vehicle: Option<&'a Vehicle>,
+    /// Length in time, s.
+    pub duration_s: Option<f64>,
+    /// Where the flight is moved, turned, scaled.
+    pub transform: Transform,
+    /// Finds the vehicle that a file names.
+    pub vehicles: Option<FindVehicle<'a>>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct WaypointEntry {
-    time_s: Option<f64>,
-    position_m: [f64; 3],
-    #[serde(default)]
-    tolerance_m: f64,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BoundsEntry {
-    speed_max_m_s: Option<f64>,
-    tilt_max_deg: Option<f64>,
-    thrust_min_m_s2: Option<f64>,
-    thrust_max_m_s2: Option<f64>,
-    body_rate_max_deg_s: Option<f64>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CorridorEntry {
-    from_s: Option<f64>,
-    to_s: Option<f64>,
-    min_m: [f64; 3],
-    max_m: [f64; 3],
-}
-
-fn yes() -> bool {
-    true
-}
-
-fn one() -> f64 {
-    1.0
-}
-
-/// Reads a plan.
-pub(super) fn read(text: &str) -> Result<Plan, PlanError> {
+/// Reads a plan, TOML or rows of waypoints.
+pub(super) fn read(text: &str, over: &Overrides<'_>, budget: &Budget<'_>) -> Result<FlightPlan, PlanError> {
     if text.lines().all(|line| line.split('#').next().is_none_or(|data| data.trim().is_empty())) {
         return Err(PlanError::Empty);
     }
-    let file: PlanFile = toml::from_str(text).map_err(|error| syntax(text, &error))?;
-    check_spline(&file)?;
-    let waypoints = waypoints(&file)?;
-    let plan = Plan {
-        basis: UniformBasis::new(file.degree, file.spans, file.duration_s)?,
-        rest_to_rest: file.rest_to_rest,
-        snap_sample_period_s: file.snap_sample_period_s,
-        body_rate_slack_reward: file.body_rate_slack_reward,
-        bounds: bounds(&file.bounds)?,
-        corridors: corridors(&file)?,
-        waypoints,
+    let file = if waypoints::recognises(text) {
+        PlanFile::of_rows(&waypoints::parse(text).map_err(PlanError::Rows)?)
+    } else {
+        PlanFile::parse(text)?
     };
-    plan.check_spans()?;
-    Ok(plan)
+    build(file, over, budget)
 }
 
-fn syntax(text: &str, error: &toml::de::Error) -> PlanError {
-    let start = error.span().map_or(0, |span| span.start);
-    let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
-    let words: Vec<&str> = error.message().split_whitespace().collect();
-    PlanError::Syntax { line, reason: words.join(" ") }
+impl PlanFile {
+    /// Rows of waypoints with the defaults of every other key; the first row is at time 0.
+    fn of_rows(rows: &[WaypointRow]) -> Self {
+        let start_s = rows.first().and_then(|row| row.time_s).unwrap_or(0.0);
+        let entry = |row: &WaypointRow| WaypointEntry {
+            time_s: row.time_s.map(|time_s| time_s - start_s),
+            position_m: row.position_m.into(),
+            yaw_deg: row.yaw_rad.map(f64::to_degrees),
+            ..WaypointEntry::default()
+        };
+        Self { waypoints: rows.iter().map(entry).collect(), ..Self::default() }
+    }
 }
 
-/// `Ok` if `holds`; a NaN makes every comparison false and so never passes.
-fn check(holds: bool, field: impl Into<String>, value: f64, must: impl Into<String>) -> Result<(), PlanError> {
-    if holds { Ok(()) } else { Err(PlanError::Value { field: field.into(), value, must: must.into() }) }
+fn build(mut file: PlanFile, over: &Overrides<'_>, budget: &Budget<'_>) -> Result<FlightPlan, PlanError> {
+    if let Some(duration_s) = over.duration_s {
+        file.duration_s = Some(duration_s);
+    }
+    check_spline(&file)?;
+    let mut waypoints = waypoints(&file)?;
+    let bounds = bounds(&file.bounds, over)?;
+    let mut notes = Vec::new();
+    let stops = stops(&file, &waypoints, &mut notes)?;
+    let mut corridors = file.corridors.clone();
+    transform(&over.transform, &mut file, &mut waypoints, &mut corridors)?;
+    let stops: Vec<bool> = if over.transform.reverse { stops.into_iter().rev().collect() } else { stops };
+    let free = times(&file, &mut waypoints, &bounds, &corridors, &stops, budget, &mut notes)?;
+    headings(&mut waypoints, &stops);
+    let legs = legs(&file, &waypoints, &bounds, &corridors, &stops, free)?;
+    let legs = if free && file.duration_s.is_none() { roomy(legs, budget) } else { legs };
+    Ok(FlightPlan { legs, free, notes })
 }
 
 fn check_spline(file: &PlanFile) -> Result<(), PlanError> {
-    let PlanFile { degree, spans, duration_s, snap_sample_period_s, body_rate_slack_reward, .. } = *file;
+    let degree = file.degree;
     check(
         (4..=7).contains(&degree),
         "degree",
         degree as f64,
         "from 4, the least with a snap, to 7, the most that is flown",
     )?;
-    let fewest = if file.rest_to_rest { 8_usize.saturating_sub(degree).max(1) } else { 1 };
-    let must = format!(
-        "from {fewest}{} to {MOST_SPANS}",
-        if fewest > 1 { " (four control points at rest at each end)" } else { "" }
-    );
-    check((fewest..=MOST_SPANS).contains(&spans), "spans", spans as f64, must)?;
-    check(
-        (SHORTEST_S..=LONGEST_S).contains(&duration_s),
-        "duration_s",
-        duration_s,
-        format!("from {SHORTEST_S} to {LONGEST_S} s"),
-    )?;
-    // With fewer samples than the snap has coefficients in a span, a curve could wiggle between them for nothing.
-    let longest_s = duration_s / (spans * (degree - 3)) as f64;
-    check(
-        snap_sample_period_s >= 1e-6 * duration_s && snap_sample_period_s <= longest_s * (1.0 + SAME_TIME),
-        "snap_sample_period_s",
-        snap_sample_period_s,
-        format!(
-            "above 0 and at most {longest_s:.6} s, that is {} samples a span (and at least a millionth of duration_s)",
-            degree - 3
-        ),
-    )?;
-    check(
-        (0.0..=1e6).contains(&body_rate_slack_reward),
-        "body_rate_slack_reward",
-        body_rate_slack_reward,
-        "from 0 (none) to 1e6",
-    )
-}
-
-fn check_point(name: &str, point: [f64; 3]) -> Result<Vector3<f64>, PlanError> {
-    for value in point {
-        check(
-            value.abs() <= LARGEST_COORDINATE_M,
-            name,
-            value,
-            format!("a finite number within {LARGEST_COORDINATE_M} m of 0"),
-        )?;
+    if let Some(spans) = file.spans {
+        let fewest = fewest_spans(degree, file.rest_to_rest);
+        let rest = if fewest > 1 { " (four control points at rest at each end)" } else { "" };
+        let must = format!("from {fewest}{rest} to {MOST_SPANS}");
+        check((fewest..=MOST_SPANS).contains(&spans), "spans", spans as f64, must)?;
     }
-    Ok(Vector3::from(point))
+    if let Some(duration_s) = file.duration_s {
+        let must = format!("from {} to {} s", DURATIONS_S.start(), DURATIONS_S.end());
+        check(DURATIONS_S.contains(&duration_s), "duration_s", duration_s, must)?;
+    }
+    let reward = file.body_rate_slack_reward;
+    check((0.0..=1e6).contains(&reward), "body_rate_slack_reward", reward, "from 0 (none) to 1e6")
 }
 
-/// Times of the waypoints, s, from `time_s` or from `segment_shares`.
-fn times_s(file: &PlanFile) -> Result<Vec<f64>, PlanError> {
-    let entries = file.waypoints.iter().zip(1..);
-    let Some(shares) = &file.segment_shares else {
-        return entries
-            .map(|(entry, number)| {
-                let name = WaypointName { number, time_s: None };
-                entry.time_s.ok_or(PlanError::WaypointTime { waypoint: name, twice: false })
+fn fewest_spans(degree: usize, rest: bool) -> usize {
+    if rest { 8_usize.saturating_sub(degree).max(1) } else { 1 }
+}
+
+/// Waypoints with the times that are written, and not a number where there are none.
+fn waypoints(file: &PlanFile) -> Result<Vec<Waypoint>, PlanError> {
+    let count = file.waypoints.len();
+    if count < 2 {
+        return Err(PlanError::TooFewWaypoints(count));
+    }
+    let velocities = file.waypoints.iter().filter(|entry| entry.velocity_m_s.is_some()).count();
+    if !file.rest_to_rest && count + velocities < 4 {
+        return Err(PlanError::Undetermined(count));
+    }
+    let largest = entries::LARGEST_COORDINATE_M;
+    file.waypoints
+        .iter()
+        .zip(1..)
+        .map(|(entry, number)| {
+            let field = format!("waypoint {number}: tolerance_m");
+            let must = format!("from 0 (met exactly) to {largest} m");
+            check((0.0..=largest).contains(&entry.tolerance_m), &field, entry.tolerance_m, must)?;
+            if number == 1 || number == count {
+                let must = "0 or left out: the flight starts and ends exactly";
+                check(entry.tolerance_m == 0.0, field, entry.tolerance_m, must)?;
+            }
+            let position_m = check_point(&format!("waypoint {number}: position_m"), entry.position_m)?;
+            let velocity_m_s = entry
+                .velocity_m_s
+                .map(|velocity| check_point(&format!("waypoint {number}: velocity_m_s"), velocity))
+                .transpose()?;
+            if let Some(yaw_deg) = entry.yaw_deg {
+                let must = "a finite number within 1e6 degrees, turns counted";
+                check(yaw_deg.abs() <= 1e6, format!("waypoint {number}: yaw_deg"), yaw_deg, must)?;
+            }
+            Ok(Waypoint {
+                time_s: f64::NAN,
+                position_m,
+                tolerance_m: entry.tolerance_m,
+                velocity_m_s,
+                heading_rad: entry.yaw_deg.map(f64::to_radians),
             })
-            .collect();
-    };
-    for (entry, number) in entries {
-        if entry.time_s.is_some() {
-            let waypoint = WaypointName { number, time_s: entry.time_s };
-            return Err(PlanError::WaypointTime { waypoint, twice: true });
+        })
+        .collect()
+}
+
+/// Where the flight comes to rest: where a waypoint says so, and where two follow each other at the same place.
+fn stops(file: &PlanFile, waypoints: &[Waypoint], notes: &mut Vec<String>) -> Result<Vec<bool>, PlanError> {
+    let last = waypoints.len() - 1;
+    let mut stops: Vec<bool> = file.waypoints.iter().map(|entry| entry.stop).collect();
+    for index in 0..last {
+        let [here, next] = [&waypoints[index], &waypoints[index + 1]];
+        let exact = here.tolerance_m == 0.0 && next.tolerance_m == 0.0;
+        let free = here.velocity_m_s.is_none() && next.velocity_m_s.is_none();
+        if here.position_m == next.position_m && exact && free && last > 1 {
+            (stops[index], stops[index + 1]) = (true, true);
+            notes.push(format!("waypoints {} and {} are the same place: it rests there", index + 1, index + 2));
         }
     }
+    for (index, (stop, waypoint)) in stops.iter_mut().zip(waypoints).enumerate() {
+        let moving = waypoint.velocity_m_s.is_some_and(|velocity| velocity != Vector3::zeros());
+        let rests = *stop || (file.rest_to_rest && (index == 0 || index == last));
+        if rests && moving {
+            let waypoint = WaypointName { number: index + 1, time_s: file.waypoints[index].time_s };
+            return Err(PlanError::MovingStop { waypoint });
+        }
+        // A stop is met where it is said to be.
+        if *stop && waypoint.tolerance_m > 0.0 {
+            let field = format!("waypoint {}: tolerance_m", index + 1);
+            check(false, field, waypoint.tolerance_m, "0 or left out: a stop is met exactly")?;
+        }
+        *stop &= index != 0 && index != last;
+    }
+    Ok(stops)
+}
+
+/// Moves, turns, scales and reverses what the file says, before anything is planned.
+fn transform(
+    transform: &Transform,
+    file: &mut PlanFile,
+    waypoints: &mut [Waypoint],
+    corridors: &mut [CorridorEntry],
+) -> Result<(), PlanError> {
+    if *transform == Transform::default() {
+        return Ok(());
+    }
+    if transform.turn_rad != 0.0 && !corridors.is_empty() {
+        return Err(PlanError::TurnedCorridor);
+    }
+    let written_s = file.waypoints.iter().filter_map(|entry| entry.time_s).fold(0.0, f64::max);
+    let end_s = file.duration_s.unwrap_or(written_s);
+    if transform.reverse {
+        waypoints.reverse();
+        file.waypoints.reverse();
+        if let Some(shares) = &mut file.segment_shares {
+            shares.reverse();
+        }
+        for entry in &mut file.waypoints {
+            entry.time_s = entry.time_s.map(|time_s| written_s - time_s);
+        }
+        for corridor in corridors.iter_mut() {
+            (corridor.from_s, corridor.to_s) =
+                (corridor.to_s.map(|to_s| end_s - to_s), corridor.from_s.map(|from_s| end_s - from_s));
+        }
+    }
+    let sign = if transform.reverse { -1.0 } else { 1.0 };
+    let origin_m = waypoints[0].position_m;
+    for waypoint in waypoints.iter_mut() {
+        waypoint.position_m = transform.point(&origin_m, &waypoint.position_m);
+        waypoint.tolerance_m *= transform.scale;
+        waypoint.velocity_m_s =
+            waypoint.velocity_m_s.map(|velocity| transform.vector(&velocity) * (sign / transform.time_scale));
+        waypoint.heading_rad = waypoint.heading_rad.map(|heading_rad| heading_rad + transform.turn_rad);
+    }
+    if transform.turn_rad != 0.0 && waypoints[0].heading_rad.is_none() {
+        waypoints[0].heading_rad = Some(transform.turn_rad);
+    }
+    for corridor in corridors {
+        let [min_m, max_m] = [corridor.min_m, corridor.max_m].map(|p| transform.point(&origin_m, &Vector3::from(p)));
+        (corridor.min_m, corridor.max_m) = (min_m.into(), max_m.into());
+        corridor.from_s = corridor.from_s.map(|from_s| transform.time_scale * from_s);
+        corridor.to_s = corridor.to_s.map(|to_s| transform.time_scale * to_s);
+    }
+    file.duration_s = file.duration_s.map(|duration_s| transform.time_scale * duration_s);
+    file.snap_sample_period_s = file.snap_sample_period_s.map(|period_s| transform.time_scale * period_s);
+    for entry in &mut file.waypoints {
+        entry.time_s = entry.time_s.map(|time_s| transform.time_scale * time_s);
+    }
+    Ok(())
+}
+
+/// Puts times at the waypoints, from the file or the least within the bounds; whether they were free.
+fn times(
+    file: &PlanFile,
+    waypoints: &mut [Waypoint],
+    bounds: &Bounds,
+    corridors: &[CorridorEntry],
+    stops: &[bool],
+    budget: &Budget<'_>,
+    notes: &mut Vec<String>,
+) -> Result<bool, PlanError> {
+    let timed = file.waypoints.iter().filter(|entry| entry.time_s.is_some()).count();
+    let times_s = match (&file.segment_shares, timed) {
+        (Some(shares), 0) => of_shares(file, shares)?,
+        (Some(_), _) => {
+            let first = file.waypoints.iter().zip(1..).find(|(entry, _)| entry.time_s.is_some());
+            let waypoint = first.map_or(WaypointName { number: 1, time_s: None }, |(entry, number)| WaypointName {
+                number,
+                time_s: entry.time_s,
+            });
+            return Err(PlanError::WaypointTime { waypoint, twice: true });
+        }
+        (None, 0) => {
+            let places: Vec<_> = waypoints.iter().map(|waypoint| (waypoint.position_m, waypoint.tolerance_m)).collect();
+            return free_times(file, waypoints, &places, bounds, corridors, stops, budget).map(|()| true);
+        }
+        (None, _) => written(file)?,
+    };
+    let end_s = *times_s.last().unwrap_or(&0.0);
+    let duration_s = file.duration_s.unwrap_or(end_s);
+    let must = format!("from {} to {} s", DURATIONS_S.start(), DURATIONS_S.end());
+    check(DURATIONS_S.contains(&duration_s), "duration_s", duration_s, must)?;
+    // Another duration than the waypoints' own stretches them; the same keeps them to the bit.
+    let ratio = duration_s / end_s;
+    let stretches = (ratio - 1.0).abs() > SAME_TIME;
+    if stretches {
+        notes.push(format!("the times of the waypoints are stretched by {ratio:.6} to duration_s = {duration_s}"));
+    }
+    let last = waypoints.len() - 1;
+    let mut before_s: Option<f64> = None;
+    for (index, (waypoint, time_s)) in waypoints.iter_mut().zip(&times_s).enumerate() {
+        let name = WaypointName { number: index + 1, time_s: Some(*time_s) };
+        let time_s = if index == last {
+            duration_s
+        } else if stretches {
+            time_s * ratio
+        } else {
+            *time_s
+        };
+        if let Some(before_s) = before_s
+            && time_s <= before_s + SAME_TIME * duration_s
+        {
+            return Err(PlanError::NotIncreasing { waypoint: name, before_s });
+        }
+        before_s = Some(time_s);
+        waypoint.time_s = time_s;
+    }
+    Ok(false)
+}
+
+/// Times of the waypoints as written, s; the first is 0.
+fn written(file: &PlanFile) -> Result<Vec<f64>, PlanError> {
+    let mut times_s = Vec::new();
+    for (entry, number) in file.waypoints.iter().zip(1..) {
+        let name = WaypointName { number, time_s: None };
+        times_s.push(entry.time_s.ok_or(PlanError::WaypointTime { waypoint: name, twice: false })?);
+    }
+    let end_s = *times_s.last().unwrap_or(&0.0);
+    for (time_s, number) in times_s.iter_mut().zip(1..) {
+        if number == 1 {
+            if time_s.abs() > SAME_TIME * end_s.abs() {
+                let waypoint = WaypointName { number, time_s: Some(*time_s) };
+                return Err(PlanError::StartTime { waypoint });
+            }
+            *time_s = 0.0;
+        }
+        let must = format!("from 0 to that of the last waypoint, {end_s} s");
+        let inside = *time_s >= 0.0 && *time_s <= end_s * (1.0 + SAME_TIME);
+        check(inside, format!("waypoint {number}: time_s"), *time_s, must)?;
+    }
+    Ok(times_s)
+}
+
+fn of_shares(file: &PlanFile, shares: &[f64]) -> Result<Vec<f64>, PlanError> {
     if shares.len() + 1 != file.waypoints.len() {
         return Err(PlanError::SegmentShares { found: shares.len(), waypoints: file.waypoints.len() });
     }
     for (share, number) in shares.iter().zip(1..) {
         check(*share > 0.0 && *share <= 1e9, format!("segment_shares, entry {number}"), *share, "above 0, up to 1e9")?;
     }
+    let Some(duration_s) = file.duration_s else { return Err(PlanError::SharesWithoutDuration) };
     let total: f64 = shares.iter().sum();
     let mut passed = 0.0;
     let later = shares.iter().map(|share| {
         passed += share;
-        file.duration_s * (passed / total)
+        duration_s * (passed / total)
     });
     Ok(std::iter::once(0.0).chain(later).collect())
 }
 
-fn waypoints(file: &PlanFile) -> Result<Vec<Waypoint>, PlanError> {
-    let count = file.waypoints.len();
-    if count < 2 {
-        return Err(PlanError::TooFewWaypoints(count));
+/// The least times within the bounds, from stop to stop; with a duration, in proportion to them.
+fn free_times(
+    file: &PlanFile,
+    waypoints: &mut [Waypoint],
+    places: &[(Vector3<f64>, f64)],
+    bounds: &Bounds,
+    corridors: &[CorridorEntry],
+    stops: &[bool],
+    budget: &Budget<'_>,
+) -> Result<(), PlanError> {
+    let accelerates = [bounds.acceleration_max_m_s2, bounds.tilt_max_rad, bounds.thrust_max_m_s2];
+    if bounds.speed_max_m_s.is_none() && accelerates.iter().all(Option::is_none) {
+        return Err(PlanError::NothingBounds);
     }
-    if !file.rest_to_rest && count < 4 {
-        return Err(PlanError::Undetermined(count));
+    if !file.rest_to_rest || waypoints.iter().any(|waypoint| waypoint.velocity_m_s.is_some()) {
+        return Err(PlanError::MovingWithoutTimes);
     }
-    let mut waypoints: Vec<Waypoint> = Vec::with_capacity(count);
-    for ((entry, mut time_s), number) in file.waypoints.iter().zip(times_s(file)?).zip(1..) {
-        let name = WaypointName { number, time_s: Some(time_s) };
-        let inside = time_s >= 0.0 && time_s <= file.duration_s * (1.0 + SAME_TIME);
-        let must = format!("from 0 to duration_s = {} s", file.duration_s);
-        check(inside, format!("waypoint {number}: time_s"), time_s, must)?;
-        // The ends are where the flight starts and ends, and are met exactly, whatever is written.
-        let end_s = if number == 1 { Some(0.0) } else { (number == count).then_some(file.duration_s) };
-        if let Some(expected_s) = end_s {
-            if (time_s - expected_s).abs() > SAME_TIME * file.duration_s {
-                return Err(PlanError::EndTime { waypoint: name, expected_s });
+    if corridors.iter().any(|corridor| corridor.from_s.is_some() || corridor.to_s.is_some()) {
+        return Err(PlanError::CorridorWithoutTimes);
+    }
+    let corridors = corridors_of(corridors, f64::INFINITY)?;
+    let mut start = 0;
+    let mut start_s = 0.0;
+    waypoints[0].time_s = 0.0;
+    for end in 1..waypoints.len() {
+        if end + 1 != waypoints.len() && !stops[end] {
+            continue;
+        }
+        let places = &places[start..=end];
+        if places.len() == 2 && places[0].0 == places[1].0 {
+            let waypoint = WaypointName { number: end + 1, time_s: None };
+            return Err(PlanError::PauseWithoutTimes { waypoint });
+        }
+        let spans = file.spans.unwrap_or((16 * (places.len() - 1)).clamp(60, 160));
+        let free = Free { places, bounds, corridors: &corridors, degree: file.degree, spans };
+        let Some(times_s) = free.times_s(budget) else {
+            return Err(if budget.is_over() {
+                PlanError::TimeLimit { limit_s: budget.limit_s() }
+            } else {
+                PlanError::NoTimes
+            });
+        };
+        for (waypoint, time_s) in waypoints[start..=end].iter_mut().zip(times_s) {
+            waypoint.time_s = start_s + time_s;
+        }
+        (start, start_s) = (end, waypoints[end].time_s);
+    }
+    if let Some(duration_s) = file.duration_s {
+        let ratio = duration_s / start_s;
+        waypoints.iter_mut().for_each(|waypoint| waypoint.time_s *= ratio);
+    }
+    Ok(())
+}
+
+/// Headings at the start and at stops, where there are any at all: 0 at the start unless one is given there, and in between
+/// in proportion to time; behind the last one it stays.
+fn headings(waypoints: &mut [Waypoint], stops: &[bool]) {
+    if waypoints.iter().all(|waypoint| waypoint.heading_rad.is_none()) {
+        return;
+    }
+    waypoints[0].heading_rad.get_or_insert(0.0);
+    for index in 1..waypoints.len() {
+        if !stops[index] || waypoints[index].heading_rad.is_some() {
+            continue;
+        }
+        let known = |waypoint: &Waypoint| Some((waypoint.time_s, waypoint.heading_rad?));
+        let before = waypoints[..index].iter().rev().find_map(known).unwrap_or((0.0, 0.0));
+        let after = waypoints[index..].iter().find_map(known).unwrap_or((f64::INFINITY, before.1));
+        let share = (waypoints[index].time_s - before.0) / (after.0 - before.0);
+        waypoints[index].heading_rad = Some(before.1 + share * (after.1 - before.1));
+    }
+}
+
+/// One plan from stop to stop.
+fn legs(
+    file: &PlanFile,
+    waypoints: &[Waypoint],
+    bounds: &Bounds,
+    corridors: &[CorridorEntry],
+    stops: &[bool],
+    free: bool,
+) -> Result<Vec<Plan>, PlanError> {
+    let last = waypoints.len() - 1;
+    let duration_s = waypoints[last].time_s;
+    let corridors = corridors_of(corridors, duration_s)?;
+    let mut legs = Vec::new();
+    let mut start = 0;
+    for end in 1..=last {
+        if end != last && !stops[end] {
+            continue;
+        }
+        let start_s = waypoints[start].time_s;
+        let leg_s = waypoints[end].time_s - start_s;
+        let rest = [start != 0 || file.rest_to_rest, end != last || file.rest_to_rest];
+        let mut own = waypoints[start..=end].to_vec();
+        for waypoint in &mut own {
+            waypoint.time_s = if start == 0 { waypoint.time_s } else { waypoint.time_s - start_s };
+        }
+        if let Some(end_waypoint) = own.last_mut() {
+            end_waypoint.time_s = leg_s;
+        }
+        let fewest = fewest_spans(file.degree, rest.contains(&true));
+        let spans = match file.spans {
+            Some(spans) if free || (start == 0 && end == last) => spans,
+            Some(spans) => ((spans as f64 * leg_s / duration_s).round() as usize).max(fewest),
+            None if free => (16 * (own.len() - 1)).clamp(60, 160),
+            None => default_spans(&own),
+        };
+        let whole = start == 0 && end == last;
+        let snap_sample_period_s = snap_sample_period_s(file, leg_s, spans, whole)?;
+        let own_corridors = corridors.iter().filter(|c| c.from_s < start_s + leg_s && c.to_s > start_s);
+        let plan = Plan {
+            basis: UniformBasis::new(file.degree, spans, leg_s)?,
+            rest,
+            snap_sample_period_s,
+            body_rate_slack_reward: file.body_rate_slack_reward,
+            waypoints: own,
+            bounds: *bounds,
+            corridors: own_corridors
+                .map(|c| Corridor { from_s: (c.from_s - start_s).max(0.0), to_s: (c.to_s - start_s).min(leg_s), ..*c })
+                .collect(),
+            first_number: start + 1,
+        };
+        plan.check_spans()?;
+        legs.push(plan);
+        start = end;
+    }
+    Ok(legs)
+}
+
+/// Eight spans a segment, and at least four in the shortest, so that each waypoint has control points of its own.
+fn default_spans(waypoints: &[Waypoint]) -> usize {
+    let segments = waypoints.windows(2).map(|pair| pair[1].time_s - pair[0].time_s);
+    let duration_s: f64 = segments.clone().sum();
+    let shortest_s = segments.fold(f64::INFINITY, f64::min);
+    let of_shortest = (4.0 * duration_s / shortest_s).ceil().min(MOST_SPANS as f64) as usize;
+    (8 * (waypoints.len() - 1)).max(of_shortest).clamp(24, MOST_SPANS)
+}
+
+/// With fewer samples than the snap has coefficients in a span, a curve could wiggle between them for nothing.
+/// The period of a file is that of a whole flight.
+fn snap_sample_period_s(file: &PlanFile, duration_s: f64, spans: usize, whole: bool) -> Result<f64, PlanError> {
+    let longest_s = duration_s / (spans * (file.degree - 3)) as f64;
+    let Some(period_s) = file.snap_sample_period_s else { return Ok(0.5 * longest_s) };
+    if !whole && period_s > 0.0 {
+        return Ok(period_s.clamp(1e-6 * duration_s, longest_s));
+    }
+    check(
+        period_s >= 1e-6 * duration_s && period_s <= longest_s * (1.0 + SAME_TIME),
+        "snap_sample_period_s",
+        period_s,
+        format!(
+            "above 0 and at most {longest_s:.6} s, that is {} samples a span (and at least a millionth of duration_s); or \
+             leave it out",
+            file.degree - 3
+        ),
+    )?;
+    Ok(period_s)
+}
+
+/// A little more time than the least, so that a curve smoother than the fastest one meets the bounds; and as much more as the
+/// heading takes.
+fn roomy(legs: Vec<Plan>, budget: &Budget<'_>) -> Vec<Plan> {
+    let mut roomy = Vec::with_capacity(legs.len());
+    for leg in legs {
+        let mut stretched = leg.clone();
+        for room in ROOMS {
+            let Some(next) = leg.stretched(room) else { break };
+            stretched = next;
+            let Ok(curve) = stretched.curve_within(budget) else { continue };
+            if let Err(PlanError::HeadingRate { duration_s, .. }) = super::heading::planned(&stretched, curve, budget) {
+                stretched = stretched.stretched(duration_s / stretched.duration_s()).unwrap_or(stretched);
             }
-            time_s = expected_s;
-            let field = format!("waypoint {number}: tolerance_m");
-            check(
-                entry.tolerance_m == 0.0,
-                field,
-                entry.tolerance_m,
-                "0 or left out: the flight starts and ends exactly",
-            )?;
+            break;
         }
-        if let Some(before) = waypoints.last()
-            && time_s <= before.time_s + SAME_TIME * file.duration_s
-        {
-            return Err(PlanError::NotIncreasing { waypoint: name, before_s: before.time_s });
-        }
-        let field = format!("waypoint {number}: tolerance_m");
-        let must = format!("from 0 (met exactly) to {LARGEST_COORDINATE_M} m");
-        check((0.0..=LARGEST_COORDINATE_M).contains(&entry.tolerance_m), field, entry.tolerance_m, must)?;
-        let position_m = check_point(&format!("waypoint {number}: position_m"), entry.position_m)?;
-        waypoints.push(Waypoint { time_s, position_m, tolerance_m: entry.tolerance_m });
+        roomy.push(stretched);
     }
-    Ok(waypoints)
+    roomy
 }
 
-fn bounds(entry: &BoundsEntry) -> Result<Bounds, PlanError> {
-    let positive = |value: Option<f64>, field: &str| {
-        value.map_or(Ok(()), |v| check(v > 0.0 && v <= 1e6, format!("bounds.{field}"), v, "above 0, up to 1e6"))
+fn bounds(entry: &BoundsEntry, over: &Overrides<'_>) -> Result<Bounds, PlanError> {
+    entry.check()?;
+    let named = match (&entry.vehicle, over.vehicles) {
+        (Some(name), Some(find)) => {
+            Some(find(name).map_err(|reason| PlanError::Vehicle { name: name.clone(), reason })?)
+        }
+        (Some(name), None) => {
+            let reason = "no vehicles are known here; state the bounds themselves".to_owned();
+            return Err(PlanError::Vehicle { name: name.clone(), reason });
+        }
+        (None, _) => None,
     };
-    positive(entry.speed_max_m_s, "speed_max_m_s")?;
-    positive(entry.body_rate_max_deg_s, "body_rate_max_deg_s")?;
-    if let Some(v) = entry.tilt_max_deg {
-        check(v > 0.0 && v < 90.0, "bounds.tilt_max_deg", v, "above 0 and below 90 (leave it out for none)")?;
+    let vehicle = over.vehicle.or(named.as_ref());
+    let limits = vehicle.map(Vehicle::thrust_limits_m_s2);
+    let rates = vehicle.map(Vehicle::body_rates_max_rad_s);
+    // A craft that cannot fall faster than it glides still may: below 0 nothing is bounded.
+    let bounds = Bounds {
+        speed_max_m_s: over.bounds.speed_max_m_s.or(entry.speed_max_m_s),
+        acceleration_max_m_s2: over.bounds.acceleration_max_m_s2.or(entry.acceleration_max_m_s2),
+        tilt_max_rad: over.bounds.tilt_max_rad.or(entry.tilt_max_deg.map(f64::to_radians)),
+        thrust_min_m_s2: over.bounds.thrust_min_m_s2.or(entry.thrust_min_m_s2).or(limits.map(|[min, _]| min.max(0.0))),
+        thrust_max_m_s2: over.bounds.thrust_max_m_s2.or(entry.thrust_max_m_s2).or(limits.map(|[_, max]| max)),
+        body_rate_max_rad_s: over
+            .bounds
+            .body_rate_max_rad_s
+            .or(entry.body_rate_max_deg_s.map(f64::to_radians))
+            .or(rates.map(|rates| rates.x.min(rates.y))),
+        heading_rate_max_rad_s: over
+            .bounds
+            .heading_rate_max_rad_s
+            .or(entry.yaw_rate_max_deg_s.map(f64::to_radians))
+            .or(rates.map(|rates| rates.z)),
+    };
+    if let Some([_, max]) = limits.filter(|[min, max]| *min >= GRAVITY_M_S2 || *max <= GRAVITY_M_S2) {
+        return Err(PlanError::Vehicle {
+            name: vehicle.map_or_else(String::new, |vehicle| vehicle.name().to_owned()),
+            reason: format!("its thrust, up to {max:.2} m/s^2, does not hover"),
+        });
     }
-    if let Some(v) = entry.thrust_min_m_s2 {
-        let must = format!("at least 0 and below g = {GRAVITY_M_S2}: no flight can accelerate up all the time");
-        check((0.0..GRAVITY_M_S2).contains(&v), "bounds.thrust_min_m_s2", v, must)?;
-    }
-    if let Some(v) = entry.thrust_max_m_s2 {
-        let must = format!("above g = {GRAVITY_M_S2}: it is divided by mass and must carry the weight");
-        check(v > GRAVITY_M_S2 && v <= 1e6, "bounds.thrust_max_m_s2", v, must)?;
-    }
-    Ok(Bounds {
-        speed_max_m_s: entry.speed_max_m_s,
-        tilt_max_rad: entry.tilt_max_deg.map(f64::to_radians),
-        thrust_min_m_s2: entry.thrust_min_m_s2,
-        thrust_max_m_s2: entry.thrust_max_m_s2,
-        body_rate_max_rad_s: entry.body_rate_max_deg_s.map(f64::to_radians),
-    })
+    Ok(bounds)
 }
 
-fn corridors(file: &PlanFile) -> Result<Vec<Corridor>, PlanError> {
+fn corridors_of(entries: &[CorridorEntry], duration_s: f64) -> Result<Vec<Corridor>, PlanError> {
     let corridor = |(entry, number): (&CorridorEntry, usize)| {
-        let (from_s, to_s) = (entry.from_s.unwrap_or(0.0), entry.to_s.unwrap_or(file.duration_s));
-        let must = format!("from 0 to duration_s = {} s", file.duration_s);
-        check((0.0..=file.duration_s).contains(&from_s), format!("corridor {number}: from_s"), from_s, &must)?;
-        check((0.0..=file.duration_s).contains(&to_s), format!("corridor {number}: to_s"), to_s, &must)?;
+        let (from_s, to_s) = (entry.from_s.unwrap_or(0.0), entry.to_s.unwrap_or(duration_s));
+        let must = format!("from 0 to duration_s = {duration_s} s");
+        check((0.0..=duration_s).contains(&from_s), format!("corridor {number}: from_s"), from_s, &must)?;
+        check((0.0..=duration_s).contains(&to_s), format!("corridor {number}: to_s"), to_s, &must)?;
         if from_s >= to_s {
             return Err(PlanError::Crossed { field: format!("corridor {number}, time"), lower: from_s, upper: to_s });
         }
@@ -280,5 +580,5 @@ fn corridors(file: &PlanFile) -> Result<Vec<Corridor>, PlanError> {
         }
         Ok(Corridor { from_s, to_s, min_m, max_m })
     };
-    file.corridors.iter().zip(1..).map(corridor).collect()
+    entries.iter().zip(1..).map(corridor).collect()
 }

@@ -15,9 +15,9 @@ pub enum PaperTrajectory {
 }
 
 /// Text of `plans/mild.toml`.
-pub const MILD_TOML: &str = include_str!("../../../../plans/mild.toml");
+pub const MILD_TOML: &str = include_str!("../../plans/mild.toml");
 /// Text of `plans/aggressive.toml`.
-pub const AGGRESSIVE_TOML: &str = include_str!("../../../../plans/aggressive.toml");
+pub const AGGRESSIVE_TOML: &str = include_str!("../../plans/aggressive.toml");
 
 /// The mild flight, 30 s: Example 1 of the paper's reference \[10\].
 ///

@@ -5,7 +5,7 @@
 
 use quatrack_design::model::GRAVITY_M_S2;
 
-use super::{Limit, Plan};
+use super::{Limit, Plan, Waypoint};
 use crate::trajectory::bspline::UniformBasis;
 
 /// A sum of variables times coefficients, and a constant.
@@ -16,21 +16,21 @@ pub(super) struct Affine {
 }
 
 impl Affine {
-    fn constant(constant: f64) -> Self {
+    pub(super) fn constant(constant: f64) -> Self {
         Self { terms: Vec::new(), constant }
     }
 
-    fn plus(mut self, constant: f64) -> Self {
+    pub(super) fn plus(mut self, constant: f64) -> Self {
         self.constant += constant;
         self
     }
 
-    fn plus_variable(mut self, variable: usize, coefficient: f64) -> Self {
+    pub(super) fn plus_variable(mut self, variable: usize, coefficient: f64) -> Self {
         self.terms.push((variable, coefficient));
         self
     }
 
-    fn scaled(mut self, factor: f64) -> Self {
+    pub(super) fn scaled(mut self, factor: f64) -> Self {
         self.constant *= factor;
         for (_, coefficient) in &mut self.terms {
             *coefficient *= factor;
@@ -75,7 +75,7 @@ impl Program {
         builder.ends();
         builder.waypoints();
         builder.speed();
-        builder.thrust_and_tilt();
+        builder.acceleration();
         builder.body_rate();
         builder.corridors();
 
@@ -99,9 +99,10 @@ fn snap(plan: &Plan, basis: &UniformBasis) -> Vec<(usize, usize, f64)> {
     let width = plan.degree() + 1;
     let mut band = vec![0.0; n * width];
     let samples = (plan.duration_s() / plan.snap_sample_period_s * (1.0 + 1e-12)).floor() as usize;
+    let rows = basis.derivative_weights(4);
     for k in 0..=samples {
         let t_s = (k as f64 * plan.snap_sample_period_s).min(plan.duration_s());
-        let (first, weights) = basis.derivative_at(4, t_s);
+        let (first, weights) = basis.derivative_by(&rows, 4, t_s);
         for (i, a) in weights.iter().enumerate() {
             for (j, b) in weights.iter().enumerate().skip(i) {
                 band[(first + i) * width + j - i] += 2.0 * a * b;
@@ -142,30 +143,46 @@ impl Builder<'_> {
     }
 
     /// Where the flight starts and ends; with rest, four control points each, so that velocity, acceleration and jerk
-    /// are zero there.
+    /// are zero there; else the velocity if one is given.
     fn ends(&mut self) {
         let n = self.basis.control_points();
-        let count = self.plan.points_at_an_end();
         let (Some(start), Some(end)) = (self.plan.waypoints.first(), self.plan.waypoints.last()) else { return };
+        let [at_start, at_end] = self.plan.points_at_the_ends();
         for axis in 0..3 {
-            for i in 0..count {
-                for (j, waypoint) in [(i, start), (n - 1 - i, end)] {
-                    let coordinate = Affine::constant(-waypoint.position_m[axis]);
-                    self.constraints.push(Constraint::Zero(coordinate.plus_variable(axis * n + j, 1.0)));
-                }
+            let start_points = (0..at_start).map(|i| (i, start));
+            let end_points = (0..at_end).map(|i| (n - 1 - i, end));
+            for (j, waypoint) in start_points.chain(end_points) {
+                let coordinate = Affine::constant(-waypoint.position_m[axis]);
+                self.constraints.push(Constraint::Zero(coordinate.plus_variable(axis * n + j, 1.0)));
             }
+        }
+        for waypoint in [start, end] {
+            self.velocity(waypoint);
         }
     }
 
-    fn waypoints(&mut self) {
+    /// The derivative of an order at a time.
+    fn derivative_at(&self, order: usize, t_s: f64) -> [Affine; 3] {
         let n = self.basis.control_points();
+        let (first, weights) = self.basis.derivative_at(order, t_s);
+        std::array::from_fn(|axis| Affine {
+            terms: weights.iter().enumerate().map(|(i, weight)| (axis * n + first + i, *weight)).collect(),
+            constant: 0.0,
+        })
+    }
+
+    /// The velocity of a waypoint, where it has one.
+    fn velocity(&mut self, waypoint: &Waypoint) {
+        let Some(velocity_m_s) = waypoint.velocity_m_s else { return };
+        let flown = self.derivative_at(1, waypoint.time_s).into_iter().zip(velocity_m_s.iter());
+        self.constraints.extend(flown.map(|(flown, asked)| Constraint::Zero(flown.plus(-asked))));
+    }
+
+    fn waypoints(&mut self) {
         let relaxed = self.slacks.iter().any(|(limit, _)| *limit == Limit::Waypoints);
         for waypoint in self.plan.inner_waypoints() {
-            let (first, weights) = self.basis.derivative_at(0, waypoint.time_s);
-            let miss = (0..3).map(|axis| Affine {
-                terms: weights.iter().enumerate().map(|(i, weight)| (axis * n + first + i, *weight)).collect(),
-                constant: -waypoint.position_m[axis],
-            });
+            let flown = self.derivative_at(0, waypoint.time_s).into_iter().zip(waypoint.position_m.iter());
+            let miss = flown.map(|(flown, asked)| flown.plus(-asked));
             if waypoint.tolerance_m == 0.0 && !relaxed {
                 self.constraints.extend(miss.map(Constraint::Zero));
             } else {
@@ -173,6 +190,7 @@ impl Builder<'_> {
                 let tolerance = self.relaxed(Limit::Waypoints, Affine::constant(waypoint.tolerance_m));
                 self.constraints.push(Constraint::Cone(tolerance, miss));
             }
+            self.velocity(waypoint);
         }
     }
 
@@ -185,12 +203,16 @@ impl Builder<'_> {
         }
     }
 
-    fn thrust_and_tilt(&mut self) {
+    fn acceleration(&mut self) {
         let weights = self.basis.derivative_weights(2);
         let bounds = self.plan.bounds;
         for j in 0..weights.len() {
             let acceleration = self.vector(&weights, j);
             let lift = acceleration[2].clone().plus(GRAVITY_M_S2);
+            if let Some(bound) = bounds.acceleration_max_m_s2 {
+                let head = self.relaxed(Limit::Acceleration, Affine::constant(bound));
+                self.constraints.push(Constraint::Cone(head, acceleration.clone()));
+            }
             if let Some(tilt_rad) = bounds.tilt_max_rad {
                 let head = self.relaxed(Limit::Tilt, lift.clone().scaled(tilt_rad.tan()));
                 self.constraints.push(Constraint::Cone(head, acceleration[..2].to_vec()));

@@ -98,11 +98,16 @@ fn body_rates_rad_s(sample: &FlatSample) -> Vector3<f64> {
 impl Plan {
     /// Measures a curve against this plan: at dense samples, by its control points, and at the waypoints.
     pub fn realised(&self, curve: &BSpline) -> Realised {
-        let limits = [Limit::Speed, Limit::Tilt, Limit::ThrustMin, Limit::ThrustMax, Limit::BodyRate];
+        let limits =
+            [Limit::Speed, Limit::Acceleration, Limit::Tilt, Limit::ThrustMin, Limit::ThrustMax, Limit::BodyRate];
         let miss = |waypoint: &super::Waypoint| (curve.at(waypoint.time_s).position_m - waypoint.position_m).norm();
         Realised {
             sampled: Extremes::of(curve),
-            proved: limits.into_iter().filter_map(|limit| Some((limit, self.needed(limit, curve)?))).collect(),
+            proved: limits
+                .into_iter()
+                .filter(|limit| *limit != Limit::Acceleration || self.bounds().acceleration_max_m_s2.is_some())
+                .filter_map(|limit| Some((limit, self.needed(limit, curve)?)))
+                .collect(),
             misses_m: self.waypoints().iter().map(miss).collect(),
         }
     }

@@ -6,6 +6,7 @@ use clarabel::solver::{
     ZeroConeT,
 };
 
+use super::budget::Budget;
 use super::program::{Affine, Constraint, Program};
 
 /// What the largest entry of `P` and `q` is scaled to. The gap is absolute for small objectives, so that less loses digits of the
@@ -38,10 +39,15 @@ pub(super) enum Outcome {
     Infeasible,
     /// Neither; the solver's word for it.
     Failed(String),
+    /// The time was up before.
+    OutOfTime,
 }
 
 /// Solves a cone program by an interior-point method; the same input gives the same output on every run.
-pub(super) fn solve(program: &Program, accuracy: Accuracy) -> Outcome {
+pub(super) fn solve(program: &Program, accuracy: Accuracy, budget: &Budget<'_>) -> Outcome {
+    if budget.is_over() {
+        return Outcome::OutOfTime;
+    }
     // Entries of P grow with the eighth power of spans over duration; in a slow flight those of q are the largest.
     let entries = program.quadratic.iter().map(|entry| entry.2).chain(program.linear.iter().copied());
     let largest = entries.map(f64::abs).fold(0.0, f64::max);
@@ -73,6 +79,7 @@ pub(super) fn solve(program: &Program, accuracy: Accuracy) -> Outcome {
     let a = matrix(rows.b.len(), program.variables, &rows.entries);
     let settings = DefaultSettings {
         verbose: false,
+        time_limit: budget.left_s().unwrap_or(f64::INFINITY),
         tol_gap_abs: accuracy.asked,
         tol_gap_rel: accuracy.asked,
         tol_feas: accuracy.asked,
@@ -89,6 +96,7 @@ pub(super) fn solve(program: &Program, accuracy: Accuracy) -> Outcome {
     match solver.solution.status {
         SolverStatus::Solved | SolverStatus::AlmostSolved => Outcome::Solved(solver.solution.x),
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => Outcome::Infeasible,
+        SolverStatus::MaxTime => Outcome::OutOfTime,
         status => Outcome::Failed(status.to_string()),
     }
 }

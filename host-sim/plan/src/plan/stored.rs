@@ -11,8 +11,8 @@ use super::paper::PaperTrajectory;
 mod image {
     use quatrack::Piece;
 
-    include!("../../../../plans/mild.rs");
-    include!("../../../../plans/aggressive.rs");
+    include!("../../plans/mild.rs");
+    include!("../../plans/aggressive.rs");
 }
 
 /// The pieces of a trajectory of the paper as they are stored in the board's flash.

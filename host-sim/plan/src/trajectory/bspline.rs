@@ -10,6 +10,7 @@ use super::Trajectory;
 
 /// Why control points do not make a spline.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BSplineError {
     /// Degree outside 1..=7; 7 is what the on-board pieces carry.
     #[error("degree = {0}: must be from 1 to 7")]
@@ -32,6 +33,12 @@ pub enum BSplineError {
         index: usize,
         /// The first coordinate that is not finite.
         value: f64,
+    },
+    /// Another number of control points of the heading than of the position, or one that is not finite.
+    #[error("heading_control_points_rad: must be {expected} finite numbers, one for each control point")]
+    Heading {
+        /// How many there must be.
+        expected: usize,
     },
 }
 
@@ -156,8 +163,12 @@ impl UniformBasis {
     /// # Panics
     /// If `order` exceeds the degree.
     pub fn derivative_at(&self, order: usize, t_s: f64) -> (usize, Vec<f64>) {
+        self.derivative_by(&self.derivative_weights(order), order, t_s)
+    }
+
+    /// The same by what [`Self::derivative_weights`] gave for this order: for many times.
+    pub(crate) fn derivative_by(&self, rows: &[Vec<f64>], order: usize, t_s: f64) -> (usize, Vec<f64>) {
         let span = self.span_at(t_s);
-        let rows = self.derivative_weights(order);
         let mut weights = vec![0.0; self.degree + 1];
         for (i, value) in self.values(order, span, t_s).iter().enumerate() {
             for (weight, row) in weights[i..].iter_mut().zip(&rows[span + i]) {
@@ -168,12 +179,14 @@ impl UniformBasis {
     }
 }
 
-/// A clamped uniform B-spline of position; heading 0.
+/// A clamped uniform B-spline of position, and of the heading, which is 0 unless it is given.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BSpline {
     basis: UniformBasis,
     /// Control points of every derivative: entry `k` in m/s^k, from 0 to the degree.
     derivatives: Vec<Vec<Vector3<f64>>>,
+    /// The same of the heading, rad/s^k; empty where it is 0.
+    heading: Vec<Vec<f64>>,
 }
 
 impl BSpline {
@@ -197,7 +210,44 @@ impl BSpline {
             let next = differences.map(|(j, pair)| (pair[1] - pair[0]) * basis.difference_rate(k, j)).collect();
             derivatives.push(next);
         }
-        Ok(Self { basis, derivatives })
+        Ok(Self { basis, derivatives, heading: Vec::new() })
+    }
+
+    /// The same curve with a heading of as many control points, rad.
+    ///
+    /// # Errors
+    /// [`BSplineError::Heading`] for another number of them, or one that is not finite.
+    pub fn with_heading(mut self, control_points_rad: Vec<f64>) -> Result<Self, BSplineError> {
+        let expected = self.basis.control_points();
+        if control_points_rad.len() != expected || !control_points_rad.iter().all(|value| value.is_finite()) {
+            return Err(BSplineError::Heading { expected });
+        }
+        self.heading = vec![control_points_rad];
+        for k in 1..=self.degree() {
+            let differences = self.heading[k - 1].windows(2).enumerate();
+            let next = differences.map(|(j, pair)| (pair[1] - pair[0]) * self.basis.difference_rate(k, j)).collect();
+            self.heading.push(next);
+        }
+        Ok(self)
+    }
+
+    /// Control points of the heading, rad; none where it is 0.
+    pub fn heading_control_points_rad(&self) -> Option<&[f64]> {
+        self.heading.first().map(Vec::as_slice)
+    }
+
+    /// The `order`-th derivative of the heading at `t_s`, clamped to the duration; rad/s^order.
+    pub fn heading_derivative(&self, order: usize, t_s: f64) -> f64 {
+        let Some(points) = self.heading.get(order) else { return 0.0 };
+        let t_s = t_s.clamp(0.0, self.basis.duration_s);
+        let span = self.span_at(t_s);
+        self.basis(order, span, t_s).iter().zip(&points[span..]).map(|(value, point)| value * point).sum()
+    }
+
+    /// The same of the polynomial of a span, at its start too.
+    pub(super) fn heading_derivative_in(&self, order: usize, span: usize, t_s: f64) -> f64 {
+        let Some(points) = self.heading.get(order) else { return 0.0 };
+        self.basis(order, span, t_s).iter().zip(&points[span..]).map(|(value, point)| value * point).sum()
     }
 
     /// Polynomial degree.
@@ -259,8 +309,8 @@ impl Trajectory for BSpline {
             velocity_m_s: derivative(1),
             acceleration_m_s2: derivative(2),
             jerk_m_s3: derivative(3),
-            heading_rad: 0.0,
-            heading_rate_rad_s: 0.0,
+            heading_rad: self.heading_derivative(0, t_s),
+            heading_rate_rad_s: if at_rest { 0.0 } else { self.heading_derivative(1, t_s) },
         }
     }
 }

@@ -3,17 +3,26 @@
 //! - rows of polynomial pieces in the `uav_trajectories` form ([`super::polynomial::csv`]);
 //! - control points of a clamped uniform B-spline as JSON or TOML: `degree`, `duration_s` (s) and `control_points_m`
 //!   (`[[x, y, z], ...]`, m);
-//! - a planning problem as TOML, known by its `waypoints`; it is handed on as text.
+//! - several such curves flown one after the other, as `curves = [...]`;
+//! - a planning problem as TOML, known by its `waypoints`; it is handed on as text;
+//! - bytes in the Crazyflie's compressed form ([`super::compressed`]).
 
+use std::fs::File;
+use std::io::{self, Read as _};
 use std::path::Path;
-use std::{fs, io};
 
 use nalgebra::Vector3;
 use serde::Deserialize;
 
 use super::bspline::{BSpline, BSplineError};
-use super::polynomial::PiecewisePolynomial;
+use super::compressed;
 use super::polynomial::csv::{self, CsvError};
+use super::polynomial::{PiecewisePolynomial, PolynomialError};
+use super::table::Table;
+use super::waypoints::{self, Kind};
+
+/// More than any trajectory takes: a device that never ends is read up to here.
+const MOST_BYTES: u64 = 64 << 20;
 
 /// What a trajectory file holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +37,7 @@ pub enum TrajectoryFile {
 
 /// Why a file cannot be used: one line with the file, where in it, the value and what to do.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum FileError {
     /// Missing, a folder, not permitted.
     #[error("{name}: cannot be read ({reason}); name an existing trajectory file")]
@@ -35,7 +45,14 @@ pub enum FileError {
         /// The file.
         name: String,
         /// From the operating system.
+        #[source]
         reason: io::Error,
+    },
+    /// Longer than any trajectory, or without an end.
+    #[error("{name}: longer than {} MB, or a device without an end; name a trajectory file", MOST_BYTES >> 20)]
+    TooLong {
+        /// The file.
+        name: String,
     },
     /// Bytes that are not text.
     #[error("{name}: line {line} is not UTF-8; save the file as UTF-8 text")]
@@ -48,7 +65,7 @@ pub enum FileError {
     /// None of the accepted forms.
     #[error(
         "{name}: {found}; accepted are polynomial pieces as CSV (header duration,x^0,..,yaw^7), control points as JSON or \
-         TOML (degree, duration_s, control_points_m), and a plan as TOML (waypoints)"
+         TOML (degree, duration_s, control_points_m), a plan as TOML (waypoints), and the Crazyflie's compressed form"
     )]
     Unrecognised {
         /// The file.
@@ -62,7 +79,39 @@ pub enum FileError {
         /// The file.
         name: String,
         /// Line, column, value and remedy.
+        #[source]
         reason: CsvError,
+    },
+    /// Places to pass, which say nothing of how.
+    #[error(
+        "{name}: rows of waypoints{}, no trajectory yet; `quatrack plan {name} --toml planned.toml` plans one, which is flown \
+         by --trajectory planned.toml", if *.timed { " with times" } else { "" }
+    )]
+    Waypoints {
+        /// The file.
+        name: String,
+        /// Whether they have times.
+        timed: bool,
+    },
+    /// A flight that was recorded or sampled.
+    #[error(
+        "{name}: rows of a flight sampled over time ({columns}), no trajectory; take some rows as waypoints, with the columns \
+         t,x,y,z alone, and plan them with `quatrack plan`"
+    )]
+    Samples {
+        /// The file.
+        name: String,
+        /// Its columns, shortened.
+        columns: String,
+    },
+    /// Curves that do not follow each other.
+    #[error("{name}: {reason}")]
+    Curves {
+        /// The file.
+        name: String,
+        /// What is wrong.
+        #[source]
+        reason: PolynomialError,
     },
     /// Keys that are missing, unknown or of another type, or text that is not JSON or TOML.
     #[error(
@@ -82,6 +131,7 @@ pub enum FileError {
         /// The file.
         name: String,
         /// Key, value and remedy.
+        #[source]
         reason: BSplineError,
     },
 }
@@ -89,9 +139,46 @@ pub enum FileError {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ControlPoints {
+    /// What `quatrack plan` writes before the rest.
+    #[serde(default)]
+    #[expect(dead_code, reason = "a file may say what it is")]
+    schema: Option<String>,
     degree: usize,
     duration_s: f64,
     control_points_m: Vec<[f64; 3]>,
+    heading_control_points_rad: Option<Vec<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Curves {
+    curves: Vec<ControlPoints>,
+}
+
+/// The bytes of a file or device, as far as a trajectory or a plan can be long.
+///
+/// # Errors
+/// [`FileError::Unreadable`] and [`FileError::TooLong`].
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
+    let name = path.display().to_string();
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes));
+    match read {
+        Ok(_) if bytes.len() as u64 > MOST_BYTES => Err(FileError::TooLong { name }),
+        Ok(_) => Ok(bytes),
+        Err(reason) => Err(FileError::Unreadable { name, reason }),
+    }
+}
+
+/// The same as text.
+///
+/// # Errors
+/// Those of [`read_bytes`], and [`FileError::NotUtf8`].
+pub fn read_text(path: &Path) -> Result<String, FileError> {
+    String::from_utf8(read_bytes(path)?).map_err(|error| {
+        let line = line_at(error.as_bytes(), error.utf8_error().valid_up_to());
+        FileError::NotUtf8 { name: path.display().to_string(), line }
+    })
 }
 
 /// Reads and recognises the file at `path`.
@@ -100,10 +187,13 @@ struct ControlPoints {
 /// [`FileError`], naming the file as `path` does.
 pub fn read(path: &Path) -> Result<TrajectoryFile, FileError> {
     let name = path.display().to_string();
-    let bytes = match fs::read(path) {
-        Ok(bytes) => bytes,
-        Err(reason) => return Err(FileError::Unreadable { name, reason }),
-    };
+    let bytes = read_bytes(path)?;
+    // No text has a byte of 0; short numbers in the compressed form nearly always do, and they fill it to its end.
+    if bytes.contains(&0)
+        && let Ok(pieces) = compressed::from_bytes(&bytes)
+    {
+        return Ok(TrajectoryFile::Pieces(pieces));
+    }
     match std::str::from_utf8(&bytes) {
         Ok(text) => parse(&name, text),
         Err(error) => Err(FileError::NotUtf8 { name, line: line_at(&bytes, error.valid_up_to()) }),
@@ -120,17 +210,21 @@ pub fn parse(name: &str, text: &str) -> Result<TrajectoryFile, FileError> {
     if text.trim().is_empty() {
         return Err(unrecognised("the file is empty".into()));
     }
-    if csv::recognises(text) {
-        let reason = |reason| FileError::Pieces { name: name.into(), reason };
-        return csv::parse(text).map(TrajectoryFile::Pieces).map_err(reason);
+    if let Some(table) = Table::of(text).filter(looks_like_rows) {
+        return rows(name, &table);
     }
     if text.trim_start().starts_with('{') {
-        let points = serde_json::from_str(text).map_err(|error| FileError::Keys {
+        let keys_error = |error: &serde_json::Error| FileError::Keys {
             name: name.into(),
             line: error.line(),
             reason: without_place(&error.to_string()),
-        })?;
-        return spline(name, points);
+        };
+        let value: serde_json::Value = serde_json::from_str(text).map_err(|error| keys_error(&error))?;
+        return if value.get("curves").is_some() {
+            curves(name, serde_json::from_str(text).map_err(|error| keys_error(&error))?)
+        } else {
+            spline(name, serde_json::from_str(text).map_err(|error| keys_error(&error))?)
+        };
     }
     let keys_error = |error: &toml::de::Error| FileError::Keys {
         name: name.into(),
@@ -144,6 +238,9 @@ pub fn parse(name: &str, text: &str) -> Result<TrajectoryFile, FileError> {
         Err(_) => return Err(unrecognised("neither rows of numbers nor keys with values".into())),
     };
     let has = |key: &str| table.contains_key(key);
+    if has("curves") {
+        return curves(name, toml::from_str(text).map_err(|error| keys_error(&error))?);
+    }
     match (has("waypoints"), has("control_points_m")) {
         (true, true) => Err(unrecognised("has both waypoints and control_points_m; keep one of them".into())),
         (true, false) => Ok(TrajectoryFile::Plan(text.into())),
@@ -159,11 +256,56 @@ pub fn parse(name: &str, text: &str) -> Result<TrajectoryFile, FileError> {
     }
 }
 
+/// Whether a table is rows of numbers, rather than keys or prose: its header names what pieces or waypoints have, or its first
+/// row has a number in the first two columns.
+fn looks_like_rows(table: &Table) -> bool {
+    match &table.header {
+        Some(_) => csv::recognises(table) || waypoints::recognise(table).is_some(),
+        None => {
+            let first = table.rows.first().map_or(&[][..], |row| &row.cells[..]);
+            first.len() > 1 && first[..2].iter().any(|cell| super::table::number(cell).is_some())
+        }
+    }
+}
+
+fn rows(name: &str, table: &Table) -> Result<TrajectoryFile, FileError> {
+    let name = name.to_owned();
+    match waypoints::recognise(table).filter(|_| table.header.is_none() || !csv::recognises(table)) {
+        Some(Kind::Waypoints { timed }) => Err(FileError::Waypoints { name, timed }),
+        Some(Kind::Samples) => {
+            let columns = match &table.header {
+                Some(header) => super::table::shortened(&header.cells.join(",")),
+                None => format!("{} columns without names", table.columns()),
+            };
+            Err(FileError::Samples { name, columns })
+        }
+        None => csv::read(table).map(TrajectoryFile::Pieces).map_err(|reason| FileError::Pieces { name, reason }),
+    }
+}
+
 fn spline(name: &str, points: ControlPoints) -> Result<TrajectoryFile, FileError> {
+    one_spline(name, points).map(TrajectoryFile::Spline)
+}
+
+fn one_spline(name: &str, points: ControlPoints) -> Result<BSpline, FileError> {
     let control_points_m = points.control_points_m.into_iter().map(Vector3::from).collect();
-    BSpline::new(points.degree, points.duration_s, control_points_m)
-        .map(TrajectoryFile::Spline)
-        .map_err(|reason| FileError::Spline { name: name.into(), reason })
+    let spline = BSpline::new(points.degree, points.duration_s, control_points_m);
+    let spline = match points.heading_control_points_rad {
+        Some(heading) => spline.and_then(|spline| spline.with_heading(heading)),
+        None => spline,
+    };
+    spline.map_err(|reason| FileError::Spline { name: name.into(), reason })
+}
+
+/// Curves one after the other, as pieces.
+fn curves(name: &str, Curves { curves }: Curves) -> Result<TrajectoryFile, FileError> {
+    let mut pieces = Vec::new();
+    let wrong = |reason| FileError::Curves { name: name.into(), reason };
+    for points in curves {
+        let of_curve = PiecewisePolynomial::from_bspline(&one_spline(name, points)?).map_err(wrong)?;
+        pieces.extend_from_slice(of_curve.pieces());
+    }
+    PiecewisePolynomial::new(pieces).map(TrajectoryFile::Pieces).map_err(wrong)
 }
 
 /// The line, from 1, that holds byte `offset`.

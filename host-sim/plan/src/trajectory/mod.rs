@@ -2,12 +2,16 @@
 //! out.
 
 pub mod bspline;
+pub mod compressed;
 pub mod fifth_order;
 pub mod file;
 pub mod on_board;
 pub mod poly4d;
 pub mod polynomial;
 pub mod refit;
+mod table;
+pub mod transform;
+pub mod waypoints;
 
 use quatrack_design::model::flat::FlatSample;
 

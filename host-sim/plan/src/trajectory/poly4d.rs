@@ -34,13 +34,14 @@ pub struct Poly4d {
 
 /// Why pieces cannot be stored.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StoreError {
     /// More than the memory holds.
     #[error("{0} pieces of {PIECE_BYTES} bytes: the Crazyflie's memory holds {PIECES_MAX}; fit them with fewer")]
     TooManyPieces(usize),
     /// They fit, but in `f32` they are no trajectory any more.
     #[error("as 32-bit numbers: {0}")]
-    Rounded(PolynomialError),
+    Rounded(#[source] PolynomialError),
 }
 
 /// A trajectory in the Crazyflie's memory.

@@ -18,12 +18,16 @@ use super::Trajectory;
 /// Coefficients per coordinate: degree 7, what the on-board pieces carry.
 pub const COEFFICIENTS: usize = 8;
 
-/// Largest gap between the end of a piece and the start of the next, m in position and rad in heading.
+/// Gap between the end of a piece and the start of the next that is not flown any more, m in position and rad in heading.
 ///
-/// Files in the wild have 6 decimals: a piece of 1 s then meets its neighbour to `9 * 0.5e-6` at worst, the public
-/// figure8.csv to 1.1e-6; a piece of 2.7 s, to 1e-3 at worst. So rounding passes at the durations that such pieces have, while
-/// 1 mm and 0.06 degrees are less than what any quadcopter can hold: a larger step was not meant to be flown.
+/// It is what the board refuses; 1 mm and 0.06 degrees are less than what any quadcopter can hold, so that a larger step was
+/// not meant to be flown. Files in the wild have 6 decimals: a piece of 1 s then meets its neighbour to `9 * 0.5e-6` at
+/// worst, the public figure8.csv to 1.1e-6; but a piece of 3 s to 1.6e-3, one of 5 s to 5e-2. The reader of files takes
+/// gaps up to that and closes them ([`PiecewisePolynomial::with_roundings`]).
 pub const JOINT_TOLERANCE: f64 = 1e-3;
+
+/// Of the tolerance, what is flown as it is. The board computes joints in 32 bits and must find the rest below its own.
+const FLOWN_AS_IT_IS: f64 = 0.995 * JOINT_TOLERANCE;
 
 /// The four polynomials of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,6 +82,15 @@ impl Piece {
             sum * t_s + factor * coefficients[k]
         })
     }
+
+    /// Adds a step by `size` over the piece's duration, without velocity, acceleration or jerk at its ends.
+    fn step_smoothly(&mut self, coordinate: Coordinate, size: f64) {
+        // The polynomial of degree 7 from 0 to 1 whose first three derivatives are 0 at both.
+        let step = [35.0, -84.0, 70.0, -20.0];
+        for (power, share) in (4..).zip(step) {
+            self.coefficients[coordinate as usize][power as usize] += size * share / self.duration_s.powi(power);
+        }
+    }
 }
 
 /// Pieces flown one after the other, without gaps in position or heading.
@@ -92,6 +105,7 @@ pub struct PiecewisePolynomial {
 
 /// Why pieces do not make a trajectory. Pieces count from 1.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PolynomialError {
     /// There is nothing to fly.
     #[error("no pieces: a trajectory needs at least one")]
@@ -122,7 +136,7 @@ pub enum PolynomialError {
     /// A piece does not start where the one before it ends.
     #[error(
         "{coordinate} jumps by {jump:.6} {} from the end of piece {piece} ({end:.6}) to the start of piece {} \
-         ({start:.6}); at most {JOINT_TOLERANCE} {0} can be flown: correct {coordinate}^0 of piece {1} or the duration \
+         ({start:.6}); less than {JOINT_TOLERANCE} {0} can be flown: correct {coordinate}^0 of piece {1} or the duration \
          of piece {piece}",
         coordinate.unit(), piece + 1
     )]
@@ -146,7 +160,43 @@ impl PiecewisePolynomial {
     ///
     /// # Errors
     /// [`PolynomialError`] for the first thing that cannot be flown. Jumps in velocity and above are not judged here.
-    pub fn new(mut pieces: Vec<Piece>) -> Result<Self, PolynomialError> {
+    pub fn new(pieces: Vec<Piece>) -> Result<Self, PolynomialError> {
+        Self::with_roundings(pieces, &[])
+    }
+
+    /// The same where the pieces' numbers are rounded: joint `i`, behind piece `i`, may be `roundings[i]` apart in x, y, z
+    /// and heading. What is more than the board flies is closed: the piece before it takes the gap up in a smooth step that
+    /// leaves its derivatives to the third at both ends what they are.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`].
+    pub fn with_roundings(mut pieces: Vec<Piece>, roundings: &[[f64; 4]]) -> Result<Self, PolynomialError> {
+        validate(&pieces)?;
+        for i in 1..pieces.len() {
+            let rounding = roundings.get(i - 1).copied().unwrap_or_default();
+            for coordinate in Coordinate::ALL {
+                let before = &pieces[i - 1];
+                let end = before.derivative(coordinate, 0, before.duration_s);
+                let start = pieces[i].coefficients[coordinate as usize][0];
+                let turns = if coordinate == Coordinate::Yaw { ((start - end) / TAU).round() } else { 0.0 };
+                let jump = start - end - TAU * turns;
+                // Written so that NaN is refused.
+                if jump.abs() <= FLOWN_AS_IT_IS {
+                } else if jump.abs() <= rounding[coordinate as usize] {
+                    pieces[i - 1].step_smoothly(coordinate, jump);
+                } else {
+                    return Err(PolynomialError::Jump { piece: i, coordinate, end, start, jump: jump.abs() });
+                }
+                if turns != 0.0 {
+                    pieces[i].coefficients[coordinate as usize][0] = start - TAU * turns;
+                }
+            }
+        }
+        Self::joined(pieces)
+    }
+
+    /// Of pieces that meet.
+    pub(crate) fn joined(pieces: Vec<Piece>) -> Result<Self, PolynomialError> {
         validate(&pieces)?;
         let mut boundaries_s = vec![0.0];
         let mut end_s = 0.0;
@@ -154,29 +204,10 @@ impl PiecewisePolynomial {
             end_s += piece.duration_s;
             boundaries_s.push(end_s);
         }
-        if !end_s.is_finite() {
-            return Err(PolynomialError::TotalDuration);
-        }
-        for i in 1..pieces.len() {
-            let before = pieces[i - 1];
-            for coordinate in Coordinate::ALL {
-                let end = before.derivative(coordinate, 0, before.duration_s);
-                let constant = &mut pieces[i].coefficients[coordinate as usize][0];
-                let start = *constant;
-                let turns = if coordinate == Coordinate::Yaw { ((start - end) / TAU).round() } else { 0.0 };
-                let jump = (start - end - TAU * turns).abs();
-                if jump.is_nan() || jump > JOINT_TOLERANCE {
-                    return Err(PolynomialError::Jump { piece: i, coordinate, end, start, jump });
-                }
-                if turns != 0.0 {
-                    *constant = start - TAU * turns;
-                }
-            }
-        }
-        Ok(Self { pieces, boundaries_s })
+        if end_s.is_finite() { Ok(Self { pieces, boundaries_s }) } else { Err(PolynomialError::TotalDuration) }
     }
 
-    /// The same curve as `spline`, to rounding: one piece per span, heading 0. It takes exactly as long.
+    /// The same curve as `spline`, to rounding: one piece per span. It takes exactly as long.
     ///
     /// # Errors
     /// [`PolynomialError::Coefficient`] if the spline is so large or so short that a coefficient overflows.
@@ -198,6 +229,8 @@ impl PiecewisePolynomial {
                 for (coefficients, value) in piece.coefficients.iter_mut().zip(derivative.iter()) {
                     coefficients[power] = value / factorial;
                 }
+                let heading = spline.heading_derivative_in(power, span, boundaries_s[span]);
+                piece.coefficients[Coordinate::Yaw as usize][power] = heading / factorial;
             }
         }
         // A spline is continuous however large it is: its joints need no judgement against a length in metres.

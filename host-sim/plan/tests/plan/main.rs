@@ -2,6 +2,7 @@
 
 mod bounds;
 mod files;
+mod flights;
 mod on_board_trajectory;
 mod paper;
 mod polynomial;

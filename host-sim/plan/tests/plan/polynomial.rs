@@ -100,7 +100,7 @@ fn a_jump_in_position_is_refused_by_name() {
     assert!(matches!(error, PolynomialError::Jump { piece: 1, coordinate: Coordinate::X, .. }));
     assert_eq!(
         error.to_string(),
-        "x jumps by 0.001010 m from the end of piece 1 (1.000000) to the start of piece 2 (0.998990); at most 0.001 m \
+        "x jumps by 0.001010 m from the end of piece 1 (1.000000) to the start of piece 2 (0.998990); less than 0.001 m \
          can be flown: correct x^0 of piece 2 or the duration of piece 1"
     );
 }

@@ -33,8 +33,14 @@ fn forms_found_in_the_wild_read_alike() {
         format!("{header},\r\n{a},\r\n{b},\r\n"),
         format!("# made by a tool\n# {header}\n\n{a}\n\n# second\n{b}"),
         format!("\u{feff}{}\n{a} , \n,,,\n{b},,\n", header.replace("duration", "Duration")),
+        format!("{header}\n{a}\n{b}\n").replace(',', ";"),
+        format!("{header}\n{a}\n{b}\n").replace(',', "\t"),
+        format!("{header}\n{a}\n{b}\n").replace(',', ";").replace('.', ","),
+        format!("\"{header}\"\n\"{a}\"\n\"{b}\"\n").replace(',', "\",\""),
+        format!(",{header}\n0,{a}\n1,{b}\n"),
+        // By name, in any order, yaw and what is 0 left out.
+        "x^0,duration,z^0,y^0\n0.25,1.05,0,0\n0.25,0.5,0,0\n".to_owned(),
     ] {
-        assert!(csv::recognises(&text), "{text}");
         assert_eq!(csv::parse(&text).as_ref(), Ok(&pieces), "{text}");
     }
 }
@@ -47,7 +53,10 @@ fn errors_name_line_column_value_and_remedy() {
         "line 1: 3 columns; needs 33 (duration, then 8 coefficients each of x, y, z and yaw; write 0 for what is not \
          used)"
     );
-    assert_eq!(csv::parse(&format!("{good},7\n")), Err(CsvError::Columns { line: 1, found: 34 }));
+    assert_eq!(
+        csv::parse(&format!("{good},7\n")),
+        Err(CsvError::Columns { line: 1, found: 34, decimal_commas: false })
+    );
     assert_eq!(
         error(&format!("# c\n\n{good}\n{}\n", row("1", "O.5"))),
         "line 4, x^0: \"O.5\" is not a finite number; write one such as 0.25"
@@ -63,12 +72,80 @@ fn errors_name_line_column_value_and_remedy() {
     for text in ["", "\n# nothing\n", "\u{feff}", &header()] {
         assert_eq!(csv::parse(text), Err(CsvError::Empty), "{text}");
     }
-    assert_eq!(
-        error(&header().replace("x^0,x^1", "x^1,x^0")),
-        "line 1, column 2: the header has \"x^1\" where this format has \"x^0\"; reorder the columns"
+    let renamed = error(&header().replace("x^1", "v_x"));
+    assert!(
+        renamed.starts_with("line 1, column 3: the header has \"v_x\"; columns are duration, then x^0"),
+        "{renamed}"
     );
+    let twice = error(&header().replace("x^1", "x^2"));
+    assert!(twice.starts_with("line 1, column 4: the header has \"x^2\""), "{twice}");
+    assert!(error("duration,x^0,y^0\n1,0,0\n").starts_with("line 1: the header has no z^0"));
+    let commas = error(&row("1,0", "0,25"));
+    assert!(commas.contains("needs 33") && !commas.contains("semicolons"), "{commas}");
+    let commas = error(&format!("{}\n{}\n", header(), ["0,5"; 33].join(",")));
+    assert!(
+        commas.starts_with("line 2: 66 columns") && commas.ends_with("separate the columns by semicolons"),
+        "{commas}"
+    );
+    let ragged = error("duration,x^0,y^0,z^0\n1,0,0\n");
+    assert_eq!(ragged, "line 2: 3 columns where the header has 4");
     let jump = error(&format!("{}\n{good}\n# next\n{}\n", header(), row("1", "0.2")));
     assert!(jump.starts_with("line 4: x jumps by 0.200000 m from the end of piece 1"), "{jump}");
+}
+
+#[test]
+fn a_higher_degree_than_is_flown_is_named() {
+    let names = |highest: usize| -> Vec<String> {
+        ["x", "y", "z", "yaw"].iter().flat_map(|c| (0..=highest).map(move |power| format!("{c}^{power}"))).collect()
+    };
+    let file = |last: &str| {
+        let mut cells = vec!["0"; 40];
+        cells[9] = last;
+        format!("duration,{}\n2.0,{}\n", names(9).join(","), cells.join(","))
+    };
+    let used = error(&file("0.1"));
+    assert!(used.starts_with("line 1: polynomials of degree 9; at most degree 7 is flown"), "{used}");
+    assert!(used.ends_with("fit the pieces anew with 8 coefficients each"), "{used}");
+    assert!(error(&file("0")).ends_with("all coefficients above x^7 are 0 here, so leave those columns out"));
+    // Without a header, by the number of columns.
+    let bare = file("0.1").lines().nth(1).unwrap().to_owned();
+    assert!(error(&bare).contains("at most degree 7"), "{}", error(&bare));
+    // A lower degree is read.
+    let low = format!("duration,{}\n1,{}\n", names(3).join(","), ["0.5"; 16].join(","));
+    assert_eq!(csv::parse(&low).unwrap().at(1.0).position_m.x, 2.0);
+}
+
+#[test]
+fn gaps_of_rounding_are_closed_and_others_named_with_their_line() {
+    // Two pieces of 4 s cut to six places: at the end of the first, 0.5e-6 * (4^8 - 1) / 3 = 11 mm can be missing.
+    let coefficients = [0.123456, -0.234567, 0.345678, -0.078901, 0.012345, -0.001234, 0.000123, -0.000012];
+    let mut exact = Piece { duration_s: 4.0, coefficients: [[0.0; 8]; 4] };
+    exact.coefficients[0] = coefficients;
+    let end_m = exact.derivative(Coordinate::X, 0, 4.0);
+    let file = |gap_m: f64| {
+        let cells: Vec<String> = coefficients.iter().map(|c| format!("{c:.6}")).collect();
+        let zeros = ["0.000000"; 24].join(",");
+        let rest = format!("4.000000,{:.6}{}", end_m + gap_m, ",0.000000".repeat(31));
+        format!("{}\n4.000000,{},{zeros}\n{rest}\n", header(), cells.join(","))
+    };
+    for gap_m in [0.0, 0.0005, 0.002, -0.009] {
+        let pieces = csv::parse(&file(gap_m)).unwrap_or_else(|error| panic!("{gap_m}: {error}"));
+        let [before, after] = [&pieces.pieces()[0], &pieces.pieces()[1]];
+        let left_m = (before.derivative(Coordinate::X, 0, 4.0) - after.coefficients[0][0]).abs();
+        // What the board flies as it is stays.
+        assert!(left_m < 0.995e-3, "{gap_m}: {left_m}");
+        let kept = (1..4).all(|order| {
+            (before.derivative(Coordinate::X, order, 4.0) - exact.derivative(Coordinate::X, order, 4.0)).abs() < 1e-9
+        });
+        assert!(kept, "{gap_m}: its derivatives at the joint");
+    }
+    let far = error(&file(0.02));
+    assert!(far.starts_with("line 3: x jumps by 0.02"), "{far}");
+    // The same gap over 1 s is no rounding.
+    let short = error(&format!("{}\n{}\n{}\n", header(), row("1.000000", "0.000000"), row("1.000000", "0.002000")));
+    assert!(short.starts_with("line 3: x jumps by 0.002000 m from the end of piece 1"), "{short}");
+    // What numbers of few digits leave is the board's to refuse: 1 mm, whatever the last bit of the difference.
+    assert!(error(&format!("{}\n{}\n", row("2.0", "1.0"), row("2.0", "1.001"))).contains("piece 2"));
 }
 
 #[test]

@@ -77,7 +77,8 @@ fn splines_and_pieces_that_cannot_be_flown_say_why() {
     assert_eq!(error(&TOML.replace("3.0", "-3.0")), "flight: duration_s = -3: must be a positive number of seconds");
     assert!(error(&TOML.replace("0.25", "nan")).contains("control point 1 (from 0) has the coordinate NaN"));
     assert!(error(&JSON.replace("2,", "9,")).contains("degree = 9: must be from 1 to 7"));
-    assert!(error("duration,x^0\n1,2\n").starts_with("flight: line 1: 2 columns; needs 33"));
+    assert!(error("duration,x^0\n1,2\n").starts_with("flight: line 1: the header has no y^0"));
+    assert!(error("1,2,3,4,5,6\n").starts_with("flight: line 1: 6 columns; needs 33"));
 }
 
 #[test]
@@ -86,7 +87,6 @@ fn what_is_nothing_of_this_says_what_is_accepted() {
         ("", "flight: the file is empty; accepted are "),
         (" \r\n\t", "flight: the file is empty; accepted are "),
         ("# only this\n", "flight: nothing but comments; accepted are "),
-        ("t,x,y,z\n0,0,0,0\n", "flight: neither rows of numbers nor keys with values; accepted are "),
         ("mass_kg = 1\n", "flight: has only the keys mass_kg; accepted are "),
         ("waypoints = []\ncontrol_points_m = []\n", "flight: has both waypoints and control_points_m; keep one"),
     ] {
@@ -94,6 +94,36 @@ fn what_is_nothing_of_this_says_what_is_accepted() {
         assert!(line.starts_with(found), "{line}");
         assert!(line.contains("control points as JSON or TOML"), "{line}");
     }
+}
+
+#[test]
+fn waypoints_and_samples_are_named_with_a_way_on() {
+    for (text, found) in [
+        (
+            "t,x,y,z\n0,0,0,0\n1,1,0,0\n",
+            "flight: rows of waypoints with times, no trajectory yet; `quatrack plan flight",
+        ),
+        ("0.0,0.45,1.4\n0.0,0.05,1.7\n", "flight: rows of waypoints, no trajectory yet"),
+        ("t_s,x_m,y_m,z_m,q0\n0,0,0,1,1\n", "flight: rows of a flight sampled over time (t_s,x_m,y_m,z_m,q0)"),
+        ("0;0;0;1;0;0;0\n0,1;0;0;1;0;0;0\n0,2;0;0;1;0;0;0\n", "flight: rows of a flight sampled over time (7 columns"),
+    ] {
+        let line = error(text);
+        assert!(line.starts_with(found), "{line}");
+    }
+}
+
+#[test]
+fn headings_and_several_curves_are_read() {
+    let turned = JSON.replace("}", r#", "heading_control_points_rad": [0, 0.5, 1]}"#);
+    let TrajectoryFile::Spline(spline) = file::parse("a", &turned).expect("a heading") else { panic!("not a spline") };
+    assert_eq!((spline.at(0.0).heading_rad, spline.at(3.0).heading_rad), (0.0, 1.0));
+    assert!(error(&turned.replace("0.5, 1]", "0.5]")).contains("must be 3 finite numbers"));
+    let back = turned.replace("[0,0,0],[1,0.5,0.25],[1,1,1]", "[1,1,1],[0,0,0]").replace("2,", "1,");
+    let back = back.replace("[0, 0.5, 1]", "[1, 1]");
+    let both = format!(r#"{{"curves": [{turned}, {back}]}}"#);
+    let TrajectoryFile::Pieces(pieces) = file::parse("b", &both).expect("two curves") else { panic!("not pieces") };
+    assert_eq!((pieces.duration_s(), pieces.pieces().len()), (6.0, 2));
+    assert!(error(&both.replace("[1, 1]", "[0, 0]")).contains("yaw jumps by 1"));
 }
 
 #[test]

@@ -11,6 +11,7 @@ use nalgebra::{Vector3, Vector4};
 use quatrack_crazyflie::abi::{self, Mode};
 use quatrack_crazyflie::craft::Platform;
 use quatrack_crazyflie::ffi;
+use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
 
 use super::course::Course;
@@ -69,6 +70,22 @@ pub struct Tune {
     pub table: u8,
     /// The motors' lag as the owner knows it, s; 0 where only what is published is known.
     pub motor_lag_s: f64,
+    /// Drag over mass as the owner knows it, 1/s; the craft's own where he says nothing.
+    pub drag_per_s: Option<f64>,
+    /// Likewise the airflow moment, N s.
+    pub moment_n_s: Option<[f64; 2]>,
+}
+
+impl Tune {
+    /// A table and the motors' lag.
+    pub const fn new(table: u8, motor_lag_s: f64) -> Self {
+        Self { table, motor_lag_s, drag_per_s: None, moment_n_s: None }
+    }
+
+    /// The same where there is no air, and the owner knows.
+    pub const fn in_vacuum(self) -> Self {
+        Self { drag_per_s: Some(0.0), moment_n_s: Some([0.0; 2]), ..self }
+    }
 }
 
 /// The controller is one for all: a flight locks it against the others.
@@ -80,6 +97,7 @@ pub struct Firmware {
     setpoint: abi::Setpoint,
     estimate: abi::State,
     thrust_max_n: f64,
+    mass_kg: f64,
     mixing: [f64; 3],
     step: u32,
     noise: Source,
@@ -119,9 +137,18 @@ impl Firmware {
         let motors = vehicle.motors();
         let parameters = &ffi::quatrack.parameters;
         parameters.table.store(tune.table, Relaxed);
+        // No numbers: each is put back to its default.
+        parameters.set_all(f32::NAN);
         parameters.motor_lag_s.set(tune.motor_lag_s as f32);
-        parameters.position_scale.set(1.0);
-        parameters.yaw_scale.set(1.0);
+        if let Some(drag_per_s) = tune.drag_per_s {
+            parameters.drag_per_s.set(drag_per_s as f32);
+        }
+        if let Some([x, y]) = tune.moment_n_s {
+            parameters.moment_x_n_s.set(x as f32);
+            parameters.moment_y_n_s.set(y as f32);
+        }
+        parameters.learn.store(1, Relaxed);
+        parameters.feed_forward.store(1, Relaxed);
         let has_tables = ffi::quatrackPlatform(platform);
         ffi::quatrackService();
         let mut firmware = Self {
@@ -129,6 +156,7 @@ impl Firmware {
             setpoint: abi::Setpoint::default(),
             estimate: abi::State::default(),
             thrust_max_n: motors.thrust_max_n,
+            mass_kg: vehicle.mass_kg(),
             mixing: [0.25 / motors.half_arm_m(), 0.25 / motors.half_arm_m(), 0.25 / motors.torque_per_thrust_m],
             step: 1,
             noise: Source::new(1),
@@ -162,13 +190,28 @@ impl Firmware {
         self.setpoint.timestamp = self.step;
     }
 
-    /// One step: commanded forces, N. A setpoint of one's own replaces the commander's.
+    /// One step in vacuum: commanded forces, N. A setpoint of one's own replaces the commander's.
     pub fn step(&mut self, state: &RigidState, setpoint: Option<&abi::Setpoint>) -> Vector4<f64> {
+        let felt_m_s2 = Vector3::z() * (state.thrusts_n.sum() / self.mass_kg);
+        self.step_felt(state, &felt_m_s2, setpoint)
+    }
+
+    /// The same with what the accelerometer feels, body frame, m/s^2.
+    pub fn step_felt(
+        &mut self,
+        state: &RigidState,
+        felt_m_s2: &Vector3<f64>,
+        setpoint: Option<&abi::Setpoint>,
+    ) -> Vector4<f64> {
         if self.step.is_multiple_of(self.sensors.estimate_steps) || self.step < 10 {
             self.estimate = estimate(state);
         }
         let rates = state.body_rates_rad_s.map(|rate| rate + self.sensors.gyro_noise_rad_s * self.noise.normal());
-        let sensors = abi::SensorData { gyro: rates.map(|rate| rate.to_degrees() as f32).into(), ..Default::default() };
+        let sensors = abi::SensorData {
+            acc: felt_m_s2.map(|force| (force / GRAVITY_M_S2) as f32).into(),
+            gyro: rates.map(|rate| rate.to_degrees() as f32).into(),
+            ..Default::default()
+        };
         let setpoint = setpoint.unwrap_or(&self.setpoint);
         ffi::controllerOutOfTree(&mut self.control, setpoint, &sensors, &self.estimate, self.step);
         if let Some(recording) = &mut self.recording {

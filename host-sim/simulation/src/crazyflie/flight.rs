@@ -1,7 +1,7 @@
 //! One flight: a course, a craft and what is wrong with it in; how far it strayed out.
 //!
-//! What moves at its start is known by then: the craft is carried along it for a second before, setpoints and all, as if
-//! it had flown there. What is recorded begins as switched on.
+//! What moves at its start is flown for some seconds before, as if the craft had come there. What is recorded begins as
+//! switched on.
 
 use std::collections::VecDeque;
 
@@ -20,10 +20,10 @@ use crate::plant::{Craft, Ground, RigidState};
 const LOST_M: f64 = 5.0;
 
 /// Steps between two samples of the error: 100 Hz.
-const SAMPLE_STEPS: u32 = 10;
+const SAMPLE_STEPS: i32 = 10;
 
-/// Steps for which a craft is carried along a course that moves at its start; a whole number of setpoints.
-const CARRIED_STEPS: u32 = 1000;
+/// Steps for which a course that moves at its start is flown before; a whole number of setpoints.
+const LEAD_IN_STEPS: i32 = 5000;
 
 /// What is not as the controller thinks, and how it is spoken to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +75,6 @@ pub struct FlightErrors {
 /// Flies a course from its start in the air, or from the ground where it begins there.
 pub fn fly(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case) -> FlightErrors {
     let mut firmware = Firmware::start(vehicle, tune, case.sensors);
-    carry(&mut firmware, vehicle, course, case);
     fly_with(&mut firmware, vehicle, course, case, None)
 }
 
@@ -95,16 +94,6 @@ pub fn fly_recorded(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case
     firmware.recorded().unwrap_or_default()
 }
 
-/// To the start of a course that comes from somewhere.
-fn carry(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case: &Case) {
-    for steps_left in (1..=CARRIED_STEPS).rev() {
-        let t_s = -f64::from(steps_left) / f64::from(STEPS_HZ);
-        let Some(state) = course.coming_from(t_s).and_then(|point| on_course(&point, vehicle)) else { return };
-        firmware.command(course, t_s, case.setpoints);
-        firmware.step(&state, None);
-    }
-}
-
 fn fly_with(
     firmware: &mut Firmware,
     vehicle: &Vehicle,
@@ -115,9 +104,12 @@ fn fly_with(
     let mut craft = Craft::new(vehicle);
     craft.body = craft.body.scaled(case.mass_factor, case.inertia_factor);
     craft.motors = craft.motors.with_lag(case.lag_s, case.lag_s);
-    let start = course.position_m(0.0).unwrap_or_default();
+    let lead_in_steps = if recorded.is_none() && course.coming_from(0.0).is_some() { LEAD_IN_STEPS } else { 0 };
+    let at_s = |step: i32| f64::from(step) / f64::from(STEPS_HZ);
+    let begin_s = at_s(-lead_in_steps);
+    let start = course.position_m(begin_s).unwrap_or_default();
     let hovering = RigidState::at_rest(start, vehicle.hover_thrust_n());
-    let mut state = course.coming_from(0.0).and_then(|point| on_course(&point, vehicle)).unwrap_or(hovering);
+    let mut state = course.coming_from(begin_s).and_then(|point| on_course(&point, vehicle)).unwrap_or(hovering);
     if matches!(course, Course::Hop(..)) {
         craft = craft.with_load(Ground::under(vehicle));
         state = RigidState::at_rest(start, 0.0);
@@ -125,24 +117,26 @@ fn fly_with(
     let mut source = Source::new(case.noise.map_or(0, |noise| noise.seed));
     let mut on_their_way = VecDeque::from(vec![state.thrusts_n; case.late_steps]);
 
-    let whole = (course.duration_s() * f64::from(STEPS_HZ)).round() as u32;
+    let whole = (course.duration_s() * f64::from(STEPS_HZ)).round() as i32;
     let mut flown = FlightErrors { iae: Some(0.0), max_error_m: 0.0, end_error_m: 0.0, max_tilt_deg: 0.0 };
-    for step in 0..recorded.map_or(whole + 1, |recorded| recorded.steps) {
+    for step in -lead_in_steps..recorded.map_or(whole + 1, |recorded| recorded.steps as i32) {
         match recorded {
-            Some(Recorded { steps, then: Some(table) }) if step == steps / 2 => firmware.ask_for(table),
+            Some(Recorded { steps, then: Some(table) }) if step == (steps / 2) as i32 => firmware.ask_for(table),
             _ => {}
         }
-        let t_s = f64::from(step) / f64::from(STEPS_HZ);
+        let t_s = at_s(step);
         firmware.command(course, t_s, case.setpoints);
         let error_m = (state.position_m - course.position_m(t_s).unwrap_or(start)).norm();
-        if step % SAMPLE_STEPS == 0 {
-            flown.iae = flown.iae.map(|iae| iae + error_m * f64::from(SAMPLE_STEPS) / f64::from(STEPS_HZ));
-        }
-        flown.max_error_m = flown.max_error_m.max(error_m);
-        flown.end_error_m = error_m;
-        flown.max_tilt_deg = flown.max_tilt_deg.max(state.thrust_axis().z.clamp(-1.0, 1.0).acos().to_degrees());
         if !state.is_finite() || error_m > LOST_M {
             return FlightErrors { iae: None, ..flown };
+        }
+        if step >= 0 {
+            if step % SAMPLE_STEPS == 0 {
+                flown.iae = flown.iae.map(|iae| iae + error_m * at_s(SAMPLE_STEPS));
+            }
+            flown.max_error_m = flown.max_error_m.max(error_m);
+            flown.end_error_m = error_m;
+            flown.max_tilt_deg = flown.max_tilt_deg.max(state.thrust_axis().z.clamp(-1.0, 1.0).acos().to_degrees());
         }
         let measured = case.noise.map_or(state, |noise| source.measured(&state, &noise));
         on_their_way.push_back(firmware.step(&measured, None));

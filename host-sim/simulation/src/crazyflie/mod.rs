@@ -8,7 +8,6 @@
 //!       course  what the high-level commander evaluates
 //! ```
 
-mod codegen;
 mod course;
 mod firmware;
 mod flight;
@@ -16,10 +15,9 @@ mod paper_limits;
 mod recording;
 mod report;
 
-pub use codegen::{CodegenError, Design, Stated, motor_gains};
 pub use course::{Course, CourseError, Septics};
 pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune, platform};
 pub use flight::{Case, FlightErrors, Recorded, fly, fly_recorded};
-pub use paper_limits::paper_limits;
+pub use paper_limits::{CodegenError, paper_limits};
 pub use recording::{CONTROL_BYTES, Recording};
 pub use report::{CrazyflieReport, Row};

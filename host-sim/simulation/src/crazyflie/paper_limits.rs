@@ -8,9 +8,41 @@ use nalgebra::{DMatrix, dmatrix};
 use quatrack_design::design::discretise::zero_order_hold;
 use quatrack_design::model::GRAVITY_M_S2;
 
-use super::codegen::{CodegenError, PERIOD_S, text};
+use thiserror::Error;
+
 use crate::flight::motor_laws::FlightError;
-use crate::gains::{self, Gains};
+use crate::gains::{self, Gains, GainsError};
+
+/// Control period, s.
+const PERIOD_S: f64 = 0.002;
+
+macro_rules! text {
+    ($name:literal) => {
+        ($name, include_str!(concat!("../../../../gains/", $name, ".toml")))
+    };
+}
+
+/// Why there is no source.
+#[derive(Debug, Error)]
+pub enum CodegenError {
+    /// A design is not what it has to be.
+    #[error("gains/{name}.toml: {error}")]
+    Design {
+        /// Its name.
+        name: &'static str,
+        /// What is wrong with it.
+        error: GainsError,
+    },
+    /// A design without a table.
+    #[error("gains/{name}.toml: must give a table, delay_samples = 0")]
+    NoTable {
+        /// Its name.
+        name: &'static str,
+    },
+    /// No gain or no certificate.
+    #[error(transparent)]
+    Flight(#[from] FlightError),
+}
 
 /// Constants of the source, and the designs that they come from, by name and text.
 const TABLES: [(&str, (&str, &str)); 4] =

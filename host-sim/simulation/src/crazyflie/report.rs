@@ -1,6 +1,6 @@
 //! Flights through the controller's C interface, in rows: a vehicle in; every course under every case out.
 //!
-//! The actuator-aware table flies with nothing stated where it is certified so, and with the motors' lag stated: every course
+//! The cascade flies with nothing stated where it is certified so, and with the motors' lag stated: every course
 //! with a noisy gyroscope, and a figure eight with exact measurements with one thing wrong at a time. The paper's tables fly at
 //! the lags that they tolerate, the two that hold no position over the ground on what is smooth alone.
 
@@ -21,7 +21,7 @@ const GYRO_NOISE_RAD_S: f64 = 0.02;
 /// True lags of the motors, s.
 const LAGS_S: [f64; 3] = [0.020, 0.063, 0.126];
 
-/// The shortest lag at which the actuator-aware table is certified with nothing stated, s.
+/// The shortest lag at which the cascade is certified with nothing stated, s.
 const UNSTATED_FROM_S: f64 = 0.050;
 
 /// One flight.
@@ -113,7 +113,7 @@ impl CrazyflieReport {
         let fit_error_m = [&mild.1, &aggressive.1].map(Course::fit_error_m);
         let mut flights = Flights { vehicle, rows: Vec::new() };
         for lag_s in LAGS_S {
-            let (unstated, stated) = (("actuator-aware", 0, 0.0), ("actuator-aware", 0, lag_s));
+            let (unstated, stated) = (("cascade", 0, 0.0), ("cascade", 0, lag_s));
             for table in [unstated, stated] {
                 if table == unstated && lag_s < UNSTATED_FROM_S {
                     flights.add(table, figure, "uncertified", &noisy(lag_s));
@@ -157,7 +157,7 @@ impl Flights<'_> {
     /// Flies a table by its name, its number and the lag that is stated, s, or 0.
     fn add(&mut self, table: (&'static str, u8, f64), course: &Named, name: &'static str, case: &Case) {
         let (table, number, motor_lag_s) = table;
-        let flown = fly(self.vehicle, &course.1, &Tune { table: number, motor_lag_s }, case);
+        let flown = fly(self.vehicle, &course.1, &Tune::new(number, motor_lag_s).in_vacuum(), case);
         self.rows.push(Row {
             vehicle: self.vehicle.name().to_owned(),
             table,

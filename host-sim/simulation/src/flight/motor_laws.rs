@@ -30,6 +30,7 @@ const DEFAULT_LAG_MIN_S: f64 = 0.1;
 
 /// Why there is no flight.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum FlightError {
     /// No gain.
     #[error(transparent)]

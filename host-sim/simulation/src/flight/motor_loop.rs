@@ -20,6 +20,11 @@ pub const STEPS_A_SAMPLE: u32 = 5;
 /// Control period at that rate, s.
 pub const PERIOD_S: f64 = 0.002;
 
+/// The number of the control step at a time of one, s.
+pub fn step_at(time_s: f64) -> usize {
+    (time_s / PERIOD_S).round() as usize
+}
+
 fn vector(v: &Vector3<f64>) -> Vector3<f32> {
     v.map(|value| value as f32)
 }

@@ -8,6 +8,7 @@ use thiserror::Error;
 
 /// A design that cannot be read, computed, certified or written.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum GainsError {
     /// The file cannot be read.
     #[error("cannot read this design ({reason}); give the path of a design, a TOML file")]

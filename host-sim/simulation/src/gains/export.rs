@@ -121,6 +121,7 @@ impl Export {
         };
         let poles: Vec<[f64; 2]> = poles.iter().map(|pole| [pole.re, pole.im]).collect();
         json!({
+            "schema": "quatrack/export/1",
             "name": self.name,
             "method": self.method,
             "mu_1_s": self.mu_1_s,

@@ -47,6 +47,11 @@ impl RigidBody {
         &self.inertia_kg_m2
     }
 
+    /// Its inverse, 1/(kg m^2).
+    pub(super) fn inverse_inertia(&self) -> &Matrix3<f64> {
+        &self.inverse_inertia
+    }
+
     /// `F / m - g z`, world frame, m/s^2, from a force in the world frame, N.
     pub(super) fn acceleration_m_s2(&self, force_n: &Vector3<f64>) -> Vector3<f64> {
         force_n / self.mass_kg - Vector3::new(0.0, 0.0, GRAVITY_M_S2)

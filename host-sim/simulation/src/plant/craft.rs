@@ -4,6 +4,7 @@ use nalgebra::{Quaternion, Vector3, Vector4};
 use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
 
+use super::kernel::{self, Step};
 use super::state::RigidVector;
 use super::{Airflow, Load, MotorBank, RigidBody, RigidState};
 use crate::integrator::Method;
@@ -81,6 +82,10 @@ impl Craft {
         time_s: f64,
         step_s: f64,
     ) -> RigidState {
+        if let Some((figures, has_air)) = kernel::figures(self) {
+            let step = Step { goals_n: *commands_n, wind: *wind, from_s: time_s, step_s };
+            return kernel::alone(&figures, has_air, state, &step);
+        }
         let mut rate = |t: f64, x: &RigidVector| self.rate(t, x, commands_n, wind);
         RigidState::from_vector(&Method::RungeKutta4.step(&mut rate, time_s, &state.to_vector(), step_s))
     }

@@ -7,6 +7,7 @@ use super::craft::{LinearWind, STEP_MAX_S};
 use super::delay::DelayLine;
 use super::environment::{Environment, Truth};
 use super::ground_effect::GroundEffect;
+use super::kernel::{self, Figures, Step};
 use super::refused::PlantError;
 use super::supply::{ForceMap, Supply};
 use super::wind::Blowing;
@@ -30,6 +31,8 @@ use super::{Airflow, Contact, Craft, Ground, Load, Motion, RigidBody, RigidState
 /// ```
 pub struct Plant {
     craft: Craft,
+    /// The craft's figures where it is plain, and whether it has air.
+    plain: Option<(Figures, bool)>,
     wind: Blowing,
     line: DelayLine,
     supply: Supply,
@@ -39,6 +42,16 @@ pub struct Plant {
     time_s: f64,
     state: RigidState,
     wind_m_s: Vector3<f64>,
+}
+
+/// A time that is flown step by step: parts between delayed commands, each in equal steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    end_s: f64,
+    from_s: f64,
+    part_s: f64,
+    steps: f64,
+    taken: f64,
 }
 
 /// From commands to the thrusts that the motors go to.
@@ -93,8 +106,10 @@ impl Plant {
         environment.check()?;
         truth.check()?;
         let mut wind = Blowing::new(&environment.wind, seed);
+        let craft = craft(vehicle, environment, truth);
         Ok(Self {
-            craft: craft(vehicle, environment, truth),
+            plain: kernel::figures(&craft),
+            craft,
             wind_m_s: wind.at(0.0),
             wind,
             line: DelayLine::new(truth.delay_s),
@@ -115,44 +130,77 @@ impl Plant {
     /// The same with one more load.
     pub fn with_load(mut self, load: impl Load + 'static) -> Self {
         self.craft = self.craft.with_load(load);
+        self.plain = kernel::figures(&self.craft);
         self
     }
 
     /// The same with drag rotor by rotor, as RotorPy has it; needs [`Truth::propeller`].
     pub fn with_rotor_drag(mut self, rotors: RotorDrag) -> Self {
         self.craft.air = Some(Airflow { rotors: Some(rotors), ..self.craft.air.unwrap_or_default() });
+        self.plain = kernel::figures(&self.craft);
         self
     }
 
     /// Gives commands, N, and flies on for a time, s: Runge-Kutta 4 in steps of at most 2 ms, between which the
     /// voltage, and in which the slope of the wind stays the same. Steps end where delayed commands begin to act.
     pub fn advance(&mut self, commands_n: &Vector4<f64>, duration_s: f64) {
+        let mut way = self.begin(commands_n, duration_s);
+        while let Some((to_s, step)) = self.next_step(&mut way) {
+            let state = match &self.plain {
+                Some((figures, has_air)) => kernel::alone(figures, *has_air, &self.state, &step),
+                None => self.craft.step_in_wind(&self.state, &step.goals_n, &step.wind, step.from_s, step.step_s),
+            };
+            self.arrive(to_s, state);
+        }
+        self.end(&way);
+    }
+
+    /// Gives commands; what follows goes a time from there.
+    pub(super) fn begin(&mut self, commands_n: &Vector4<f64>, duration_s: f64) -> Way {
         self.line.give(self.time_s, commands_n);
-        let end_s = self.time_s + duration_s;
-        while self.time_s < end_s - 1e-9 {
+        Way { end_s: self.time_s + duration_s, from_s: 0.0, part_s: 0.0, steps: 0.0, taken: 0.0 }
+    }
+
+    /// The next step on the way, and when it ends; none at its end.
+    pub(super) fn next_step(&mut self, way: &mut Way) -> Option<(f64, Step)> {
+        if way.taken >= way.steps {
+            if self.time_s >= way.end_s - 1e-9 {
+                return None;
+            }
             let (commands_n, until_s) = self.line.at(self.time_s);
             if self.acting.map(|acting| acting.commands_n) != commands_n {
                 self.acting = commands_n.map(|commands_n| self.converter.acting(&commands_n));
             }
-            let part_s = until_s.min(end_s) - self.time_s;
-            let steps = (part_s / STEP_MAX_S - 1e-9).ceil().max(1.0);
-            let from_s = self.time_s;
-            for k in 1..=steps as u32 {
-                self.step(from_s + part_s * f64::from(k) / steps);
-            }
+            way.part_s = until_s.min(way.end_s) - self.time_s;
+            way.steps = (way.part_s / STEP_MAX_S - 1e-9).ceil().max(1.0);
+            way.from_s = self.time_s;
+            way.taken = 0.0;
         }
-        self.time_s = end_s;
-    }
-
-    fn step(&mut self, to_s: f64) {
+        way.taken += 1.0;
+        let to_s = way.from_s + way.part_s * way.taken / way.steps;
         let step_s = to_s - self.time_s;
         let goals_n = self.goals_n(self.acting);
         let from_m_s = self.wind_m_s;
         self.wind_m_s = self.wind.at(to_s);
         let wind = LinearWind { from_s: self.time_s, from_m_s, slope_m_s2: (self.wind_m_s - from_m_s) / step_s };
         self.supply.drain(&self.state.thrusts_n, step_s);
-        self.state = self.craft.step_in_wind(&self.state, &goals_n, &wind, self.time_s, step_s);
+        Some((to_s, Step { goals_n, wind, from_s: self.time_s, step_s }))
+    }
+
+    /// Takes the state after a step.
+    pub(super) fn arrive(&mut self, to_s: f64, state: RigidState) {
+        self.state = state;
         self.time_s = to_s;
+    }
+
+    /// At the end of the way.
+    pub(super) fn end(&mut self, way: &Way) {
+        self.time_s = way.end_s;
+    }
+
+    /// Its figures where it is plain, and whether it has air.
+    pub(super) fn plain(&self) -> Option<(Figures, bool)> {
+        self.plain
     }
 
     /// Before the first command acts, the thrusts stay.

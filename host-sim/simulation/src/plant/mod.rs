@@ -7,7 +7,9 @@
 //! flight: with a wind that blows, commands on their way, and a battery that empties. Sensors belong to the flight.
 //!
 //! ```text
+//! side_by_side             several plants in the lanes of the vector unit
 //! in_flight                Plant: one flight's craft, wind, delay, battery
+//!   kernel                 the steps of plain craft, alone or side by side
 //!   environment            the surroundings of a flight and the true figures of its craft; checked once
 //!   craft                  the equations of motion, and their steps
 //!     air, propeller       drag, moment, lift; momentum and speed of the rotors
@@ -26,11 +28,13 @@ mod dryden;
 mod environment;
 mod ground_effect;
 mod in_flight;
+mod kernel;
 mod loads;
 mod motors;
 mod propeller;
 mod random;
 mod refused;
+mod side_by_side;
 mod state;
 mod supply;
 mod wind;
@@ -48,6 +52,7 @@ pub use motors::{Motor, MotorBank};
 pub use propeller::{Propeller, SpeedResponse};
 pub use random::{Source, Stream};
 pub use refused::PlantError;
+pub use side_by_side::PlantGroup;
 pub use state::RigidState;
 pub use supply::{Battery, CURVE_POINTS, ForceMap, Supply};
 pub use wind::{Gust, Wind};

@@ -134,6 +134,10 @@ impl ControlLaw for Mellinger {
         RATE_HZ
     }
 
+    fn feels(&self) -> bool {
+        false
+    }
+
     fn step(&mut self, input: &Input) -> Result<Vector4<f64>, String> {
         let wanted = self.force_torque(input)?;
         Ok(self.actuation.forces_n(&wanted))

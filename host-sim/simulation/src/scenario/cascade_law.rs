@@ -1,16 +1,19 @@
 //! The cascade of the core as a law, at 500 Hz for any vehicle: setpoints to the jerk, estimate and accelerometer in, forces
 //! out.
 
+use std::sync::Arc;
+
 use nalgebra::{Vector3, Vector4};
 use quatrack::airframe::AirframeFigures;
 use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeLimits, JerkFit};
 use quatrack::gains::table::CascadeTable;
-use quatrack::{Airframe, Controller, Heading, Limits, Measured, Memory, Target};
+use quatrack::{Airframe, Controller, FifthOrderSample, Heading, Limits, Measured, Memory, Target};
 use quatrack_design::design::cascade::{CascadeWeights, cascade};
 use quatrack_design::vehicle::Vehicle;
 
 use super::core_law::rigid_state;
 use super::laws::ToldFigures;
+use super::track::Track;
 use crate::control_law::{ControlLaw, Input, Setpoint};
 use crate::flight::motor_laws::FlightError;
 use crate::flight::motor_loop::{self, PERIOD_S, RATE};
@@ -19,11 +22,14 @@ use crate::flight::motor_loop::{self, PERIOD_S, RATE};
 const JUMP_M: f64 = 0.05;
 
 /// The cascade on a vehicle's motors.
-pub struct CascadeLaw {
+#[derive(Clone)]
+pub(super) struct CascadeLaw {
     cascade: Cascade,
     memory: Memory,
     fit: JerkFit,
     newest: Option<Setpoint>,
+    /// The course as the core takes it at every step, where it is known before.
+    shared: Option<Arc<[FifthOrderSample]>>,
 }
 
 impl CascadeLaw {
@@ -33,18 +39,25 @@ impl CascadeLaw {
     }
 
     /// At a hover.
-    pub fn hovering(cascade: Cascade) -> Self {
+    fn hovering(cascade: Cascade) -> Self {
         let memory = Memory::hovering(cascade.airframe());
-        Self { cascade, memory, fit: JerkFit::NONE, newest: None }
+        Self { cascade, memory, fit: JerkFit::NONE, newest: None, shared: None }
     }
 
     /// Of a table, with its lag, and with its air where none is told.
     pub(super) fn of_table(vehicle: &Vehicle, told: &ToldFigures, table: &CascadeTable) -> Result<Self, FlightError> {
-        let figures = *motor_loop::airframe(vehicle, f64::from(table.motor_lag_s))?.figures();
-        let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?;
-        let air = with_told(&table.air, told).checked()?;
-        let cascade = table.flown(&airframe, RATE, &CascadeLimits::STANDARD, &air)?;
-        Ok(Self { cascade, memory: Memory::hovering(&airframe), fit: JerkFit::NONE, newest: None })
+        cascade_of_table(vehicle, told, table).map(Self::hovering)
+    }
+
+    /// Takes what it is told along a track from now on, evaluated once for this and its copies.
+    pub(super) fn share(&mut self, track: &Track) {
+        let mut law = self.clone();
+        let told = track.told(RATE.hz());
+        self.shared = Some(told.map(|(time_s, setpoint)| law.sample(time_s, setpoint)).collect());
+    }
+
+    fn sample(&mut self, time_s: f64, setpoint: &Setpoint) -> FifthOrderSample {
+        motor_loop::sample(&self.filled(setpoint).carried_to(time_s))
     }
 
     /// The setpoint with snap and crackle of the fit through its jerks; as it is where it has them.
@@ -79,14 +92,25 @@ pub fn cascade_of(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, Flig
     Ok(Cascade::new(&gains, &airframe, RATE, &CascadeLimits::STANDARD, &air(vehicle, told)?)?)
 }
 
+/// The cascade of a table at 500 Hz, with its lag, and with its air where none is told.
+///
+/// # Errors
+/// [`FlightError`] where the core refuses a figure.
+pub fn cascade_of_table(vehicle: &Vehicle, told: &ToldFigures, table: &CascadeTable) -> Result<Cascade, FlightError> {
+    let figures = *motor_loop::airframe(vehicle, f64::from(table.motor_lag_s))?.figures();
+    let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?;
+    let air = with_told(&table.air, told).checked()?;
+    Ok(table.flown(&airframe, RATE, &CascadeLimits::STANDARD, &air)?)
+}
+
 impl ControlLaw for CascadeLaw {
     fn rate_hz(&self) -> u32 {
         RATE.hz()
     }
 
     fn step(&mut self, input: &Input) -> Result<Vector4<f64>, String> {
-        let point = self.filled(&input.setpoint).carried_to(input.time_s);
-        let sample = motor_loop::sample(&point);
+        let shared = self.shared.as_ref().and_then(|shared| shared.get(motor_loop::step_at(input.time_s)).copied());
+        let sample = shared.unwrap_or_else(|| self.sample(input.time_s, &input.setpoint));
         let state = rigid_state(&input.estimate);
         let felt_m_s2 = input.estimate.specific_force_m_s2.cast();
         let measured = Measured::from(&state).with_specific_force(&felt_m_s2);

@@ -1,23 +1,27 @@
 //! The core's controller as a law: the paper's laws behind its body-rate loop, and the actuator-aware one, at 500 Hz for any
 //! vehicle.
 
+use std::sync::Arc;
+
 use nalgebra::{Vector3, Vector4};
 use quatrack::airframe::AirframeFigures;
 use quatrack::law::{ActuatorAwareGain, EquilibriumGain, FlatOutputGain};
 use quatrack::{
     Actuation, ActuatorAware, Airframe, Controller, Equilibrium, FeedForward, FlatOutput, Limits, Memory,
-    MotorReference, Rate, State,
+    MotorReference, Rate, ReferenceError, State,
 };
 use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use quatrack_design::vehicle::Vehicle;
 
 use super::laws::ToldFigures;
+use super::track::Track;
 use crate::control_law::{ControlLaw, Estimate, Input, Setpoint};
 use crate::flight::motor_laws::{FlightError, default_lag_s};
 use crate::flight::motor_loop::{self, PERIOD_S, RATE};
 use crate::vehicles;
 
 /// A law with its gain.
+#[derive(Clone)]
 pub(super) enum Gain {
     /// Designed for the vehicle.
     ActuatorAware(Box<ActuatorAwareGain>),
@@ -28,12 +32,15 @@ pub(super) enum Gain {
 }
 
 /// A law of the core on a vehicle's motors, fed forward.
+#[derive(Clone)]
 pub(super) struct CoreLaw {
     gain: Gain,
     actuation: Actuation,
     limits: Limits,
     memory: Memory,
     beyond_jerk: BeyondJerk,
+    /// The reference of every step, where the course is known before.
+    shared: Option<Arc<[Result<MotorReference, ReferenceError>]>>,
 }
 
 /// Snap and crackle of setpoints that end with the jerk, by differences.
@@ -84,7 +91,26 @@ impl CoreLaw {
             memory: Memory::hovering(actuation.airframe()),
             actuation,
             beyond_jerk: BeyondJerk::default(),
+            shared: None,
         })
+    }
+
+    /// Takes its references along a track from now on, evaluated once for this and its copies.
+    pub(super) fn share(&mut self, track: &Track) {
+        let mut beyond_jerk = BeyondJerk::default();
+        let references = track.told(RATE.hz()).map(|(time_s, setpoint)| {
+            let point = beyond_jerk.filled(setpoint).carried_to(time_s);
+            MotorReference::from_flat(&motor_loop::sample(&point), self.actuation.airframe())
+        });
+        self.shared = Some(references.collect());
+    }
+
+    fn reference(&mut self, input: &Input) -> Result<MotorReference, ReferenceError> {
+        if let Some(shared) = self.shared.as_ref().and_then(|shared| shared.get(motor_loop::step_at(input.time_s))) {
+            return *shared;
+        }
+        let point = self.beyond_jerk.filled(&input.setpoint).carried_to(input.time_s);
+        MotorReference::from_flat(&motor_loop::sample(&point), self.actuation.airframe())
     }
 }
 
@@ -116,9 +142,13 @@ impl ControlLaw for CoreLaw {
         RATE.hz()
     }
 
+    fn feels(&self) -> bool {
+        false
+    }
+
     fn step(&mut self, input: &Input) -> Result<Vector4<f64>, String> {
         let feed_forward = FeedForward::With;
-        let point = self.beyond_jerk.filled(&input.setpoint).carried_to(input.time_s);
+        let reference = self.reference(input).map_err(|error| error.to_string())?;
         let controller = match &self.gain {
             Gain::ActuatorAware(gain) => Controller::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE),
             Gain::Equilibrium(gain) => {
@@ -126,8 +156,6 @@ impl ControlLaw for CoreLaw {
             }
             Gain::FlatOutput(gain) => Controller::new(FlatOutput { gain, feed_forward }, self.limits),
         };
-        let reference = MotorReference::from_flat(&motor_loop::sample(&point), self.actuation.airframe())
-            .map_err(|e| e.to_string())?;
         let state = rigid_state(&input.estimate);
         let step = controller
             .with_actuation(&self.actuation)

@@ -10,6 +10,7 @@ use crate::plant::PlantError;
 
 /// Why there is no scenario.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ScenarioError {
     /// The file cannot be read.
     #[error("{}: cannot be read ({reason})", path.display())]
@@ -59,12 +60,14 @@ pub enum ScenarioError {
         /// Whose it is.
         origin: String,
         /// Which, and the remedy.
+        #[source]
         error: PlantError,
     },
 }
 
 /// Why a flight does not start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum StartError {
     /// The craft's figures.
     #[error(transparent)]

@@ -27,6 +27,19 @@ pub enum Estimation {
 }
 
 impl Estimation {
+    /// Whether an estimate changes those after it.
+    pub(super) fn remembers(&self) -> bool {
+        match self {
+            Self::Exact(sensors) => sensors.draws(),
+            Self::Filtered(_) => true,
+        }
+    }
+
+    /// Whether it makes anything of what is felt but to pass it on.
+    pub(super) fn feels(&self) -> bool {
+        matches!(self, Self::Filtered(_))
+    }
+
     /// What is known after one step of the flight.
     pub(super) fn estimate(
         &mut self,

@@ -3,20 +3,15 @@
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use serde::Deserialize;
 
-use super::course::Flown;
 use super::filtered::Estimation;
-use super::recording::{Around, Recording};
-use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ, Setpoint};
+use super::kept::Keep;
+use super::track::{SAMPLE_STEPS, STEP_S, Track};
+use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ};
 use crate::flight::closed_loop::Lost;
-use crate::flight::rigid_loop::{RigidFlight, RigidSample};
-use crate::plant::{Plant, RigidState};
+use crate::plant::{Plant, PlantGroup, RigidState};
 
 /// Farther than this from its course a craft counts as lost, m.
 const LOST_M: f64 = 5.0;
-/// Steps between two samples, and between two setpoints at 100 Hz.
-const SAMPLE_STEPS: u32 = 10;
-/// s.
-const STEP_S: f64 = 1.0 / STEPS_HZ as f64;
 
 /// How setpoints come.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
@@ -30,83 +25,110 @@ pub enum Setpoints {
     Exact,
 }
 
-/// What is flown, how the law is told of it, and what is between the craft and the law.
-pub struct Bench<'a> {
-    /// What is flown.
-    pub flown: &'a Flown,
-    /// How the law is told of it.
-    pub setpoints: Setpoints,
-    /// Where its estimate comes from.
-    pub estimation: Estimation,
+/// A law on its way along a track: what is between the craft and the law, and what came of it so far.
+pub(super) struct Flying<'a> {
+    track: &'a Track,
+    law: &'a mut dyn ControlLaw,
+    estimation: Estimation,
+    law_steps: u32,
+    commands_n: Vector4<f64>,
+    known: Estimate,
+    pub(super) saturated_steps: u64,
+    pub(super) lost: Option<Lost>,
 }
 
-impl Bench<'_> {
-    /// Flies a law from where a craft is; rows every 10 ms of what is measured.
-    pub fn fly(self, plant: &mut Plant, law: &mut dyn ControlLaw) -> RigidFlight {
-        self.record(plant, law).flight
+impl<'a> Flying<'a> {
+    /// Before its first step.
+    pub(super) fn new(track: &'a Track, law: &'a mut dyn ControlLaw, estimation: Estimation, plant: &Plant) -> Self {
+        Self {
+            track,
+            law_steps: STEPS_HZ / law.rate_hz().clamp(1, STEPS_HZ),
+            law,
+            estimation,
+            commands_n: plant.state().thrusts_n,
+            known: truth(plant.state(), &Vector3::zeros()),
+            saturated_steps: 0,
+            lost: None,
+        }
     }
 
-    /// The same, with what was around the craft and known of it at every row.
-    pub fn record(mut self, plant: &mut Plant, law: &mut dyn ControlLaw) -> Recording {
-        let (mut around, mut known) = (Vec::new(), truth(plant.state(), &Vector3::zeros()));
-        let mut flight = RigidFlight { samples: Vec::new(), saturated_steps: 0, lost: None };
-        let steps = (self.flown.course.duration_s() / STEP_S).round() as u32;
-        let law_steps = STEPS_HZ / law.rate_hz().clamp(1, STEPS_HZ);
-        let (mut setpoint, mut commands_n) = (self.setpoint(0.0), plant.state().thrusts_n);
-        for step in 0..=steps {
-            let (time_s, state) = (f64::from(step) * STEP_S, *plant.state());
-            let target_m = self.flown.course.at(time_s).position[0];
-            let error_m = (state.position_m - target_m).norm();
-            // Written so that NaN fails it.
-            if !(error_m < LOST_M && state.is_finite()) {
-                flight.lost = Some(Lost { time_s, reason: format!("{error_m:.0} m from the course") });
-                break;
+    /// To the end of the track, or where it is lost.
+    pub(super) fn fly(&mut self, plant: &mut Plant, keep: &mut impl Keep) {
+        for step in 0..=self.track.steps() {
+            if !self.decide(step, plant, keep) {
+                return;
             }
-            if step.is_multiple_of(SAMPLE_STEPS) || self.setpoints == Setpoints::Exact {
-                setpoint = self.setpoint(time_s);
-            }
-            let measured = time_s > self.flown.measured_from_s - 0.5 * STEP_S;
-            known = match self.estimation.estimate(&state, &plant.motion().specific_force_m_s2) {
+            plant.advance(&self.commands_n, STEP_S);
+        }
+    }
+
+    /// One step of the flight but for the craft's own; whether it goes on. Rows every 10 ms of what is measured, and where it
+    /// was lost, also before anything is measured.
+    fn decide<K: Keep>(&mut self, step: u32, plant: &mut Plant, keep: &mut K) -> bool {
+        let (time_s, state) = (f64::from(step) * STEP_S, *plant.state());
+        let target_m = self.track.target_m(step);
+        let error_m = (state.position_m - target_m).norm();
+        // Written so that NaN fails it.
+        if !(error_m < LOST_M && state.is_finite()) {
+            return self.lose(step, format!("{error_m:.0} m from the course"), plant, keep);
+        }
+        let measured = self.track.is_measured(time_s);
+        let (law_s_turn, row_s_turn) =
+            (step.is_multiple_of(self.law_steps), step.is_multiple_of(SAMPLE_STEPS) && measured);
+        // An estimate that nobody looks at is left out where that changes none after it.
+        if K::SEES_ESTIMATES || law_s_turn || self.estimation.remembers() {
+            let felt = K::SEES_ESTIMATES || self.law.feels() || self.estimation.feels();
+            let felt_m_s2 = if felt { plant.motion().specific_force_m_s2 } else { Vector3::zeros() };
+            self.known = match self.estimation.estimate(&state, &felt_m_s2) {
                 Ok(estimate) => estimate,
-                Err(error) => {
-                    flight.lost = Some(Lost { time_s, reason: format!("no estimate: {error}") });
-                    break;
-                }
+                Err(error) => return self.lose(step, format!("no estimate: {error}"), plant, keep),
             };
-            if step.is_multiple_of(law_steps) {
-                match law.step(&Input { time_s, estimate: known, setpoint, battery_v: plant.voltage_v() }) {
-                    Ok(asked_n) if asked_n.iter().all(|force| force.is_finite()) => commands_n = asked_n,
-                    Ok(_) => flight.lost = Some(Lost { time_s, reason: "a force that is not finite".to_owned() }),
-                    Err(reason) => flight.lost = Some(Lost { time_s, reason }),
-                }
-                if flight.lost.is_some() {
-                    break;
-                }
-                flight.saturated_steps += u64::from(measured && at_limit(&commands_n, plant.command_limits_n()));
-            }
-            if step.is_multiple_of(SAMPLE_STEPS) && measured {
-                around.push(Around::of(plant, known));
-                flight.samples.push(RigidSample { time_s, state, commands_n, target_m });
-            }
-            plant.advance(&commands_n, STEP_S);
         }
-        // Where it was lost counts, also before anything is measured.
-        if let Some(Lost { time_s, .. }) = flight.lost {
-            let (state, target_m) = (*plant.state(), self.flown.course.at(time_s).position[0]);
-            if state.is_finite() {
-                around.push(Around::of(plant, known));
-                flight.samples.push(RigidSample { time_s, state, commands_n, target_m });
+        if law_s_turn {
+            let setpoint = *self.track.setpoint(step);
+            match self.law.step(&Input { time_s, estimate: self.known, setpoint, battery_v: plant.voltage_v() }) {
+                Ok(asked_n) if asked_n.iter().all(|force| force.is_finite()) => self.commands_n = asked_n,
+                Ok(_) => return self.lose(step, "a force that is not finite".to_owned(), plant, keep),
+                Err(reason) => return self.lose(step, reason, plant, keep),
             }
+            self.saturated_steps += u64::from(measured && at_limit(&self.commands_n, plant.command_limits_n()));
         }
-        Recording { flight, around, gust_rms_m_s: plant.realised_gust_rms_m_s() }
+        if row_s_turn {
+            keep.row(time_s, plant, &self.commands_n, &target_m, &self.known);
+        }
+        true
     }
 
-    fn setpoint(&self, time_s: f64) -> Setpoint {
-        let point = self.flown.course.at(time_s);
-        match self.setpoints {
-            Setpoints::At100Hz => Setpoint::to_jerk(&point, time_s),
-            Setpoints::Exact => Setpoint::exact(&point, time_s),
+    fn lose(&mut self, step: u32, reason: String, plant: &Plant, keep: &mut impl Keep) -> bool {
+        let time_s = f64::from(step) * STEP_S;
+        self.lost = Some(Lost { time_s, reason });
+        if plant.state().is_finite() {
+            keep.row(time_s, plant, &self.commands_n, &self.track.target_m(step), &self.known);
         }
+        false
+    }
+}
+
+/// Flies up to four at once, each with the bits that it has alone.
+pub(super) fn together(plants: Vec<Plant>, flights: &mut [Flying<'_>], keep: &mut [impl Keep]) {
+    let mut group = PlantGroup::new(plants);
+    let mut goes_on = [false; PlantGroup::MOST];
+    goes_on.iter_mut().take(flights.len()).for_each(|goes| *goes = true);
+    let steps = flights.iter().map(|flying| flying.track.steps()).max().unwrap_or(0);
+    for step in 0..=steps {
+        let mut commands_n = [Vector4::zeros(); PlantGroup::MOST];
+        for (lane, (flying, keep)) in flights.iter_mut().zip(keep.iter_mut()).enumerate() {
+            let Some(plant) = group.plant_mut(lane).filter(|_| goes_on[lane]) else { continue };
+            goes_on[lane] = step <= flying.track.steps() && flying.decide(step, plant, keep);
+            commands_n[lane] = flying.commands_n;
+            if !goes_on[lane] {
+                group.stop(lane);
+            }
+        }
+        if goes_on.iter().all(|goes| !goes) {
+            return;
+        }
+        group.advance(&commands_n, STEP_S);
     }
 }
 

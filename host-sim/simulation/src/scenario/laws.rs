@@ -56,6 +56,7 @@ pub struct ToldFigures {
 
 /// Why a law does not fly a vehicle.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum LawError {
     /// Not one of the names.
     #[error("{name}: no such law; there are {known}")]
@@ -86,6 +87,7 @@ pub enum LawError {
         /// Whose name.
         vehicle: String,
         /// Why not.
+        #[source]
         error: FlightError,
     },
 }
@@ -119,6 +121,11 @@ impl Law {
             Self::Lee => "lee",
             Self::Pid => "pid",
         }
+    }
+
+    /// Whether there is one of it in a process, so that two of its flights cannot go on at once in one thread.
+    pub fn flies_alone(self) -> bool {
+        self == Self::Crazyflie
     }
 
     /// At the start of a flight of a vehicle of which it is told something.

@@ -9,8 +9,11 @@
 //!       flight       a plant, sensors and a law at 1 kHz
 //!         filtered   the estimate of a Kalman filter
 //!           sensors  noise and biases
+//!         kept       rows of a flight, or what they come to
 //!         recording  a flight with what was around it, as CSV
+//!         track      a course evaluated once
 //!         course     hover, ramp, and what is measured
+//!       prototype    a law designed once for many flights
 //!       laws         laws by name
 //!         object_law the Crazyflie controller as a law
 //!       table_law    the controller of a table of gains as a law
@@ -28,19 +31,25 @@ mod error;
 pub mod file;
 pub mod filtered;
 pub mod flight;
+mod kept;
 mod laws;
 mod object_law;
+mod prototype;
 mod recording;
 pub mod sensors;
 mod table_law;
+mod track;
 mod varied;
 mod whole;
 
-pub use cascade_law::{CascadeLaw, cascade_of};
+pub use cascade_law::{cascade_of, cascade_of_table};
 pub use core_law::{actuation_of, actuator_aware_of};
 pub use error::{ScenarioError, StartError};
+pub use kept::Tally;
 pub use laws::{Law, LawError, ToldFigures, start_table};
+pub use prototype::Prototype;
 pub use recording::{Around, Recording};
 pub use sensors::SensorNoise;
 pub use table_law::TableLaw;
-pub use whole::{CourseChoice, FilterFigures, Scenario, StartOffset};
+pub use track::Track;
+pub use whole::{CourseChoice, FilterFigures, Scenario, Side, StartOffset};

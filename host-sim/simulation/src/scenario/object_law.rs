@@ -20,7 +20,11 @@ pub(super) struct ObjectLaw {
 impl ObjectLaw {
     /// Switched on for a vehicle, with one of the object's tables; nothing where it has none for it.
     pub(super) fn start(vehicle: &Vehicle, told: &ToldFigures, table: u8) -> Option<Self> {
-        let tune = Tune { table, motor_lag_s: told.lag_s.unwrap_or(0.0) };
+        let tune = Tune {
+            drag_per_s: told.drag_per_s,
+            moment_n_s: told.moment_n_m_per_m_s,
+            ..Tune::new(table, told.lag_s.unwrap_or(0.0))
+        };
         let sensors = Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 };
         let firmware = Firmware::start_told(vehicle, told.mass_kg, &tune, sensors)?;
         Some(Self { firmware, setpoint: abi::Setpoint::default(), sent_s: None })
@@ -38,7 +42,8 @@ impl ControlLaw for ObjectLaw {
             self.setpoint = setpoint(&input.setpoint);
             self.setpoint.timestamp = self.firmware.next_step();
         }
-        Ok(self.firmware.step(&state(&input.estimate), Some(&self.setpoint)))
+        let felt_m_s2 = &input.estimate.specific_force_m_s2;
+        Ok(self.firmware.step_felt(&state(&input.estimate), felt_m_s2, Some(&self.setpoint)))
     }
 }
 

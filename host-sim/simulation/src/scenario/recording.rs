@@ -17,12 +17,19 @@ pub struct Around {
     pub thrust_limits_n: [Vector4<f64>; 2],
     /// What the law was told of the state.
     pub estimate: Estimate,
+    /// Voltage at the motors, V; 0 where nothing depends on it.
+    pub voltage_v: f64,
 }
 
 impl Around {
     /// Of a plant as it is now.
     pub(super) fn of(plant: &Plant, estimate: Estimate) -> Self {
-        Self { wind_m_s: *plant.wind_m_s(), thrust_limits_n: plant.thrust_limits_n(), estimate }
+        Self {
+            wind_m_s: *plant.wind_m_s(),
+            thrust_limits_n: plant.thrust_limits_n(),
+            estimate,
+            voltage_v: plant.voltage_v(),
+        }
     }
 }
 

@@ -53,18 +53,26 @@ impl Sensors {
     pub(super) fn estimate(&mut self, state: &RigidState, specific_force_m_s2: &Vector3<f64>) -> Estimate {
         let (truth, noise) = (truth(state, specific_force_m_s2), self.noise);
         let [gyro, accelerometer, position, velocity, attitude] = &mut self.streams;
+        let turned = white(attitude, noise.attitude_rad).map(UnitQuaternion::from_scaled_axis);
+        let or_none = |noise: Option<Vector3<f64>>| noise.unwrap_or_default();
         Estimate {
-            position_m: truth.position_m + white(position, noise.position_m),
-            velocity_m_s: truth.velocity_m_s + white(velocity, noise.velocity_m_s),
-            attitude: truth.attitude * UnitQuaternion::from_scaled_axis(white(attitude, noise.attitude_rad)),
-            body_rates_rad_s: truth.body_rates_rad_s + self.gyro_bias_rad_s + white(gyro, noise.gyro_rad_s),
+            position_m: truth.position_m + or_none(white(position, noise.position_m)),
+            velocity_m_s: truth.velocity_m_s + or_none(white(velocity, noise.velocity_m_s)),
+            attitude: turned.map_or(truth.attitude, |turn| truth.attitude * turn),
+            body_rates_rad_s: truth.body_rates_rad_s + self.gyro_bias_rad_s + or_none(white(gyro, noise.gyro_rad_s)),
             specific_force_m_s2: truth.specific_force_m_s2
                 + self.accelerometer_bias_m_s2
-                + white(accelerometer, noise.accelerometer_m_s2),
+                + or_none(white(accelerometer, noise.accelerometer_m_s2)),
         }
+    }
+
+    /// Whether an estimate changes those after it: each draws from the streams of what is noisy.
+    pub(super) fn draws(&self) -> bool {
+        self.noise != SensorNoise::default()
     }
 }
 
-fn white(stream: &mut Stream, deviation: f64) -> Vector3<f64> {
-    Vector3::from_fn(|_, _| deviation * stream.normal())
+/// Nothing, and nothing drawn, without noise.
+fn white(stream: &mut Stream, deviation: f64) -> Option<Vector3<f64>> {
+    (deviation != 0.0).then(|| Vector3::from_fn(|_, _| deviation * stream.normal()))
 }

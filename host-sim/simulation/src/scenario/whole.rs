@@ -11,10 +11,12 @@ use super::course::Flown;
 use super::error::StartError;
 use super::file::Estimator as EstimateFrom;
 use super::filtered::{Estimation, Filtered};
-use super::flight::{Bench, Setpoints};
+use super::flight::{self, Flying, Setpoints};
+use super::kept::{Errors, Rows, Tally};
 use super::laws::{Law, ToldFigures};
 use super::recording::Recording;
 use super::sensors::{SensorNoise, Sensors};
+use super::track::Track;
 use crate::control_law::ControlLaw;
 use crate::flight::motor_loop;
 use crate::flight::rigid_loop::RigidFlight;
@@ -97,6 +99,18 @@ pub struct Scenario {
     pub start: StartOffset,
 }
 
+/// One of several flights side by side.
+pub struct Side<'a> {
+    /// What is flown in.
+    pub scenario: &'a Scenario,
+    /// What is flown.
+    pub flown: &'a Flown,
+    /// The same, evaluated.
+    pub track: &'a Track,
+    /// At its start.
+    pub law: Box<dyn ControlLaw>,
+}
+
 impl Scenario {
     /// The true craft at a state, with the wind that blows in this scenario.
     pub(super) fn plant(&self, start: &RigidState) -> Result<Plant, PlantError> {
@@ -116,6 +130,18 @@ impl Scenario {
     /// # Errors
     /// As [`Self::fly`].
     pub fn record(&self, law: &mut dyn ControlLaw, flown: &Flown) -> Result<Recording, StartError> {
+        let (mut plant, estimation) = self.started(flown)?;
+        let track = Track::of(flown, self.setpoints);
+        let mut flying = Flying::new(&track, law, estimation, &plant);
+        let mut rows = Rows::default();
+        flying.fly(&mut plant, &mut rows);
+        let (saturated_steps, lost) = (flying.saturated_steps, flying.lost);
+        let flight = RigidFlight { samples: rows.samples, saturated_steps, lost };
+        Ok(Recording { flight, around: rows.around, gust_rms_m_s: plant.realised_gust_rms_m_s() })
+    }
+
+    /// The craft at the start of a course, and where its law's estimate comes from.
+    fn started(&self, flown: &Flown) -> Result<(Plant, Estimation), StartError> {
         let point = flown.course.at(0.0);
         let moves = point.position[1..].iter().any(|derivative| derivative.norm() > 0.0) || point.heading != [0.0; 4];
         let start = if moves {
@@ -132,8 +158,37 @@ impl Scenario {
                 Estimation::Filtered(Filtered::start(&self.filter, sensors, self.noise.position_m, &start)?.into())
             }
         };
-        let bench = Bench { flown, setpoints: self.setpoints, estimation };
-        Ok(bench.record(&mut self.plant(&start)?, law))
+        Ok((self.plant(&start)?, estimation))
+    }
+
+    /// Flies up to four scenarios, each with a law of its own along a track, side by side: every flight has the bits that it has
+    /// alone.
+    ///
+    /// # Errors
+    /// For each its own [`StartError`], as [`Self::fly`].
+    pub fn fly_together(flights: &mut [Side<'_>]) -> Vec<Result<Tally, StartError>> {
+        let mut outcomes: Vec<Option<StartError>> = Vec::new();
+        let (mut plants, mut flying) = (Vec::new(), Vec::new());
+        for Side { scenario, flown, track, law } in flights.iter_mut() {
+            let started = scenario.started(flown);
+            outcomes.push(started.as_ref().err().cloned());
+            if let Ok((plant, estimation)) = started {
+                flying.push(Flying::new(track, &mut **law, estimation, &plant));
+                plants.push(plant);
+            }
+        }
+        let mut kept = vec![Errors::default(); flying.len()];
+        if flying.len() > 1 {
+            flight::together(plants, &mut flying, &mut kept);
+        } else if let ([flying], [plant], [kept]) = (&mut flying[..], &mut plants[..], &mut kept[..]) {
+            flying.fly(plant, kept);
+        }
+        let mut flown = flying.into_iter().zip(&kept);
+        let tally = |(flying, kept): (Flying<'_>, &Errors)| Tally::of(kept, flying.saturated_steps, flying.lost);
+        outcomes
+            .into_iter()
+            .filter_map(|error| error.map_or_else(|| flown.next().map(tally).map(Ok), |error| Some(Err(error))))
+            .collect()
     }
 
     /// What is flown, with the part that is measured. A trajectory is not planned here; see [`CourseChoice::Trajectory`].

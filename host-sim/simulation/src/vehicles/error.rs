@@ -6,6 +6,7 @@ use quatrack_design::vehicle::VehicleError;
 
 /// Why a vehicle cannot be had by its name or from its file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum VehicleFileError {
     /// Not one of the built-in names.
     #[error("vehicle {name}: unknown; the built-in ones are {known}, others are files ending in .toml")]
@@ -37,6 +38,7 @@ pub enum VehicleFileError {
         /// Which.
         path: PathBuf,
         /// The error.
+        #[source]
         error: Box<VehicleFileError>,
     },
     /// A name or a figure that no vehicle has.

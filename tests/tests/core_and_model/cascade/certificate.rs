@@ -1,7 +1,7 @@
 //! The design's gains against another solver's, and the certificate's loop against the core's own step.
 
 use nalgebra::{DMatrix, Vector3};
-use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory};
+use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeInput, CascadeLimits, CascadeMemory, Followed};
 use quatrack::gains::cascade as tables;
 use quatrack::gains::table::{BuiltInCascade, CascadeTable};
 use quatrack::{FifthOrderSample, Heading, Quaternion, Rate, State};
@@ -112,7 +112,8 @@ fn flown_by_the_core(
             velocity_m_s: plant.v.cast(),
         };
         let rates = plant.w.cast();
-        let input = CascadeInput { state: &state, body_rates_rad_s: &rates, sample: &sample, heading: Heading::ZERO };
+        let (heading, followed) = (Heading::ZERO, Followed::ALL);
+        let input = CascadeInput { state: &state, body_rates_rad_s: &rates, sample: &sample, heading, followed };
         let felt = plant.felt.cast();
         let (forces, _) = core.step(&mut memory, &mut forces_n, &input, Some(&felt)).unwrap();
         for _ in 0..4 {

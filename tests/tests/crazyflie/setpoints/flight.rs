@@ -28,7 +28,7 @@ pub(crate) struct Flight {
 impl Flight {
     pub(crate) fn of(name: &str, table: u8, motor_lag_s: f64) -> Self {
         let vehicle = vehicles::by_name(name).unwrap();
-        let firmware = Firmware::start(&vehicle, &Tune { table, motor_lag_s }, QUIET);
+        let firmware = Firmware::start(&vehicle, &Tune::new(table, motor_lag_s), QUIET);
         let state = RigidState::at_rest(Vector3::z(), vehicle.hover_thrust_n());
         let mut craft = Craft::new(&vehicle);
         if motor_lag_s > 0.0 {

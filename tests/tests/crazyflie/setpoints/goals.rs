@@ -90,7 +90,7 @@ fn a_yaw_that_jumps_costs_no_position() {
             let mut flight = Flight::of(name, 0, 0.0);
             flight.hold(&position([0.0, 0.0, 1.0], 0.0), 500);
             let mut largest_m = 0.0_f64;
-            for _ in 0..400 {
+            for _ in 0..600 {
                 flight.hold(&position([0.0, 0.0, 1.0], yaw), 10);
                 largest_m = largest_m.max((flight.state.position_m - Vector3::z()).norm());
             }

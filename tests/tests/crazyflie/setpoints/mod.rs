@@ -1,8 +1,8 @@
 //! Every setpoint that the Crazyflie's firmware can send a controller, flown through the C interface on the rigid plant.
 
 mod by_hand;
-mod flight;
+pub(crate) mod flight;
 mod goals;
-mod orders;
-mod planner;
-mod sent;
+pub(crate) mod orders;
+pub(crate) mod planner;
+pub(crate) mod sent;

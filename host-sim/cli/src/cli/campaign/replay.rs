@@ -7,6 +7,7 @@ use quatrack_simulation::scenario::{Law, Scenario};
 
 use super::{refused, trajectories};
 use crate::cli::fly::scenario::{Outputs, fly_and_print};
+use crate::cli::transform::TransformArgs;
 use crate::cli::{Failure, output};
 
 /// Flies one flight of a campaign again, the same to the bit, and shows it. Exit code 3 where the craft is lost, as it was.
@@ -30,6 +31,9 @@ pub(super) struct Args {
     /// Write a picture of the flight, .svg or .png.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    /// Write the flight for Foxglove and PlotJuggler, .mcap. Needs a command built with --features mcap.
+    #[arg(long, value_name = "FILE")]
+    mcap: Option<PathBuf>,
     /// Write the run's scenario, with every figure as it was drawn, for `fly --scenario` and others. It names files beside it
     /// as the campaign's folder has them.
     #[arg(long, value_name = "FILE")]
@@ -52,7 +56,13 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let scenario = Scenario { law, ..campaign.run(args.run).scenario.map_err(Failure::input)? };
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
-    let (figures, recording) = fly_and_print(&scenario)?;
-    let outputs = Outputs { dir: args.out.as_deref(), json: args.json.as_deref(), plot: args.plot.as_deref() };
+    let (figures, recording) = fly_and_print(&scenario, &TransformArgs::default())?;
+    let outputs = Outputs {
+        dir: args.out.as_deref(),
+        json: args.json.as_deref(),
+        plot: args.plot.as_deref(),
+        log: None,
+        mcap: args.mcap.as_deref(),
+    };
     outputs.write(&scenario, figures, &recording)
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use quatrack_campaign::Folder;
+use quatrack_campaign::picture::svg;
 use quatrack_campaign::summary::{Summary, View};
 
 use super::refused;
@@ -21,6 +22,9 @@ pub(super) struct Args {
     /// How many of the worst flights to name for each law.
     #[arg(long, value_name = "N", default_value_t = 3)]
     worst: usize,
+    /// Write a picture of the share of successes over each drawn figure, .svg.
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
     /// Write all of it as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -34,6 +38,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let view = View { within_m: args.within_m, worst: args.worst };
     let summary = Summary::of(&folder, &view).map_err(refused)?;
     output::print(&summary.to_string())?;
+    if let Some(path) = &args.picture {
+        output::write(path, svg(&folder, &view).map_err(refused)?.as_bytes())?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
     if let Some(path) = &args.json {
         output::write_json(path, &summary)?;
         output::print(&format!("wrote {}\n", path.display()))?;

@@ -2,11 +2,14 @@
 
 use std::path::Path;
 
+use quatrack_identify::log::{Row, cflib_csv};
+use quatrack_plan::trajectory::transform::Transform;
 use quatrack_simulation::control_law::ControlLaw;
 use quatrack_simulation::scenario::{Recording, Scenario};
 use serde::Serialize;
 
-use super::{Args, NOTHING, Precision, picture, table, trajectory};
+use super::{Args, NOTHING, Precision, picture, table, transformed};
+use crate::cli::transform::TransformArgs;
 use crate::cli::{Failure, output};
 
 /// What the figures' file says that it is.
@@ -42,9 +45,14 @@ impl Args {
         }
         // A table of gains has a vehicle.
         let vehicle_for_nothing = self.gains.is_none() && self.scenario.vehicle.is_some();
-        if self.plot.is_some() || self.scenario.any_but_vehicle() || vehicle_for_nothing {
+        if self.plot.is_some()
+            || self.log.is_some()
+            || self.mcap.is_some()
+            || self.scenario.any_but_vehicle()
+            || vehicle_for_nothing
+        {
             return Err(Failure::input(
-                "--controller and --gains fly the paper's model: leave out --plot and the flags of a scenario, or choose one of \
+                "--controller and --gains fly the paper's model: leave out --plot, --log, --mcap and the flags of a scenario, or choose one of \
                  its laws by --law",
             ));
         }
@@ -82,10 +90,18 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let scenario = args.scenario.checked_for(own.as_ref())?;
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
     let (figures, recording) = match &table {
-        Some((path, table)) => table::in_scenario(path, table, &scenario, &|law, name| fly_law(&scenario, law, name))?,
-        None => fly_and_print(&scenario)?,
+        Some((path, table)) => {
+            table::in_scenario(path, table, &scenario, &|law, name| fly_law(&scenario, law, name, &args.transform))?
+        }
+        None => fly_and_print(&scenario, &args.transform)?,
     };
-    let outputs = Outputs { dir: args.out.as_deref(), json: args.json.as_deref(), plot: args.plot.as_deref() };
+    let outputs = Outputs {
+        dir: args.out.as_deref(),
+        json: args.json.as_deref(),
+        plot: args.plot.as_deref(),
+        log: args.log.as_deref(),
+        mcap: args.mcap.as_deref(),
+    };
     outputs.write(&scenario, figures, &recording)
 }
 
@@ -97,16 +113,46 @@ pub(in crate::cli) struct Outputs<'a> {
     pub(in crate::cli) json: Option<&'a Path>,
     /// The picture.
     pub(in crate::cli) plot: Option<&'a Path>,
+    /// A log as a craft records it, CSV.
+    pub(in crate::cli) log: Option<&'a Path>,
+    /// The flight for Foxglove and PlotJuggler.
+    pub(in crate::cli) mcap: Option<&'a Path>,
+}
+
+/// A flight as an MCAP file, in a command that was built with it.
+#[cfg(feature = "mcap")]
+fn mcap_file(scenario: &Scenario, law: &str, recording: &Recording) -> Result<Vec<u8>, Failure> {
+    let half_arm_m = scenario.vehicle.motors().half_arm_m();
+    quatrack_campaign::mcap::file(recording, law, half_arm_m).map_err(Failure::verdict)
+}
+
+#[cfg(not(feature = "mcap"))]
+fn mcap_file(_: &Scenario, _: &str, _: &Recording) -> Result<Vec<u8>, Failure> {
+    Err(Failure::input("--mcap: this command was built without it; build it by cargo build --release --features mcap"))
 }
 
 /// Flies a scenario with its law and prints the figures.
-pub(in crate::cli) fn fly_and_print(scenario: &Scenario) -> Result<(Report, Recording), Failure> {
+pub(in crate::cli) fn fly_and_print(
+    scenario: &Scenario,
+    transform: &TransformArgs,
+) -> Result<(Report, Recording), Failure> {
     let mut law = scenario.law.start(&scenario.vehicle, &scenario.told).map_err(Failure::input)?;
-    fly_law(scenario, law.as_mut(), scenario.law.name())
+    fly_law(scenario, law.as_mut(), scenario.law.name(), transform)
 }
 
-fn fly_law(scenario: &Scenario, law: &mut dyn ControlLaw, name: &str) -> Result<(Report, Recording), Failure> {
-    let flown = scenario.flown(scenario.course.trajectory().map(trajectory).transpose()?);
+fn fly_law(
+    scenario: &Scenario,
+    law: &mut dyn ControlLaw,
+    name: &str,
+    transform: &TransformArgs,
+) -> Result<(Report, Recording), Failure> {
+    let trajectory = scenario.course.trajectory();
+    if trajectory.is_none() && transform.transform()? != Transform::default() {
+        return Err(Failure::input(
+            "--time-scale, --reverse, --start and their like belong to a trajectory: give one by --course",
+        ));
+    }
+    let flown = scenario.flown(trajectory.map(|name| transformed(name, transform)).transpose()?);
     let recording = scenario.record(law, &flown).map_err(Failure::input)?;
     let figures = figures(name, &recording);
     output::print(&text(scenario, &figures))?;
@@ -161,6 +207,10 @@ impl Outputs<'_> {
             output::write(&path, recording.to_csv().as_bytes())?;
             output::print(&format!("wrote {}\n", path.display()))?;
         }
+        if let Some(path) = self.log {
+            output::write(path, log(scenario, recording).as_bytes())?;
+            output::print(&format!("wrote {}\n", path.display()))?;
+        }
         if let Some(path) = self.plot {
             if recording.flight.samples.len() > 1 {
                 picture::write(path, &scenario.to_string(), &figures.law, recording)?;
@@ -168,10 +218,32 @@ impl Outputs<'_> {
                 output::print("no picture: the craft was lost before anything was measured\n")?;
             }
         }
+        if let Some(path) = self.mcap {
+            output::write(path, &mcap_file(scenario, &figures.law, recording)?)?;
+            output::print(&format!("wrote {}\n", path.display()))?;
+        }
         if let Some(path) = self.json {
             output::write_json(path, &figures)?;
             output::print(&format!("wrote {}\n", path.display()))?;
         }
         figures.outcome()
     }
+}
+
+/// What the craft would have recorded: what its law knew, and the commands as shares of the most that the law asks for.
+fn log(scenario: &Scenario, recording: &Recording) -> String {
+    let most_n = scenario.vehicle.motors().thrust_max_n;
+    let rows: Vec<Row> = (recording.flight.samples.iter().zip(&recording.around))
+        .map(|(sample, around)| Row {
+            time_s: sample.time_s,
+            position: around.estimate.position_m,
+            velocity: around.estimate.velocity_m_s,
+            attitude: around.estimate.attitude,
+            gyro: around.estimate.body_rates_rad_s,
+            specific_force: around.estimate.specific_force_m_s2,
+            commands: [0, 1, 2, 3].map(|motor| sample.commands_n[motor] / most_n),
+            voltage: Some(around.voltage_v).filter(|volts| *volts > 0.0),
+        })
+        .collect();
+    cflib_csv(&rows)
 }

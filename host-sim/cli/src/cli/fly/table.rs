@@ -10,10 +10,12 @@ use quatrack::{Limits, Rate, Settings, Trajectory};
 use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
+use quatrack_plan::trajectory::transform::Transform;
 use quatrack_simulation::control_law::ControlLaw;
 use quatrack_simulation::flight::motor_laws::CraftLaw;
 use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::reference::{Exact, Reference};
+use quatrack_simulation::flight::reference_check::ReferenceCheck;
 use quatrack_simulation::gains::{Design, OnBoardTrajectory};
 use quatrack_simulation::scenario::{Scenario, TableLaw, start_table};
 use quatrack_simulation::vehicles;
@@ -29,7 +31,7 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Descri
         return Err(Failure::input("--precision f64: a table is flown by the f32 core; leave --precision out"));
     }
     let Source { bytes, vehicle } = source(path)?;
-    let table = GainTable::from_bytes(&bytes).map_err(|error| refused(path, &error))?;
+    let table = GainTable::from_bytes(&bytes).map_err(|error| no_table(path, &bytes, &error))?;
     let (kind, head) = (table.kind(), *table.head());
     let vehicle = match &args.scenario.vehicle {
         Some(asked) => Some(VehicleChoice::from_str(asked).map_err(Failure::input)?.0),
@@ -53,7 +55,9 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Descri
     let accepted = table.accept_for(&head.vehicle, rate).map_err(|error| not_accepted(path, &error))?;
     let mut trajectory = load(args)?;
     if kind == TableKind::AlongTrajectory {
-        trajectory = stored(&args.trajectory).unwrap_or(trajectory);
+        if args.transform.transform()? == Transform::default() {
+            trajectory = stored(&args.trajectory).unwrap_or(trajectory);
+        }
         let pieces = on_board::pieces(&trajectory);
         if !Trajectory::new(&pieces).is_ok_and(|flown| accepted.is_for(&flown)) {
             let reason = format!("its gains are for another trajectory than --trajectory {}", args.trajectory);
@@ -75,6 +79,7 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Descri
         clock: format!("f32 core, {} Hz hold", head.rate.hz()),
         limits: limits.name,
         duration_s: Exact(&trajectory).duration_s(),
+        reference: ReferenceCheck::of(&trajectory, &limits.limits).line(),
         flight: fly_law(args, law, &trajectory, head.rate, limits.limits)?,
     })
 }
@@ -108,7 +113,7 @@ pub(in crate::cli) fn in_scenario<T>(
     scenario: &Scenario,
     fly: &dyn Fn(&mut dyn ControlLaw, &str) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
-    let table = GainTable::from_bytes(&source.bytes).map_err(|error| refused(path, &error))?;
+    let table = GainTable::from_bytes(&source.bytes).map_err(|error| no_table(path, &source.bytes, &error))?;
     let (kind, head) = (table.kind(), *table.head());
     if !matches!(kind, TableKind::ActuatorAware | TableKind::Cascade) {
         return Err(refused(path, &format!("its kind is {kind}; a scenario takes a table for motor forces, or --law")));
@@ -131,6 +136,23 @@ pub(in crate::cli) fn in_scenario<T>(
     let law = CraftLaw::of_table(&scenario.vehicle, accepted).map_err(|error| refused(path, &error))?;
     let flying = TableLaw::hovering(&law, scenario.vehicle.hover_thrust_n());
     fly(&mut flying.ok_or_else(|| refused(path, &"becomes no controller"))?, head.name.as_str())
+}
+
+/// A file that is no table: text is named for what it is, with the table beside it.
+fn no_table(path: &Path, bytes: &[u8], error: &dyn std::fmt::Display) -> Failure {
+    let Ok(text) = std::str::from_utf8(bytes) else { return refused(path, error) };
+    let what = match text.trim_start().chars().next() {
+        None => "an empty file",
+        Some('{' | '[') => "JSON, a certificate perhaps",
+        Some(_) => "text",
+    };
+    let beside = path.with_extension("bin");
+    let remedy = if beside != path && beside.is_file() {
+        format!("the table beside it is {}", beside.display())
+    } else {
+        "give the binary table (.bin) or the design (.toml) that it comes from".to_owned()
+    };
+    refused(path, &format!("is {what}, not a binary gain table; {remedy}"))
 }
 
 /// A table, and the vehicle of the design that it was made of.

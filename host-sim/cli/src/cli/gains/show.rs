@@ -46,7 +46,7 @@ pub(super) fn show(path: &Path, json: Option<&Path>, plot: Option<&Path>) -> Res
         }
     };
     output::print(&text)?;
-    json.map_or(Ok(()), |path| output::write_json(path, &document))
+    json.map_or(Ok(()), |path| output::write_json(path, &output::Named::new("gains-show", &document)))
 }
 
 /// What a document says of its design and its gains.

@@ -2,12 +2,15 @@
 
 use std::str::FromStr;
 
+use quatrack_simulation::scenario::Law;
 use quatrack_simulation::scenario::file::Estimator;
 use quatrack_simulation::scenario::flight::Setpoints;
 
+use crate::cli::names::did_you_mean;
+
 /// Numbers with commas in between.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct List<const N: usize>(pub(super) [f64; N]);
+pub(in crate::cli) struct List<const N: usize>(pub(in crate::cli) [f64; N]);
 
 impl<const N: usize> FromStr for List<N> {
     type Err = String;
@@ -17,6 +20,10 @@ impl<const N: usize> FromStr for List<N> {
         let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
         numbers.map(Self).ok_or_else(|| format!("must be {N} numbers with commas in between"))
     }
+}
+
+pub(super) fn law(text: &str) -> Result<Law, String> {
+    text.parse().map_err(|error| format!("{error}{}", did_you_mean(text, Law::ALL.map(Law::name))))
 }
 
 pub(super) fn setpoints(text: &str) -> Result<Setpoints, String> {

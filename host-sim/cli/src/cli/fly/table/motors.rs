@@ -10,8 +10,10 @@ use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::flight::motor_laws::{CraftLaw, fly as fly_motors};
 use quatrack_simulation::flight::motor_loop::{RATE, STEPS_A_SAMPLE, state_on};
 use quatrack_simulation::flight::reference::Exact;
+use quatrack_simulation::flight::reference_check::ReferenceCheck;
 use quatrack_simulation::flight::rigid_loop::Conditions;
 use quatrack_simulation::plant::Craft;
+use quatrack_simulation::vehicles;
 
 use super::super::{Args, DescribedFlight};
 use super::{not_accepted, refused, source};
@@ -49,6 +51,7 @@ pub(super) fn fly(
         clock: format!("f32 core, {} Hz hold, rigid craft with {:.1} ms of motor lag", head.rate.hz(), 1e3 * lag_s),
         limits: format!("of the motors, {}", head.vehicle.name),
         duration_s,
+        reference: ReferenceCheck::of(trajectory, &vehicles::limits(&vehicle).map_err(Failure::input)?).line(),
         flight: flight.in_the_model(vehicle.mass_kg(), &Exact(trajectory)),
     })
 }

@@ -1,0 +1,51 @@
+//! Background work: what is done between control steps when nothing else is, one thing at a time, in turn.
+
+/// What there is to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Work {
+    /// To write into the log how far the last step was off.
+    LogErrors,
+    /// To write into the log what has been counted.
+    LogCounters,
+    /// To write into the log what was learned.
+    LogLearned,
+    /// To take over what the app's task has handed over.
+    TakeOver,
+}
+
+/// Whose turn it is.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Background {
+    next: Work,
+    put_off: u8,
+}
+
+/// Calls without time in a row after which something is done all the same.
+const PUT_OFF_MAX: u8 = 4;
+
+impl Background {
+    pub(super) const fn new() -> Self {
+        Self { next: Work::TakeOver, put_off: 0 }
+    }
+
+    /// There is time for something.
+    #[inline]
+    pub(super) fn next(&mut self) -> Work {
+        let work = self.next;
+        self.put_off = 0;
+        self.next = match work {
+            Work::TakeOver => Work::LogErrors,
+            Work::LogErrors => Work::LogCounters,
+            Work::LogCounters => Work::LogLearned,
+            Work::LogLearned => Work::TakeOver,
+        };
+        work
+    }
+
+    /// There is none, and something is done only if that goes on.
+    #[inline]
+    pub(super) fn put_off(&mut self) -> Option<Work> {
+        self.put_off += 1;
+        (self.put_off > PUT_OFF_MAX).then(|| self.next())
+    }
+}

@@ -1,0 +1,87 @@
+//! The state of a flight.
+
+use quatrack::Followed;
+use quatrack::nalgebra::Vector3;
+
+use super::outcome::Mode;
+use crate::craft::Craft;
+use crate::request::{Horizontal, Request, Turn, Vertical};
+
+/// The state of a flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Flight {
+    /// Motors off until the app has said which craft this is.
+    NoCraft,
+    /// Motors off.
+    Off,
+    /// Along the motion of its setpoints, at their heading.
+    Stream,
+    /// As setpoint shaping has it.
+    Guided(Request),
+    /// By hand, at body rates (rad/s) under a thrust over mass (m/s^2).
+    Rates { body_rates_rad_s: Vector3<f32>, thrust_m_s2: f32 },
+}
+
+impl Flight {
+    /// What flies a request.
+    pub(super) fn of(request: &Request, craft: &Craft) -> Self {
+        let Horizontal::Rates([p, q]) = request.horizontal else {
+            return if request.is_along() { Self::Stream } else { Self::Guided(*request) };
+        };
+        let r = match request.turn {
+            Turn::Rate(rate) => rate,
+            Turn::Heading => 0.0,
+        };
+        let thrust_m_s2 = match request.vertical {
+            Vertical::Thrust(share) => share * craft.thrust_max_m_s2,
+            // A height that is held while the craft turns over is nothing that anybody asks for.
+            _ => quatrack::flatness::GRAVITY_M_S2,
+        };
+        Self::Rates { body_rates_rad_s: Vector3::new(p, q, r), thrust_m_s2 }
+    }
+
+    /// What flies instead of a setpoint that makes no sense.
+    pub(super) fn of_bad_setpoint(before: &Self) -> Self {
+        let is_by_hand = match before {
+            Self::Guided(request) => matches!(request.horizontal, Horizontal::Tilt(_)),
+            Self::Rates { .. } => true,
+            _ => false,
+        };
+        Self::Guided(if is_by_hand { Request::LEVEL_AND_DESCEND } else { Request::BRAKE_AND_DESCEND })
+    }
+
+    /// Whether one goes on as the other, but for its figures.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Guided(a), Self::Guided(b)) => a.is_like(b),
+            _ => core::mem::discriminant(self) == core::mem::discriminant(other),
+        }
+    }
+
+    /// Whether the motors turn.
+    pub(super) const fn is_on(&self) -> bool {
+        !matches!(self, Self::NoCraft | Self::Off)
+    }
+
+    /// Which directions of the sample a law follows.
+    #[inline(always)]
+    pub(super) fn followed(&self) -> Followed {
+        match self {
+            Self::Guided(request) => Followed {
+                across: !matches!(request.horizontal, Horizontal::Tilt(_)),
+                height: !matches!(request.vertical, Vertical::Thrust(_)),
+            },
+            _ => Followed::ALL,
+        }
+    }
+
+    /// For the log.
+    pub(super) fn mode(&self) -> Mode {
+        match self {
+            Self::NoCraft => Mode::NoCraft,
+            Self::Off => Mode::Off,
+            Self::Guided(Request { vertical: Vertical::Descent, .. }) => Mode::Descending,
+            _ => Mode::Flying,
+        }
+    }
+}

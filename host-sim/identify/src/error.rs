@@ -1,0 +1,55 @@
+//! Why nothing was identified, in one line that names the file, the place and the remedy.
+
+/// Why nothing was identified.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum IdentifyError {
+    /// A file that cannot be read.
+    #[error("{path}: cannot be read ({reason})")]
+    Unreadable {
+        /// The file.
+        path: String,
+        /// The system's words.
+        reason: String,
+    },
+    /// A file that is no log.
+    #[error("{path}: {reason}")]
+    Format {
+        /// The file.
+        path: String,
+        /// What is wrong and what would help.
+        reason: String,
+    },
+    /// A map of columns that says something without sense.
+    #[error("{map}: {reason}")]
+    Map {
+        /// The map's name or file.
+        map: String,
+        /// What is wrong and what would help.
+        reason: String,
+    },
+    /// A column that the map names and the log does not have.
+    #[error("{path}: no column \"{column}\" for {quantity}; the log has {present}; give --columns a map for this log")]
+    Column {
+        /// The file.
+        path: String,
+        /// The column.
+        column: String,
+        /// What it was to hold.
+        quantity: &'static str,
+        /// The first of those that are there.
+        present: String,
+    },
+    /// No log holds enough flight.
+    #[error("{0}")]
+    TooLittle(String),
+    /// A figure that was given from outside.
+    #[error("{field} = {value}: must be {must}")]
+    Value {
+        /// Which.
+        field: &'static str,
+        /// As given.
+        value: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+}

@@ -1,0 +1,425 @@
+//! All figures of some flights of one craft, with intervals.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DVector, Vector3};
+
+use super::balance::{Balance, balance};
+use super::bootstrap::{DRAWS, Dice, few_units};
+use super::drag::{Regression, drag};
+use super::lag_curve::{LagPoint, lag_curve};
+use super::prior::{Base, Prior};
+use super::problem::{Drive, Prepared, prepared};
+use super::refine::{
+    ASYMMETRY, COMMAND_POWER, DAMPING, DELAY, DRAG_Z, INERTIA, LAG, LIFT, MOMENT, Refined, SHARED, Start,
+    VOLTAGE_POWER, drive_of, refine,
+};
+use super::yaw::yaw;
+use crate::IdentifyError;
+use crate::filter::{mean, quantile};
+use crate::flight::{Flight, STEP_S};
+use quatrack_design::model::GRAVITY_M_S2;
+
+/// A figure with its 95 % interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// Most likely.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// What differs from flight to flight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FlightFit {
+    /// Thrust over mass that a full command gives at the reference voltage, m/s^2.
+    pub full_m_s2: f64,
+    /// Torque that is always there, N m.
+    pub torque_bias_n_m: Vector3<f64>,
+    /// Of the accelerometer, m/s^2.
+    pub force_bias_m_s2: Vector3<f64>,
+    /// Of the gyroscope, rad/s.
+    pub gyro_bias_rad_s: Vector3<f64>,
+}
+
+/// Figures as the prediction takes them, whether or not they are known well enough to be told.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Model {
+    pub(crate) drive: Drive,
+    pub(crate) inertia: [f64; 3],
+    pub(crate) moment: [f64; 2],
+    pub(crate) damping: [f64; 3],
+    pub(crate) drag: [f64; 3],
+    pub(crate) lift: f64,
+    pub(crate) yaw_lead_s: f64,
+}
+
+/// All that was found.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// What it was found with.
+    pub base: Base,
+    /// By name; where one is not known, why and which manoeuvre would tell.
+    pub figures: BTreeMap<&'static str, Result<Estimate, String>>,
+    /// How much of the torques a lag explains.
+    pub lag_curve: Vec<LagPoint>,
+    /// Flight by flight.
+    pub flights: Vec<FlightFit>,
+    /// Explained share of the torques about x and y, of the thrust's variation, of the drag along x and y.
+    pub explained: [f64; 5],
+    /// Torques along a stretch of flight.
+    pub balance: Option<Balance>,
+    pub(crate) model: Model,
+}
+
+/// Identifies.
+///
+/// # Errors
+/// [`IdentifyError::TooLittle`] where no section is long enough.
+pub fn fit(flights: &[Flight], base: &Base) -> Result<Fit, IdentifyError> {
+    let sections = prepared(flights, base);
+    let points: usize = sections.iter().map(|one| one.inner.len()).sum();
+    if points < 800 {
+        return Err(IdentifyError::TooLittle(format!(
+            "{:.0} s of flight in all logs: at least 8 s are needed; fly 10 s of hover, 20 s of steps between corners, 30 s of smooth flight",
+            points as f64 * STEP_S
+        )));
+    }
+    let voltage = flights.iter().all(|flight| flight.has_voltage);
+    let drags = [drag(&sections, 0), drag(&sections, 1)];
+    let curve = lag_curve(&sections, base, base.delay_s, base.powers);
+    let fixed = if voltage { vec![ASYMMETRY] } else { vec![ASYMMETRY, VOLTAGE_POWER] };
+    let refined = refine(&sections, base, start(&sections, base, flights.len(), &curve, &drags, fixed.clone()));
+    let draws = draws(&refined, &fixed);
+    let full: Vec<f64> = (0..flights.len()).map(|f| refined.values[SHARED + f].exp()).collect();
+    let drive = drive_of(&refined.values);
+    let yaws = yaw(&sections, base, &drive, &full);
+    let model = model(&refined.values, &drags, &yaws);
+    let flight_fits = flight_fits(&sections, base, &model, &full);
+    let mut figures = Figures { base, all: BTreeMap::new(), spread: few_units(&flights_of(&refined)) };
+    figures.refined(&refined, &draws, voltage);
+    figures.apart(&sections, base, &refined, flights.len(), voltage);
+    figures.drag(&drags);
+    figures.yaw(&yaws, &full, &drive);
+    figures.biases(&flight_fits, &sections);
+    let [x, y, thrust] = refined.left_over;
+    let thrust_varies =
+        mean(&sections.iter().map(|one| variance(&one.force[2][one.inner.clone()])).collect::<Vec<_>>());
+    let explained = [1.0 - x, 1.0 - y, 1.0 - thrust / thrust_varies.max(1e-12), drags[0].explained, drags[1].explained];
+    Ok(Fit {
+        base: base.clone(),
+        figures: figures.all,
+        lag_curve: curve,
+        explained,
+        balance: balance(flights, &sections, base, &model, &flight_fits),
+        flights: flight_fits,
+        model,
+    })
+}
+
+fn variance(signal: &[f64]) -> f64 {
+    let m = mean(signal);
+    mean(&signal.iter().map(|v| (v - m).powi(2)).collect::<Vec<_>>())
+}
+
+fn flights_of(refined: &Refined) -> Vec<usize> {
+    refined.blocks.iter().map(|block| block.flight).collect()
+}
+
+fn draws(refined: &Refined, fixed: &[usize]) -> Vec<DVector<f64>> {
+    let flights = flights_of(refined);
+    let mut dice = Dice::new();
+    (0..DRAWS)
+        .map(|_| {
+            let weights = dice.weights(&flights);
+            refined.drawn(fixed, &mut dice, &weights)
+        })
+        .collect()
+}
+
+/// From the best lag of the curve, the vehicle's own powers, and the thrust that carries the craft.
+fn start(
+    sections: &[Prepared],
+    base: &Base,
+    flights: usize,
+    curve: &[LagPoint],
+    drags: &[Regression; 2],
+    fixed: Vec<usize>,
+) -> Start {
+    let best = curve
+        .iter()
+        .max_by(|a, b| a.explained.iter().sum::<f64>().total_cmp(&b.explained.iter().sum()))
+        .copied()
+        .unwrap_or_else(|| curve[0]);
+    let lag_s = best.lag_s.min(0.12);
+    let drive = Drive { rise_s: lag_s, fall_s: lag_s, delay_s: base.delay_s, powers: base.powers };
+    let full: Vec<f64> = (0..flights)
+        .map(|flight| {
+            let (mut felt, mut given) = (0.0, 0.0);
+            for one in sections.iter().filter(|one| one.flight == flight) {
+                let driven = one.drive(&drive);
+                felt += one.inner.clone().map(|i| one.force[2][i]).sum::<f64>();
+                given += one.inner.clone().map(|i| driven.mean[i]).sum::<f64>();
+            }
+            (felt / given.max(1e-9)).max(1e-3)
+        })
+        .collect();
+    let arm_n_m = 0.25 * base.mass_kg * mean(&full) * base.half_arm_m;
+    let drag = 0.5 * (drags[0].values[0] + drags[1].values[0]).clamp(0.0, 2.0);
+    let damping = base.damping_scale();
+    let mut values = vec![lag_s.ln(), 0.0, base.delay_s, base.powers[0], base.powers[1], drag, 0.0];
+    let mut priors = vec![
+        Prior::gauss(base.lag_s.ln(), 0.7),
+        Prior::gauss(0.0, 0.4),
+        Prior::cauchy(base.delay_s, 1e-3),
+        Prior::cauchy(base.powers[0], 0.05),
+        Prior::gauss(base.powers[1], 0.3),
+        Prior::gauss(drag, 0.3),
+        Prior::gauss(0.0, 0.15),
+    ];
+    for axis in 0..2 {
+        let inertia =
+            (arm_n_m * best.inertia[axis]).clamp(0.2 * base.inertia_kg_m2[axis], 5.0 * base.inertia_kg_m2[axis]);
+        values.extend([inertia.ln(), arm_n_m * best.moment[axis], 0.15 * damping]);
+        priors.extend([
+            Prior::gauss(base.inertia_kg_m2[axis].ln(), 0.7),
+            Prior::gauss(0.0, 0.5 * base.half_arm_m * base.mass_kg),
+            Prior::gauss(0.15 * damping, 0.35 * damping),
+        ]);
+    }
+    let middle = mean(&full.iter().map(|full| full.ln()).collect::<Vec<_>>());
+    for full in &full {
+        values.push(full.ln());
+        priors.push(Prior::gauss(middle, 1.0));
+    }
+    Start { values: DVector::from_vec(values), priors, fixed }
+}
+
+fn model(values: &DVector<f64>, drags: &[Regression; 2], yaws: &Regression) -> Model {
+    Model {
+        drive: drive_of(values),
+        inertia: [values[INERTIA[0]].exp(), values[INERTIA[1]].exp(), yaws.values[0].max(1e-9)],
+        moment: MOMENT.map(|j| values[j]),
+        damping: [values[DAMPING[0]], values[DAMPING[1]], yaws.values[1].max(0.0)],
+        drag: [drags[0].values[0], drags[1].values[0], values[DRAG_Z]],
+        lift: values[LIFT],
+        yaw_lead_s: yaws.values[2].max(0.0),
+    }
+}
+
+/// Biases of each flight: what the balances leave on average.
+fn flight_fits(sections: &[Prepared], base: &Base, model: &Model, full: &[f64]) -> Vec<FlightFit> {
+    full.iter()
+        .enumerate()
+        .map(|(flight, full)| {
+            let (mut torque, mut force, mut gyro, mut points) =
+                (Vector3::zeros(), Vector3::zeros(), Vector3::zeros(), 0.0);
+            for one in sections.iter().filter(|one| one.flight == flight) {
+                let count = one.inner.len() as f64;
+                torque += section_bias(one, base, model, *full) * count;
+                force += one.force_bias * count;
+                gyro += one.gyro_bias * count;
+                points += count;
+            }
+            let points = f64::max(points, 1.0);
+            FlightFit {
+                full_m_s2: *full,
+                torque_bias_n_m: torque / points,
+                force_bias_m_s2: force / points,
+                gyro_bias_rad_s: gyro / points,
+            }
+        })
+        .collect()
+}
+
+/// Torque that a section needs beyond what its motors give, N m.
+fn section_bias(one: &Prepared, base: &Base, model: &Model, full: f64) -> Vector3<f64> {
+    let driven = one.drive(&model.drive);
+    let newton = 0.25 * base.mass_kg * full;
+    let arms = [newton * base.half_arm_m, newton * base.half_arm_m, newton * base.torque_per_thrust_m];
+    let average = |signal: &[f64]| mean(&signal[one.inner.clone()]);
+    let moments = [model.moment[0] * average(&one.velocity[1]), -model.moment[1] * average(&one.velocity[0]), 0.0];
+    Vector3::from_fn(|axis, _| {
+        let rate = average(&one.rates[axis]) - one.gyro_bias[axis];
+        model.inertia[axis] * average(&one.angular[axis]) + model.damping[axis] * rate
+            - moments[axis]
+            - arms[axis] * average(&driven.mixture[axis])
+    })
+}
+
+struct Figures<'a> {
+    base: &'a Base,
+    all: BTreeMap<&'static str, Result<Estimate, String>>,
+    spread: f64,
+}
+
+const STEPS: &str = "fly 20 s of steps between corners, which turn the craft fast";
+const SPEED: &str = "fly 30 s at 1 m/s and more in both directions";
+const CLIMBS: &str = "fly climbs and drops of 0.5 m and more, as fast as they go";
+const DISCHARGE: &str = "log the battery's voltage over a few minutes, or two flights, one with a full battery";
+const TURNS: &str = "turn the heading by 90 degrees and back, fast, a few times";
+
+impl Figures<'_> {
+    fn put(&mut self, name: &'static str, value: f64, draws: &[f64], most: f64, manoeuvre: &str) {
+        let estimate = interval(value, draws, self.spread);
+        let half = 0.5 * (estimate.high - estimate.low);
+        let told = half <= most && half.is_finite();
+        let refused =
+            || format!("+-{half:.2e} about {value:.3e} at 95 %, and no more than +-{most:.2e} is told: {manoeuvre}");
+        self.all.insert(name, if told { Ok(estimate) } else { Err(refused()) });
+    }
+
+    fn refined(&mut self, refined: &Refined, draws: &[DVector<f64>], voltage: bool) {
+        let values = &refined.values;
+        let of = |f: &dyn Fn(&DVector<f64>) -> f64| -> (f64, Vec<f64>) { (f(values), draws.iter().map(f).collect()) };
+        let flights = values.len() - SHARED;
+        let mass = self.base.mass_kg;
+        let (lag, all) = of(&|v| 1e3 * v[LAG].exp());
+        self.put("lag_ms", lag, &all, 0.3 * lag, STEPS);
+        let (delay, all) = of(&|v| 1e3 * v[DELAY]);
+        self.put("delay_ms", delay, &all, 8.0, STEPS);
+        // What a command did between two samples is not in the log: half a sample to either side.
+        if let Some(Ok(delay)) = self.all.get_mut("delay_ms") {
+            delay.low -= 500.0 * STEP_S;
+            delay.high += 500.0 * STEP_S;
+        }
+        let (power, all) = of(&|v| v[COMMAND_POWER]);
+        self.put("command_power", power, &all, 0.3, CLIMBS);
+        if voltage {
+            let (power, all) = of(&|v| v[VOLTAGE_POWER]);
+            self.put("voltage_power", power, &all, 0.4, DISCHARGE);
+        } else {
+            self.all.insert("voltage_power", Err(format!("the log has no voltage: {DISCHARGE}")));
+        }
+        let full = |v: &DVector<f64>| (SHARED..v.len()).map(|j| v[j]).sum::<f64>() / flights as f64;
+        let (per_mass, mut all) = of(&|v| full(v).exp());
+        self.between_flights(values, &mut all);
+        self.put("thrust_per_mass_m_s2", per_mass, &all, 0.2 * per_mass, CLIMBS);
+        let newton: Vec<f64> = all.iter().map(|a| 0.25 * mass * a).collect();
+        self.put("thrust_full_n", 0.25 * mass * per_mass, &newton, 0.05 * mass * per_mass, CLIMBS);
+        // At the reference voltage.
+        let hover = |v: &DVector<f64>| (GRAVITY_M_S2 / full(v).exp()).powf(1.0 / v[COMMAND_POWER]);
+        let (command, all) = of(&hover);
+        self.put("hover_command", command, &all, 0.1, CLIMBS);
+        let (drag, all) = of(&|v| v[DRAG_Z]);
+        self.put("drag_z_per_s", drag, &all, 0.2, CLIMBS);
+        let (lift, all) = of(&|v| v[LIFT]);
+        self.put("lift_per_m", lift, &all, 0.05, SPEED);
+        for (axis, [inertia, moment, damping]) in [
+            ["inertia_x_kg_m2", "moment_x_n_m_per_m_s", "rate_damping_x_n_m_s"],
+            ["inertia_y_kg_m2", "moment_y_n_m_per_m_s", "rate_damping_y_n_m_s"],
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let (value, all) = of(&|v| v[INERTIA[axis]].exp());
+            self.put(inertia, value, &all, 0.2 * value, STEPS);
+            let (value, all) = of(&|v| v[MOMENT[axis]]);
+            let most = (0.25 * value.abs()).max(2e-3 * self.base.half_arm_m * self.base.mass_kg);
+            self.put(moment, value, &all, most, SPEED);
+            let (value, all) = of(&|v| v[DAMPING[axis]]);
+            self.put(damping, value, &all, 0.4 * self.base.damping_scale(), STEPS);
+        }
+    }
+
+    /// Batteries and motors differ from flight to flight: what the mean of all of them is uncertain by.
+    fn between_flights(&self, values: &DVector<f64>, draws: &mut [f64]) {
+        let logs: Vec<f64> = values.iter().skip(SHARED).copied().collect();
+        let deviation = (variance(&logs) / (logs.len().max(2) - 1) as f64).sqrt();
+        let mut dice = Dice::new();
+        draws.iter_mut().for_each(|draw| *draw *= (deviation * dice.normal()).exp());
+    }
+
+    /// Rise and fall, where the flights tell them apart.
+    fn apart(&mut self, sections: &[Prepared], base: &Base, one: &Refined, flights: usize, voltage: bool) {
+        let fixed = if voltage { Vec::new() } else { vec![VOLTAGE_POWER] };
+        debug_assert!(flights > 0);
+        let start = Start { values: one.values.clone(), priors: one.priors.clone(), fixed: fixed.clone() };
+        let refined = refine(sections, base, start);
+        let draws = draws(&refined, &fixed);
+        let asymmetry =
+            interval(refined.values[ASYMMETRY], &draws.iter().map(|v| v[ASYMMETRY]).collect::<Vec<_>>(), self.spread);
+        for (name, sign) in [("lag_rise_ms", 0.5), ("lag_fall_ms", -0.5)] {
+            let of = |v: &DVector<f64>| 1e3 * (v[LAG] + sign * v[ASYMMETRY]).exp();
+            let value = of(&refined.values);
+            let all: Vec<f64> = draws.iter().map(of).collect();
+            self.put(name, value, &all, 0.3 * value, STEPS);
+            if asymmetry.low <= 0.0 && asymmetry.high >= 0.0 {
+                self.all.insert(name, Err(format!("rise and fall are not told apart, lag_ms is for both: {STEPS}")));
+            }
+        }
+    }
+
+    fn drag(&mut self, drags: &[Regression; 2]) {
+        for (name, regression) in ["drag_x_per_s", "drag_y_per_s"].into_iter().zip(drags) {
+            let value = regression.values[0];
+            let all: Vec<f64> = regression.draws().iter().map(|v| v[0]).collect();
+            self.put(name, value, &all, (0.25 * value.abs()).max(0.05), SPEED);
+        }
+    }
+
+    fn yaw(&mut self, yaws: &Regression, full: &[f64], drive: &Drive) {
+        let draws = yaws.draws();
+        let column = |j: usize| -> Vec<f64> { draws.iter().map(|v| v[j]).collect() };
+        let inertia = yaws.values[0];
+        self.put("inertia_z_kg_m2", inertia, &column(0), 0.25 * inertia.abs(), TURNS);
+        self.put("rate_damping_z_n_m_s", yaws.values[1], &column(1), 0.4 * self.base.damping_scale(), TURNS);
+        self.put(
+            "rotor_lead_ms",
+            1e3 * yaws.values[2],
+            &column(2).iter().map(|l| 1e3 * l).collect::<Vec<_>>(),
+            15.0,
+            TURNS,
+        );
+        let name = "rotor_inertia_kg_m2";
+        let Some(thrust_n_s2) = self.base.thrust_n_s2 else {
+            let reason =
+                format!("{} has no thrust_n_s2 in [propeller], which turns a lead into an inertia", self.base.name);
+            self.all.insert(name, Err(reason));
+            return;
+        };
+        // J_r = 2 k W kappa L, with W the speed at hover.
+        let _ = (full, drive);
+        let speed = (0.25 * self.base.mass_kg * GRAVITY_M_S2 / thrust_n_s2).sqrt();
+        let factor = 2.0 * thrust_n_s2 * speed * self.base.torque_per_thrust_m;
+        let all: Vec<f64> = column(2).iter().map(|lead| factor * lead).collect();
+        self.put(name, factor * yaws.values[2], &all, 0.4 * (factor * yaws.values[2]).abs(), TURNS);
+    }
+
+    fn biases(&mut self, flights: &[FlightFit], sections: &[Prepared]) {
+        // By sections where there is one flight; each with what it has of its own.
+        let _ = sections;
+        let of = |f: &dyn Fn(&FlightFit) -> f64| -> Estimate {
+            let all: Vec<f64> = flights.iter().map(f).collect();
+            let value = mean(&all);
+            let deviation = (variance(&all) * all.len() as f64 / (all.len().max(2) - 1) as f64).sqrt();
+            Estimate { value, low: value - 1.96 * deviation, high: value + 1.96 * deviation }
+        };
+        let one = "one flight does not tell a bias from what it changes by: give more flights";
+        for (axis, names) in [
+            ["torque_bias_x_n_m", "gyro_bias_x_rad_s", "accelerometer_bias_x_m_s2"],
+            ["torque_bias_y_n_m", "gyro_bias_y_rad_s", "accelerometer_bias_y_m_s2"],
+            ["torque_bias_z_n_m", "gyro_bias_z_rad_s", "accelerometer_bias_z_m_s2"],
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            let all = [
+                of(&|flight| flight.torque_bias_n_m[axis]),
+                of(&|flight| flight.gyro_bias_rad_s[axis]),
+                of(&|flight| flight.force_bias_m_s2[axis]),
+            ];
+            for (name, estimate) in names.into_iter().zip(all) {
+                self.all.insert(name, if flights.len() > 1 { Ok(estimate) } else { Err(one.to_owned()) });
+            }
+        }
+    }
+}
+
+/// From the draws' quantiles, made wider for few units, and shifted so that it is about the value.
+fn interval(value: f64, draws: &[f64], spread: f64) -> Estimate {
+    let (low, high, middle) = (quantile(draws, 0.025), quantile(draws, 0.975), quantile(draws, 0.5));
+    Estimate { value, low: value - spread * (middle - low).max(0.0), high: value + spread * (high - middle).max(0.0) }
+}

@@ -1,0 +1,100 @@
+//! A flight on one even grid: a log's series in; checked, cleaned and aligned signals in SI, cut where the craft flies, out.
+//!
+//! ```text
+//! sections   where it flies, and what is missing nowhere
+//!   align    the shift between the on-board streams and the pose
+//!     check  units and signs against each other
+//!       grid   one grid of 100 Hz
+//!         clean  codes, outliers, repeats
+//! copies     files that hold the same flight
+//! ```
+
+mod align;
+mod check;
+mod clean;
+mod copies;
+mod grid;
+mod sections;
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+pub use copies::without_copies;
+pub use sections::prepare;
+
+/// Step of the grid, s. What is identified lies below 6 Hz.
+pub const STEP_S: f64 = 0.01;
+/// Of the same.
+pub const RATE_HZ: f64 = 100.0;
+
+/// What is done to a log, or doubtful in it, in words for its owner.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Notes(pub Vec<String>);
+
+/// A flight.
+#[derive(Clone, Debug)]
+pub struct Flight {
+    /// Its file.
+    pub name: String,
+    /// Parts in the air without a gap.
+    pub sections: Vec<Section>,
+    /// By how much the pose comes later than the on-board streams, s.
+    pub pose_shift_s: f64,
+    /// Root mean square of the on-board position against the pose, after the shift, m; where a log has both.
+    pub estimate_rms_m: Option<f64>,
+    /// What was found in the log.
+    pub notes: Notes,
+    /// Whether the log has a voltage.
+    pub has_voltage: bool,
+}
+
+/// Signals of a part of a flight; all as long.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    /// Since the log's beginning, s.
+    pub start_s: f64,
+    /// World frame, m.
+    pub position: Vec<Vector3<f64>>,
+    /// World frame, m/s.
+    pub velocity: Vec<Vector3<f64>>,
+    /// Body to world.
+    pub attitude: Vec<UnitQuaternion<f64>>,
+    /// Body frame, rad/s.
+    pub gyro: Vec<Vector3<f64>>,
+    /// Specific force, body frame, m/s^2.
+    pub specific_force: Vec<Vector3<f64>>,
+    /// Of a full command, from 0 to 1.
+    pub commands: [Vec<f64>; 4],
+    /// V; empty where the log has none.
+    pub voltage: Vec<f64>,
+}
+
+impl Section {
+    /// How many points of the grid.
+    pub fn len(&self) -> usize {
+        self.gyro.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.gyro.is_empty()
+    }
+
+    /// The points of a range.
+    pub fn part(&self, range: std::ops::Range<usize>) -> Self {
+        Self {
+            start_s: self.start_s + range.start as f64 * STEP_S,
+            position: self.position[range.clone()].to_vec(),
+            velocity: self.velocity[range.clone()].to_vec(),
+            attitude: self.attitude[range.clone()].to_vec(),
+            gyro: self.gyro[range.clone()].to_vec(),
+            specific_force: self.specific_force[range.clone()].to_vec(),
+            commands: self.commands.each_ref().map(|command| command[range.clone()].to_vec()),
+            voltage: if self.voltage.is_empty() { Vec::new() } else { self.voltage[range].to_vec() },
+        }
+    }
+
+    /// Velocity in the body frame, m/s.
+    pub fn body_velocity(&self) -> Vec<Vector3<f64>> {
+        self.attitude.iter().zip(&self.velocity).map(|(q, v)| q.inverse_transform_vector(v)).collect()
+    }
+}

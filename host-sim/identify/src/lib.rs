@@ -1,0 +1,33 @@
+//! Figures of a craft from logs of its flights: logs in; motor lag and delay, thrust by command and voltage, drag, airflow moment and
+//! inertia, each with a 95 % interval or a reason why it is not known, out.
+//!
+//! ```text
+//! report          from logs to all that is told
+//!   vehicle_file  the figures as a vehicle that designs take
+//!   regions       whether the craft is inside what built-in tables are certified over
+//!     predict     the flights again from commands, on a part held out
+//!     fit         inverse dynamics, priors, block bootstrap
+//!       flight    one even grid: checked, cleaned, aligned
+//!         log     files and maps of their columns
+//!           error, filter  why there is nothing; low-pass, derivative, shift, lag
+//! ```
+//!
+//! Why not output error: its input, the logged commands, is noisy, and it inflates the inertia two- to threefold. What is minimised is
+//! the balance of torques and of forces along the flight as it was, below 6 Hz, where process noise is what is left.
+
+mod error;
+mod filter;
+pub mod flight;
+pub mod log;
+pub mod predict;
+mod regions;
+mod report;
+mod vehicle_file;
+
+pub mod fit;
+
+pub use error::IdentifyError;
+use log::scale as log_scale;
+pub use regions::Standing;
+pub use report::{Document, Report, identify};
+pub use vehicle_file::vehicle_toml;

@@ -1,0 +1,1 @@
+../../../plans/mild.rs

@@ -1,0 +1,82 @@
+use nalgebra::{UnitQuaternion, Vector3, Vector4};
+use proptest::prelude::*;
+
+use super::*;
+use crate::plant::{Airflow, Shove};
+use crate::vehicles;
+
+fn craft(scale: f64, air: bool) -> Craft {
+    let vehicle = vehicles::by_name("crazyflie-2.1-brushless").unwrap();
+    let mut craft = Craft::new(&vehicle);
+    craft.body = craft.body.scaled(scale, 2.0 - scale);
+    craft.motors = craft.motors.with_lag(0.03 * scale, 0.047).around(&Vector3::new(1e-3, -5e-4, 0.0));
+    craft.motors.torque_bias_n_m = Vector3::new(1e-5, -2e-5, 0.0);
+    if air {
+        craft.air = Some(Airflow {
+            drag_n_s_m: Vector3::new(0.011, 0.012, 0.013) * scale,
+            moment_n_s: [7e-4, 9e-4],
+            lift_n_s2_m2: 1e-3,
+            rotors: None,
+        });
+    }
+    craft
+}
+
+/// The equations as they are written for a reader, which a load keeps: one that never pushes.
+fn by_equations(craft: Craft, state: &RigidState, step: &Step) -> RigidState {
+    let idle = Shove { from_s: -2.0, to_s: -1.0, force_n: Vector3::zeros() };
+    craft.with_load(idle).step_in_wind(state, &step.goals_n, &step.wind, step.from_s, step.step_s)
+}
+
+fn bits(state: &RigidState) -> Vec<u64> {
+    // Zero has two signs and one meaning.
+    state.to_vector().iter().map(|value| (value + 0.0).to_bits()).collect()
+}
+
+prop_compose! {
+    fn flight()(v in prop::array::uniform20(-3.0_f64..3.0), h in 1e-4_f64..2e-3) -> (RigidState, Step) {
+        let vector = |k: usize| Vector3::new(v[k], v[k + 1], v[k + 2]);
+        let forces = |k: usize| Vector4::new(v[k], v[k + 1], v[k + 2], v[k + 3]).map(|value| 0.1 + 0.03 * value);
+        let state = RigidState {
+            position_m: vector(0),
+            velocity_m_s: vector(3),
+            attitude: UnitQuaternion::from_scaled_axis(vector(6) * 0.5),
+            body_rates_rad_s: vector(9) * 3.0,
+            thrusts_n: forces(12),
+        };
+        let wind = LinearWind { from_s: 1.5, from_m_s: vector(1), slope_m_s2: vector(5) * 10.0 };
+        (state, Step { goals_n: forces(16), wind, from_s: 1.5, step_s: h })
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn lanes_have_the_bits_of_the_equations(flights in prop::array::uniform4(flight()), air: bool, left_out in 0_usize..5) {
+        let scales = [0.8, 1.0, 1.1, 1.3];
+        let plants: [_; LANES] =
+            std::array::from_fn(|lane| figures(&craft(scales[lane], air)).filter(|_| lane != left_out));
+        let mut lanes = SideBySide::new(&plants);
+        for (lane, (state, step)) in flights.iter().enumerate().filter(|(lane, _)| *lane != left_out) {
+            lanes.put(lane, state, step);
+        }
+        lanes.advance();
+        for (lane, (state, step)) in flights.iter().enumerate().filter(|(lane, _)| *lane != left_out) {
+            let expected = bits(&by_equations(craft(scales[lane], air), state, step));
+            prop_assert_eq!(bits(&lanes.state(lane)), expected.clone(), "lane {}", lane);
+            let (figures, has_air) = plants[lane].unwrap();
+            prop_assert_eq!(bits(&alone(&figures, has_air, state, step)), expected, "alone {}", lane);
+        }
+    }
+}
+
+#[test]
+fn only_plain_craft_have_figures() {
+    assert!(figures(&craft(1.0, true)).is_some());
+    let pushed = craft(1.0, true).with_load(Shove { from_s: 0.0, to_s: 1.0, force_n: Vector3::x() });
+    assert!(figures(&pushed).is_none());
+    let mut uneven = craft(1.0, false);
+    uneven.motors.motors[2].rise_lag_s = 0.1;
+    assert!(figures(&uneven).is_none());
+}

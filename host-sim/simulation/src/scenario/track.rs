@@ -1,0 +1,76 @@
+//! A course as a flight meets it, step by step: where the craft is to be, and what its law is told. Many flights share one.
+
+use nalgebra::Vector3;
+
+use super::course::Flown;
+use super::flight::Setpoints;
+use crate::control_law::{STEPS_HZ, Setpoint};
+
+/// s.
+pub(super) const STEP_S: f64 = 1.0 / STEPS_HZ as f64;
+/// Steps between two samples, and between two setpoints at 100 Hz.
+pub(super) const SAMPLE_STEPS: u32 = 10;
+
+/// What is flown, evaluated once.
+#[derive(Clone, Debug)]
+pub struct Track {
+    targets_m: Vec<Vector3<f64>>,
+    setpoints: Vec<Setpoint>,
+    setpoint_steps: u32,
+    steps: u32,
+    measured_from_s: f64,
+}
+
+impl Track {
+    /// Of a course, with setpoints as they come.
+    pub fn of(flown: &Flown, setpoints: Setpoints) -> Self {
+        let steps = (flown.course.duration_s() / STEP_S).round() as u32;
+        let setpoint_steps = if setpoints == Setpoints::Exact { 1 } else { SAMPLE_STEPS };
+        let mut track = Self {
+            targets_m: Vec::with_capacity(steps as usize + 1),
+            setpoints: Vec::with_capacity((steps / setpoint_steps) as usize + 1),
+            setpoint_steps,
+            steps,
+            measured_from_s: flown.measured_from_s,
+        };
+        for step in 0..=steps {
+            let time_s = f64::from(step) * STEP_S;
+            let point = flown.course.at(time_s);
+            track.targets_m.push(point.position[0]);
+            if step.is_multiple_of(setpoint_steps) {
+                track.setpoints.push(match setpoints {
+                    Setpoints::At100Hz => Setpoint::to_jerk(&point, time_s),
+                    Setpoints::Exact => Setpoint::exact(&point, time_s),
+                });
+            }
+        }
+        track
+    }
+
+    /// The last step.
+    pub(super) fn steps(&self) -> u32 {
+        self.steps
+    }
+
+    /// Whether a time is measured.
+    pub(super) fn is_measured(&self, time_s: f64) -> bool {
+        time_s > self.measured_from_s - 0.5 * STEP_S
+    }
+
+    /// Where the craft is to be at a step, m; at the end beyond it.
+    pub(super) fn target_m(&self, step: u32) -> Vector3<f64> {
+        self.targets_m.get(step as usize).or(self.targets_m.last()).copied().unwrap_or_default()
+    }
+
+    /// What was sent last at a step.
+    pub(super) fn setpoint(&self, step: u32) -> &Setpoint {
+        // There is one for the first step of every course.
+        &self.setpoints[((step / self.setpoint_steps) as usize).min(self.setpoints.len() - 1)]
+    }
+
+    /// What a law of a rate is told at its own steps: when, and what.
+    pub(super) fn told(&self, rate_hz: u32) -> impl Iterator<Item = (f64, &Setpoint)> {
+        let law_steps = (STEPS_HZ / rate_hz.clamp(1, STEPS_HZ)) as usize;
+        (0..=self.steps).step_by(law_steps).map(|step| (f64::from(step) * STEP_S, self.setpoint(step)))
+    }
+}
