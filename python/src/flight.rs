@@ -12,10 +12,11 @@ use quatrack_simulation::flight::motor_laws::CraftLaw;
 use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::rigid_loop::RigidSample;
 use quatrack_simulation::scenario::compare::Table;
-use quatrack_simulation::scenario::{Law, Recording, Scenario, TableLaw};
+use quatrack_simulation::scenario::{Law, Recording, Scenario, TableLaw, start_table};
 use quatrack_simulation::vehicles;
 
 use crate::arrays::array;
+use crate::crazyflie;
 use crate::error::refused;
 use crate::gains::GainTable;
 use crate::long_call::{Cancelled, long_call};
@@ -86,7 +87,7 @@ fn record_table(
     let table = CoreTable::from_bytes(bytes).map_err(|error| error.to_string())?;
     let (kind, head) = (table.kind(), *table.head());
     let refused = |reason: String| format!("{}: {reason}", head.name);
-    if kind != TableKind::ActuatorAware {
+    if !matches!(kind, TableKind::ActuatorAware | TableKind::Cascade) {
         return Err(refused(format!(
             "its kind is {kind}; a scenario takes a table for motor forces, or a law by its name"
         )));
@@ -95,6 +96,17 @@ fn record_table(
         return Err(refused(format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name())));
     }
     let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| refused(error.to_string()))?;
+    if let Some(cascade) = accepted.cascade() {
+        let (own_kg, told_kg) = (scenario.vehicle.mass_kg() as f32, scenario.told.mass_kg as f32);
+        if !cascade.certified.holds_mass(own_kg, told_kg) {
+            let percent = 100.0 * cascade.certified.mass_share;
+            let reason = format!("told {told_kg} kg; it is certified for {own_kg} kg and {percent:.0} % more or less");
+            return Err(refused(reason));
+        }
+        let law = start_table(&scenario.vehicle, &scenario.told, cascade);
+        let mut law = law.map_err(|error| refused(error.to_string()))?;
+        return record(scenario, law.as_mut(), course, cancelled);
+    }
     let law = CraftLaw::of_table(&scenario.vehicle, accepted).map_err(|error| refused(error.to_string()))?;
     let mut flying = TableLaw::hovering(&law, scenario.vehicle.hover_thrust_n())
         .ok_or_else(|| refused("becomes no controller".to_owned()))?;
@@ -105,6 +117,9 @@ fn flown(py: Python<'_>, scenario: &Scenario, flies: Flies, course: Option<Piece
     let name = flies.name().to_owned();
     let recording = match flies {
         Flies::Named(law) => {
+            if law == Law::Crazyflie {
+                crazyflie::end_the_one_before();
+            }
             let scenario = scenario.clone();
             long_call(py, move |cancelled| {
                 let mut law = law.start(&scenario.vehicle, &scenario.told).map_err(|error| error.to_string())?;

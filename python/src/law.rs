@@ -7,7 +7,7 @@ use quatrack::gains::paper;
 use quatrack::gains::table::GainTable as CoreTable;
 use quatrack::{Actuation, Cascade, Controller, ErrorForm, FeedForward, Limits, Memory, Rate, Settings};
 use quatrack_design::vehicle::Vehicle;
-use quatrack_simulation::scenario::{ToldFigures, actuation_of, actuator_aware_of, cascade_of};
+use quatrack_simulation::scenario::{ToldFigures, actuation_of, actuator_aware_of, cascade_of, cascade_of_table};
 use quatrack_simulation::vehicles;
 
 use crate::error::refused;
@@ -20,7 +20,11 @@ pub(crate) const NAMES: [&str; 6] = ["quatrack", "actuator-aware", "lqr-e", "lya
 enum Kept {
     Cascade(Box<Cascade>),
     Constant(Box<ConstantGain>),
-    Table(Box<CoreTable<'static>>),
+    /// With the law of a table of the cascade.
+    Table {
+        table: Box<CoreTable<'static>>,
+        cascade: Option<Box<Cascade>>,
+    },
     /// Gains along a trajectory stay in their bytes.
     Along(Vec<u8>),
 }
@@ -151,8 +155,16 @@ impl OwnedLaw {
             }),
         };
         let accepted = core.accept_for(&head.vehicle, head.rate).map_err(refused)?;
+        let cascade = match (core.cascade(), &craft) {
+            (None, _) => None,
+            (Some(_), None) => return Err(refused(format!("{}: it gives motor forces; name a vehicle", head.name))),
+            (Some(table), Some((vehicle, told))) => {
+                Some(Box::new(cascade_of_table(vehicle, told, table).map_err(refused)?))
+            }
+        };
         let actuation = match &craft {
             None => None,
+            _ if cascade.is_some() => cascade.as_ref().map(|cascade| *cascade.actuation()),
             Some((vehicle, told)) => {
                 let lag_s = told.lag_s.unwrap_or(vehicle.motors().lag_s);
                 Some(accepted.actuation(&actuation_of(vehicle, told, lag_s, head.rate).map_err(refused)?))
@@ -160,7 +172,7 @@ impl OwnedLaw {
         };
         Ok(Self {
             kept: match core.owned() {
-                Some(owned) => Kept::Table(Box::new(owned)),
+                Some(owned) => Kept::Table { table: Box::new(owned), cascade },
                 None => Kept::Along(table.bytes.clone()),
             },
             actuation,
@@ -177,6 +189,7 @@ impl OwnedLaw {
         let settings = Settings {
             limits: self.limits,
             actuation: self.actuation.as_ref(),
+            cascade: self.cascade(),
             feed_forward: self.feed_forward,
             error_form: self.error_form,
             player_rate: self.rate,
@@ -192,7 +205,7 @@ impl OwnedLaw {
                     .as_ref()
                     .map_or(controller, |motors| controller.with_actuation(motors))));
             }
-            Kept::Table(table) => &**table,
+            Kept::Table { table, .. } => &**table,
             Kept::Along(bytes) => {
                 parsed = CoreTable::from_bytes(bytes).map_err(refused)?;
                 &parsed
@@ -213,7 +226,7 @@ impl OwnedLaw {
     /// The cascade, where it is one.
     pub(crate) fn cascade(&self) -> Option<&Cascade> {
         match &self.kept {
-            Kept::Cascade(cascade) => Some(cascade),
+            Kept::Cascade(cascade) | Kept::Table { cascade: Some(cascade), .. } => Some(cascade),
             _ => None,
         }
     }

@@ -2,10 +2,13 @@
 //! answers written.
 //!
 //! ```text
+//! campaign          thousands of flights
 //! flight            scenarios flown by name, by table or by a law of one's own
 //!   own_law         a callable as a law
 //!   plant           the plant of a scenario, for many crafts
 //!     scenario
+//! reproduction      the paper's table
+//! crazyflie         the Crazyflie object through its C interface
 //! controller        the core's controller, for many crafts
 //!   batch           one step of all of them
 //!     law           a law with what it borrows
@@ -21,7 +24,9 @@
 
 mod arrays;
 mod batch;
+mod campaign;
 mod controller;
+mod crazyflie;
 mod design;
 mod error;
 mod estimator;
@@ -32,6 +37,7 @@ mod long_call;
 mod own_law;
 mod plant;
 mod reference;
+mod reproduction;
 mod scenario;
 mod state;
 mod trajectory;
@@ -42,7 +48,11 @@ mod vehicle;
 #[pyo3::pymodule]
 mod _quatrack {
     #[pymodule_export]
+    use crate::campaign::campaign;
+    #[pymodule_export]
     use crate::controller::{Controller, Step};
+    #[pymodule_export]
+    use crate::crazyflie::{CrazyflieControl, CrazyflieController};
     #[pymodule_export]
     use crate::design::{Feedback, care, certify, dare, dlqr, hover_model, lqr, lyapunov, stein};
     #[pymodule_export]
@@ -59,6 +69,8 @@ mod _quatrack {
     use crate::plant::Plant;
     #[pymodule_export]
     use crate::reference::Reference;
+    #[pymodule_export]
+    use crate::reproduction::{Reproduction, reproduce};
     #[pymodule_export]
     use crate::scenario::{Course, Scenario};
     #[pymodule_export]

@@ -67,8 +67,9 @@ def test_all_laws_fly_where_none_is_asked_for():
 
 
 def test_a_table_for_motor_forces_flies():
-    flight = q.fly(SHORT, q.GainTable.builtin("actuator-aware-brushless"))
-    assert flight.lost is None and flight.iae < 1e-3
+    for name in ("actuator-aware-brushless", "cascade-brushless-50ms"):
+        flight = q.fly(SHORT, q.GainTable.builtin(name))
+        assert flight.lost is None and flight.iae < 1e-3 and flight.law == name
     with pytest.raises(q.QuatrackError, match="a scenario takes a table for motor forces"):
         q.fly(SHORT, q.GainTable.builtin("lqr-e"))
 

@@ -35,18 +35,18 @@ pub(super) struct CascadeLaw {
 impl CascadeLaw {
     /// Of [`cascade_of`], at a hover.
     pub(super) fn new(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, FlightError> {
-        let cascade = cascade_of(vehicle, told)?;
+        cascade_of(vehicle, told).map(Self::hovering)
+    }
+
+    /// At a hover.
+    fn hovering(cascade: Cascade) -> Self {
         let memory = Memory::hovering(cascade.airframe());
-        Ok(Self { cascade, memory, fit: JerkFit::NONE, newest: None, shared: None })
+        Self { cascade, memory, fit: JerkFit::NONE, newest: None, shared: None }
     }
 
     /// Of a table, with its lag, and with its air where none is told.
     pub(super) fn of_table(vehicle: &Vehicle, told: &ToldFigures, table: &CascadeTable) -> Result<Self, FlightError> {
-        let figures = *motor_loop::airframe(vehicle, f64::from(table.motor_lag_s))?.figures();
-        let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?;
-        let air = with_told(&table.air, told).checked()?;
-        let cascade = table.flown(&airframe, RATE, &CascadeLimits::STANDARD, &air)?;
-        Ok(Self { cascade, memory: Memory::hovering(&airframe), fit: JerkFit::NONE, newest: None, shared: None })
+        cascade_of_table(vehicle, told, table).map(Self::hovering)
     }
 
     /// Takes what it is told along a track from now on, evaluated once for this and its copies.
@@ -90,6 +90,17 @@ pub fn cascade_of(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, Flig
     let figures = *motor_loop::airframe(vehicle, lag_s)?.figures();
     let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?;
     Ok(Cascade::new(&gains, &airframe, RATE, &CascadeLimits::STANDARD, &air(vehicle, told)?)?)
+}
+
+/// The cascade of a table at 500 Hz, with its lag, and with its air where none is told.
+///
+/// # Errors
+/// [`FlightError`] where the core refuses a figure.
+pub fn cascade_of_table(vehicle: &Vehicle, told: &ToldFigures, table: &CascadeTable) -> Result<Cascade, FlightError> {
+    let figures = *motor_loop::airframe(vehicle, f64::from(table.motor_lag_s))?.figures();
+    let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?;
+    let air = with_told(&table.air, told).checked()?;
+    Ok(table.flown(&airframe, RATE, &CascadeLimits::STANDARD, &air)?)
 }
 
 impl ControlLaw for CascadeLaw {

@@ -42,7 +42,7 @@ mod track;
 mod varied;
 mod whole;
 
-pub use cascade_law::cascade_of;
+pub use cascade_law::{cascade_of, cascade_of_table};
 pub use core_law::{actuation_of, actuator_aware_of};
 pub use error::{ScenarioError, StartError};
 pub use kept::Tally;

@@ -273,4 +273,6 @@ def main(arguments: list[str] | None = None) -> None:
         for row in PACKAGES[name](Flown.eight(asked.seconds)):
             label = f"{row.package} {version}"
             print(f"{label:<20}{row.craft:<15}{printed(row.ours):>10}{printed(row.theirs):>10}  {row.their_law}", flush=True)
+    if not asked.packages:
+        print("gym-pybullet-drones skipped: it is in no package registry")
     sys.stdout.flush()

@@ -1,0 +1,296 @@
+//! The Crazyflie object through its C interface: the firmware's structs in, by their names; its control out.
+//!
+//! There is one controller in a process, as in a craft: switching another one on ends the flight of the one before.
+
+use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use quatrack_crazyflie::abi::{self, Attitude, CEnum, Control, Mode, Modes, Quaternion, SensorData, Setpoint, Vector};
+use quatrack_crazyflie::craft::Platform;
+use quatrack_crazyflie::ffi;
+use quatrack_crazyflie::shared::{AtomicF32, Parameters};
+use quatrack_simulation::crazyflie::platform;
+
+use crate::error::refused;
+use crate::vehicle;
+
+/// How many controllers have been switched on here: the last one flies.
+static SWITCHED_ON: Mutex<u64> = Mutex::new(0);
+
+fn switched_on() -> MutexGuard<'static, u64> {
+    SWITCHED_ON.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A flight of the simulation switches its own on.
+pub(crate) fn end_the_one_before() {
+    *switched_on() += 1;
+}
+
+/// A parameter's name in the firmware, and where it is.
+type Named<T> = (&'static str, fn(&Parameters) -> &T);
+
+/// The parameters of the group `quatrack` that hold a number.
+const FLOATS: [Named<AtomicF32>; Parameters::FLOATS] = [
+    ("posScale", |parameters| &parameters.position_scale),
+    ("yawScale", |parameters| &parameters.yaw_scale),
+    ("motorLag", |parameters| &parameters.motor_lag_s),
+    ("drag", |parameters| &parameters.drag_per_s),
+    ("momentX", |parameters| &parameters.moment_x_n_s),
+    ("momentY", |parameters| &parameters.moment_y_n_s),
+    ("gust", |parameters| &parameters.gust),
+    ("speed", |parameters| &parameters.goal_speed_m_s),
+    ("climb", |parameters| &parameters.goal_climb_m_s),
+    ("tilt", |parameters| &parameters.tilt_deg),
+    ("leash", |parameters| &parameters.leash_m),
+    ("speedMax", |parameters| &parameters.speed_m_s),
+    ("accMax", |parameters| &parameters.acceleration_m_s2),
+    ("rpRateMax", |parameters| &parameters.roll_pitch_rate_rad_s),
+    ("yawRateMax", |parameters| &parameters.yaw_rate_rad_s),
+];
+
+/// Likewise, those that hold a whole number.
+const WHOLE: [Named<AtomicU8>; 3] = [
+    ("table", |parameters| &parameters.table),
+    ("feedForward", |parameters| &parameters.feed_forward),
+    ("learn", |parameters| &parameters.learn),
+];
+
+/// The object as the firmware calls it, at 1 kHz.
+///
+/// vehicle: one that the object has tables for
+/// mass_kg: CF_MASS where it differs from the vehicle's, kg
+///
+/// `step` takes objects with the fields of the firmware's setpoint_t, sensorData_t and state_t, in its units (degrees, g, pitch of
+/// the opposite sign): those of quatrack.crazyflie, of the firmware's own Python bindings, or any other. There is one controller in
+/// a process: a later one, or a flight of "crazyflie", ends this one.
+#[pyclass(module = "quatrack")]
+pub(crate) struct CrazyflieController {
+    number: u64,
+    control: Control,
+    tick: u32,
+}
+
+/// What the object commands, as control_t has it.
+#[pyclass(frozen, module = "quatrack")]
+pub(crate) struct CrazyflieControl {
+    /// 1: force and torque; 2: forces of the motors.
+    #[pyo3(get, name = "controlMode")]
+    mode: CEnum,
+    payload: [f32; 4],
+}
+
+#[pymethods]
+impl CrazyflieControl {
+    /// Forces of M1 to M4 over the largest, 0 to 1, where controlMode is 2.
+    #[getter(normalizedForces)]
+    fn normalized_forces(&self) -> Option<[f32; 4]> {
+        (self.mode == Control::FORCE).then_some(self.payload)
+    }
+
+    /// Thrust (N) and torques about x, y, z (N m), where controlMode is 1.
+    #[getter(forceTorque)]
+    fn force_torque(&self) -> Option<[f32; 4]> {
+        (self.mode == Control::FORCE_TORQUE).then_some(self.payload)
+    }
+}
+
+fn number(of: &Bound<'_, PyAny>, field: &str) -> PyResult<f32> {
+    of.getattr(field)?.extract()
+}
+
+fn vector(of: &Bound<'_, PyAny>, field: &str) -> PyResult<Vector> {
+    let of = of.getattr(field)?;
+    Ok(Vector { timestamp: 0, x: number(&of, "x")?, y: number(&of, "y")?, z: number(&of, "z")? })
+}
+
+fn angles(of: &Bound<'_, PyAny>, field: &str) -> PyResult<Attitude> {
+    let of = of.getattr(field)?;
+    Ok(Attitude { timestamp: 0, roll: number(&of, "roll")?, pitch: number(&of, "pitch")?, yaw: number(&of, "yaw")? })
+}
+
+fn quaternion(of: &Bound<'_, PyAny>, field: &str) -> PyResult<Quaternion> {
+    let of = of.getattr(field)?;
+    Ok(Quaternion { x: number(&of, "x")?, y: number(&of, "y")?, z: number(&of, "z")?, w: number(&of, "w")? })
+}
+
+fn modes(of: &Bound<'_, PyAny>) -> PyResult<Modes> {
+    let of = of.getattr("mode")?;
+    let mode = |field: &str| of.getattr(field)?.extract().map(Mode);
+    Ok(Modes {
+        x: mode("x")?,
+        y: mode("y")?,
+        z: mode("z")?,
+        roll: mode("roll")?,
+        pitch: mode("pitch")?,
+        yaw: mode("yaw")?,
+        quat: mode("quat")?,
+    })
+}
+
+fn setpoint(of: &Bound<'_, PyAny>, tick: u32) -> PyResult<Setpoint> {
+    // The bindings of older firmware have no jerk.
+    let jerk = if of.hasattr("jerk")? { vector(of, "jerk")? } else { Vector::default() };
+    let timestamp = of.getattr_opt("timestamp")?.map_or(Ok(0), |stamp| stamp.extract())?;
+    Ok(Setpoint {
+        // One that nobody dated is new.
+        timestamp: if timestamp == 0 { tick } else { timestamp },
+        attitude: angles(of, "attitude")?,
+        attitude_rate: angles(of, "attitudeRate")?,
+        attitude_quaternion: quaternion(of, "attitudeQuaternion")?,
+        thrust: number(of, "thrust")?,
+        position: vector(of, "position")?,
+        velocity: vector(of, "velocity")?,
+        acceleration: vector(of, "acceleration")?,
+        jerk,
+        velocity_body: u8::from(of.getattr("velocity_body")?.is_truthy()?),
+        mode: modes(of)?,
+    })
+}
+
+fn state(of: &Bound<'_, PyAny>) -> PyResult<abi::State> {
+    Ok(abi::State {
+        attitude: angles(of, "attitude")?,
+        attitude_quaternion: quaternion(of, "attitudeQuaternion")?,
+        position: vector(of, "position")?,
+        velocity: vector(of, "velocity")?,
+        acc: vector(of, "acc")?,
+    })
+}
+
+fn sensors(of: &Bound<'_, PyAny>) -> PyResult<SensorData> {
+    let axis = |field: &str| vector(of, field).map(|v| [v.x, v.y, v.z]);
+    Ok(SensorData { acc: axis("acc")?, gyro: axis("gyro")?, ..SensorData::default() })
+}
+
+impl CrazyflieController {
+    /// What is shared by the process, as long as it is this one's.
+    fn own(&self) -> PyResult<MutexGuard<'static, u64>> {
+        let number = switched_on();
+        if *number == self.number {
+            Ok(number)
+        } else {
+            Err(refused(
+                "another Crazyflie controller has been switched on in this process, which has one; make this one anew",
+            ))
+        }
+    }
+}
+
+#[pymethods]
+impl CrazyflieController {
+    #[new]
+    #[pyo3(signature = (vehicle, *, mass_kg=None))]
+    fn new(vehicle: &Bound<'_, PyAny>, mass_kg: Option<f32>) -> PyResult<Self> {
+        let vehicle = vehicle::argument(vehicle)?;
+        let built_for = platform(&vehicle);
+        let built_for = Platform { mass_kg: mass_kg.unwrap_or(built_for.mass_kg), ..built_for };
+        let mut number = switched_on();
+        *number += 1;
+        let parameters = &ffi::quatrack.parameters;
+        // As switched on: what is no number is put back to its default.
+        parameters.set_all(f32::NAN);
+        parameters.table.store(0, Relaxed);
+        parameters.feed_forward.store(1, Relaxed);
+        parameters.learn.store(1, Relaxed);
+        if !ffi::quatrackPlatform(&built_for) {
+            return Err(refused(format!(
+                "the Crazyflie controller has no table for {} told {} kg; tell a mass within 20 % of a built-in vehicle's",
+                vehicle.name(),
+                built_for.mass_kg
+            )));
+        }
+        ffi::quatrackService();
+        let mut new = Self { number: *number, control: Control::default(), tick: 1 };
+        // Motors off, until parameters have been looked at.
+        for _ in 0..9 {
+            new.call(&Setpoint::OFF, &SensorData::default(), &at_rest());
+        }
+        ffi::controllerOutOfTreeInit();
+        Ok(new)
+    }
+
+    /// One call of the stabilizer; every other one steps the controller, and the one between leaves its control as it is.
+    ///
+    /// tick: milliseconds, as the firmware counts them; one more than the last where left out
+    #[pyo3(name = "step", signature = (setpoint, sensors, state, tick=None))]
+    fn step_py(
+        &mut self,
+        setpoint: &Bound<'_, PyAny>,
+        sensors: &Bound<'_, PyAny>,
+        state: &Bound<'_, PyAny>,
+        tick: Option<u32>,
+    ) -> PyResult<CrazyflieControl> {
+        let tick = tick.unwrap_or(self.tick);
+        let given = (self::setpoint(setpoint, tick)?, self::sensors(sensors)?, self::state(state)?);
+        let _own = self.own()?;
+        self.tick = tick;
+        self.call(&given.0, &given.1, &given.2);
+        Ok(CrazyflieControl { mode: self.control.control_mode, payload: self.control.payload })
+    }
+
+    /// Names of the parameters of the firmware's group `quatrack` that can be set.
+    #[getter]
+    fn parameters(&self) -> Vec<&'static str> {
+        WHOLE.map(|(name, _)| name).into_iter().chain(FLOATS.map(|(name, _)| name)).collect()
+    }
+
+    /// Sets a parameter, by its name in the firmware, and lets the app look at it.
+    fn set(&self, name: &str, value: f32) -> PyResult<()> {
+        let _own = self.own()?;
+        let parameters = &ffi::quatrack.parameters;
+        let whole = WHOLE.iter().find(|(known, _)| *known == name);
+        match (FLOATS.iter().find(|(known, _)| *known == name), whole) {
+            (Some((_, of)), _) => of(parameters).set(value),
+            (None, Some((_, of))) => of(parameters).store(value as u8, Relaxed),
+            (None, None) => return Err(self.unknown(name)),
+        }
+        ffi::quatrackService();
+        Ok(())
+    }
+
+    /// Value of a parameter, by its name in the firmware.
+    fn get(&self, name: &str) -> PyResult<f32> {
+        let _own = self.own()?;
+        let parameters = &ffi::quatrack.parameters;
+        let whole = WHOLE.iter().find(|(known, _)| *known == name);
+        match (FLOATS.iter().find(|(known, _)| *known == name), whole) {
+            (Some((_, of)), _) => Ok(of(parameters).get()),
+            (None, Some((_, of))) => Ok(f32::from(of(parameters).load(Relaxed))),
+            (None, None) => Err(self.unknown(name)),
+        }
+    }
+
+    /// The table that is flown, by its number.
+    #[getter]
+    fn table(&self) -> PyResult<u8> {
+        let _own = self.own()?;
+        Ok(ffi::quatrack.log.table.load(Relaxed))
+    }
+
+    /// How the last setpoint is flown, as the log variable quatrack.mode has it; 4: no table for the craft.
+    #[getter]
+    fn mode(&self) -> PyResult<u8> {
+        let _own = self.own()?;
+        Ok(ffi::quatrack.log.mode.load(Relaxed))
+    }
+}
+
+impl CrazyflieController {
+    fn call(&mut self, setpoint: &Setpoint, sensors: &SensorData, state: &abi::State) {
+        ffi::controllerOutOfTree(&mut self.control, setpoint, sensors, state, self.tick);
+        self.tick = self.tick.wrapping_add(1);
+    }
+
+    fn unknown(&self, name: &str) -> PyErr {
+        PyKeyError::new_err(format!(
+            "{name}: no parameter of the group quatrack; there are {}",
+            self.parameters().join(", ")
+        ))
+    }
+}
+
+fn at_rest() -> abi::State {
+    abi::State { attitude_quaternion: Quaternion { w: 1.0, ..Quaternion::default() }, ..abi::State::default() }
+}
