@@ -3,11 +3,13 @@
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use serde::Deserialize;
 
+use super::course::Flown;
 use super::filtered::Estimation;
-use super::kept::Keep;
+use super::kept::{Keep, Rows};
 use super::track::{SAMPLE_STEPS, STEP_S, Track};
 use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ};
 use crate::flight::closed_loop::Lost;
+use crate::flight::rigid_loop::RigidFlight;
 use crate::plant::{Plant, PlantGroup, RigidState};
 
 /// Farther than this from its course a craft counts as lost, m.
@@ -23,6 +25,27 @@ pub enum Setpoints {
     /// At every step, to the crackle.
     #[serde(rename = "exact")]
     Exact,
+}
+
+/// A flight outside a scenario: what is flown, how the law is told of it, and where its estimate comes from.
+pub struct Bench<'a> {
+    /// The course.
+    pub flown: &'a Flown,
+    /// How setpoints come.
+    pub setpoints: Setpoints,
+    /// The estimate.
+    pub estimation: Estimation,
+}
+
+impl Bench<'_> {
+    /// Flies a law on any plant from where it is; rows every 10 ms of the part that is measured.
+    pub fn fly(self, plant: &mut Plant, law: &mut dyn ControlLaw) -> RigidFlight {
+        let track = Track::of(self.flown, self.setpoints);
+        let mut flying = Flying::new(&track, law, self.estimation, plant);
+        let mut rows = Rows::default();
+        flying.fly(plant, &mut rows);
+        RigidFlight { samples: rows.samples, saturated_steps: flying.saturated_steps, lost: flying.lost }
+    }
 }
 
 /// A law on its way along a track: what is between the craft and the law, and what came of it so far.
