@@ -105,8 +105,9 @@ fn the_compressed_form_is_written_and_read() {
     let (code, stdout, stderr) = texts(&quatrack(&["refit", "aggressive", "--compressed", path.to_str().unwrap()]));
     assert_eq!(code, Some(0), "{stderr}");
     assert!(stdout.contains("of 4096 bytes, at most "), "{stdout}");
-    // Three axes of 7 control points, no heading.
-    assert_eq!(fs::metadata(&path).unwrap().len(), 8 + 31 * (3 + 3 * 7 * 2) + 3);
+    // Three axes of 7 control points at most, no heading: a piece that is straight along an axis has fewer.
+    let bytes = fs::metadata(&path).unwrap().len();
+    assert!(bytes > 31 * 3 && bytes <= 8 + 31 * (3 + 3 * 7 * 2) + 3, "{bytes}");
     let flown = ["fly", "--controller", "lqr-e", "--trajectory", path.to_str().unwrap()];
     let (code, stdout, stderr) = texts(&quatrack(&flown));
     assert_eq!(code, Some(0), "{stderr}");
@@ -157,7 +158,7 @@ fn a_plan_ends_in_its_time_and_never_reads_on_for_ever() {
 
 #[test]
 fn names_that_are_nearly_right_are_asked_about() {
-    let (_, _, stderr) = texts(&quatrack(&["fly", "--vehicle", "crazyfly-2.1"]));
+    let (_, _, stderr) = texts(&quatrack(&["robustness", "--vehicle", "crazyfly-2.1"]));
     assert!(stderr.contains("did you mean crazyflie-2.1?"), "{stderr}");
     let (_, _, stderr) = texts(&quatrack(&["fly", "--vehicle", "crazyflie-2.1", "--law", "melinger"]));
     assert!(stderr.contains("did you mean mellinger?"), "{stderr}");

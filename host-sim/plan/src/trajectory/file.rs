@@ -152,6 +152,10 @@ struct ControlPoints {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Curves {
+    /// As of [`ControlPoints`].
+    #[serde(default)]
+    #[expect(dead_code, reason = "a file may say what it is")]
+    schema: Option<String>,
     curves: Vec<ControlPoints>,
 }
 
@@ -298,7 +302,7 @@ fn one_spline(name: &str, points: ControlPoints) -> Result<BSpline, FileError> {
 }
 
 /// Curves one after the other, as pieces.
-fn curves(name: &str, Curves { curves }: Curves) -> Result<TrajectoryFile, FileError> {
+fn curves(name: &str, Curves { curves, .. }: Curves) -> Result<TrajectoryFile, FileError> {
     let mut pieces = Vec::new();
     let wrong = |reason| FileError::Curves { name: name.into(), reason };
     for points in curves {

@@ -59,7 +59,10 @@ fn the_name_does_not_matter() {
 #[test]
 fn keys_are_told_apart() {
     let wrong = error(&TOML.replace("duration_s", "duration"));
-    assert!(wrong.starts_with("flight: line 3: unknown field `duration`, expected one of `degree`"), "{wrong}");
+    assert!(
+        wrong.starts_with("flight: line 3: unknown field `duration`, expected one of `schema`, `degree`"),
+        "{wrong}"
+    );
     assert!(error(&JSON.replace("degree", "order")).starts_with("flight: line 1: unknown field `order`"));
     let wrong = error("degree = 5\nduration_s = 1.0\n");
     assert!(wrong.contains("missing field `control_points_m`"), "{wrong}");

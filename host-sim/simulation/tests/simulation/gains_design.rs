@@ -113,7 +113,7 @@ fn what_cannot_be_used_is_named_with_its_value_and_the_remedy() {
             assert!(line.contains(word), "{to}: `{word}` is not named in {line}");
         }
     }
-    for (name, word) in [("", "0 bytes"), ("a-name-of-25-characters-ok", "26 bytes"), ("two words", "0x20")] {
+    for (name, word) in [("", "0 bytes"), ("a-name-of-32-characters-in-total", "32 bytes"), ("two words", "0x20")] {
         let error = Design::from_toml(name, LQR_E, Path::new("")).expect_err(name).to_string();
         assert!(error.starts_with("the file's name is the table's name") && error.contains(word), "{error}");
     }
