@@ -150,10 +150,10 @@ impl Preflight {
         self.check_start()?;
         self.check_law()?;
         let (least, most) = (self.limits.thrust_min_m_s2(), self.limits.thrust_max_m_s2());
-        if !(least <= (1.0 - HOVER_ROOM) * GRAVITY_M_S2) {
+        if least > (1.0 - HOVER_ROOM) * GRAVITY_M_S2 {
             return Err(ArmError::NoHover { thrust_m_s2: least });
         }
-        if !(most >= (1.0 + HOVER_ROOM) * GRAVITY_M_S2) {
+        if most < (1.0 + HOVER_ROOM) * GRAVITY_M_S2 {
             return Err(ArmError::NoHover { thrust_m_s2: most });
         }
         let [empty, full] = CELL_V;
@@ -190,7 +190,7 @@ impl Preflight {
         }
         let q = looked.state.attitude;
         let upright = 1.0 - 2.0 * (q.x * q.x + q.y * q.y) / q.dot(q);
-        if !(upright >= UPRIGHT_LEAST) {
+        if upright.is_nan() || upright < UPRIGHT_LEAST {
             return Err(ArmError::Tilted { upright });
         }
         let Some(reference) = self.reference_m else { return Ok(()) };

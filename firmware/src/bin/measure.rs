@@ -97,7 +97,9 @@ mod image {
         let dense_to_motors = ActuatorAwareGain::new(rows).ok()?;
         let step_rate = Rate::from_hz(TICK_RATE.hz() / TICKS_PER_STEP)?;
         let actuation = Actuation::new(&Airframe::CRAZYFLIE_2_1.commanded_at(step_rate), step_rate).ok()?;
-        let flight = Flight::new(store, None);
+        let mut flight = Flight::new(store, None);
+        // The dearest steps are limited, all of them.
+        flight.config.saturation_max_ticks = Tick::MAX;
         let mut bench = Bench { counter, overhead, timing: Timing::new(1), flight, dense, limits, states, counts };
         bench.timing.set_decimation(1);
         while let Some([course, controller, is_worst, steps]) = read_words(&mut bench.states) {
@@ -248,13 +250,16 @@ mod image {
         /// Armed, at the start of a stored trajectory.
         fn take_off(&mut self, course: &Course, law: LawChoice, limits: LimitsSetting) -> Option<()> {
             self.flight.disarm();
-            self.flight.set_limits(limits).ok()?;
+            let [hovering, ..] = self.limits;
+            self.flight.set_limits(hovering).ok()?;
             self.flight.select(law).ok()?;
             self.flight.playback.start(stored::player(course.id)?);
             let start = State::at_rest(self.flight.playback.begins_at_m()?);
             self.flight.accept(StateIn { tick: 0, state: start }, self.timing.now());
             self.flight.hear(self.timing.now());
-            self.flight.arm(self.timing.now()).ok()
+            self.flight.arm(self.timing.now()).ok()?;
+            // Limits that leave no hover cost most, and no board arms with them.
+            self.flight.set_limits(limits).ok()
         }
 
         fn reference(&self, player: &mut Player<'_>, tick: Tick) -> Option<(u32, Reference)> {

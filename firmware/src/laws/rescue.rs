@@ -41,7 +41,7 @@ impl Laws {
             Table::Cascade => Certified::For(covering(TABLE.certified.motor_lag_s, TABLE.certified.mass_share)),
             Table::ActuatorAware => Certified::For(covering(TO_MOTORS_LAG_S, MASS_SHARE)),
             Table::Loaded(slot) => self.store.table(slot).map_or(Certified::ForNone, |table| {
-                let rate_hz = self.rate().map_or(0, |rate| rate.hz());
+                let rate_hz = self.rate().map_or(0, quatrack::Rate::hz);
                 Certified::For(Coverage {
                     rate_hz,
                     ..covering([0.0, table.head().certificate.motor_lag_max_s], MASS_SHARE)

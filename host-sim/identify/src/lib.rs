@@ -15,6 +15,12 @@
 //! Why not output error: its input, the logged commands, is noisy, and it inflates the inertia two- to threefold. What is minimised is
 //! the balance of torques and of forces along the flight as it was, below 6 Hz, where process noise is what is left.
 
+#![allow(
+    clippy::needless_range_loop,
+    clippy::repeat_vec_with_capacity,
+    reason = "an index is a time step or an axis here"
+)]
+
 mod error;
 mod filter;
 pub mod flight;

@@ -39,7 +39,11 @@ pub fn vehicle_toml(fit: &Fit, vehicle: &Vehicle, logs: &[String]) -> String {
     for (k, axis) in ["x", "y", "z"].into_iter().enumerate() {
         match of(names[k]) {
             Some(estimate) => {
-                line(&format!("# About {axis}: {source}; 95 %: {} to {}.", figure(estimate.low), figure(estimate.high)))
+                line(&format!(
+                    "# About {axis}: {source}; 95 %: {} to {}.",
+                    figure(estimate.low),
+                    figure(estimate.high)
+                ));
             }
             None => line(&format!("# About {axis}: that of {}, in proportion to what is known.", vehicle.name())),
         }

@@ -181,7 +181,7 @@ pub fn fly(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
             state: Some(estimate),
             body_rates: rates,
             felt: Some(felt),
-            asked: Some(asked.map(|v| v.cast())),
+            asked: Some(asked.map(nalgebra::Matrix::cast)),
             heading: [0.0; 2],
             silence: 0,
             battery_v: 3.8,
