@@ -123,5 +123,5 @@ fn panel(text: &mut String, [x0, y0]: [f64; 2], name: &str, figure: usize, laws:
 }
 
 fn short(value: f64) -> String {
-    if value != 0.0 && value.abs() < 0.01 { format!("{value:.1e}") } else { format!("{:.3}", value) }
+    if value != 0.0 && value.abs() < 0.01 { format!("{value:.1e}") } else { format!("{value:.3}") }
 }
