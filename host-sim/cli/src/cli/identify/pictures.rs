@@ -1,5 +1,7 @@
 //! What was identified as pictures: prediction against flight, what the torque balance leaves over, the lag curve.
 
+#![allow(clippy::redundant_closure_for_method_calls, reason = "a method of a borrowed figure")]
+
 use std::path::Path;
 
 use nalgebra::Vector3;
