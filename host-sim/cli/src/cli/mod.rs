@@ -62,6 +62,7 @@ struct Arguments {
 }
 
 #[derive(Subcommand)]
+#[allow(clippy::large_enum_variant, reason = "there is one, for the length of the program")]
 enum Command {
     Analyze(analyze::Args),
     Campaign(campaign::Args),
