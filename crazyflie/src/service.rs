@@ -46,12 +46,14 @@ pub struct Handover {
     craft: Option<Craft>,
     table: Option<Table>,
     settings: Option<(Settings, Craft)>,
+    /// The controller has kept the table that it flew.
+    is_kept: bool,
 }
 
 impl Handover {
     /// Nothing.
     pub(crate) const fn new() -> Self {
-        Self { craft: None, table: None, settings: None }
+        Self { craft: None, table: None, settings: None, is_kept: false }
     }
 
     /// The controller takes over what there is.
@@ -66,15 +68,35 @@ impl Handover {
     #[inline(never)]
     fn hand_to(&mut self, controller: &mut Controller) {
         if let Some(craft) = &self.craft {
+            // The motors are off: there is time, and nothing is flown with a half of it.
             controller.change_craft(craft);
+            self.craft = None;
+            while self.settings.is_some() {
+                self.hand_one(controller);
+            }
+        } else {
+            self.hand_one(controller);
         }
-        if let Some(table) = &self.table {
-            controller.change_table(table);
+    }
+
+    /// One thing a call: each takes long.
+    #[inline(never)]
+    fn hand_one(&mut self, controller: &mut Controller) {
+        match (&self.table, &self.settings) {
+            (Some(_), _) if !self.is_kept => {
+                controller.keep_table();
+                self.is_kept = true;
+            }
+            (Some(table), _) => {
+                controller.change_table(table);
+                (self.table, self.is_kept) = (None, false);
+            }
+            (None, Some((settings, craft))) => {
+                controller.set(settings, craft);
+                self.settings = None;
+            }
+            (None, None) => {}
         }
-        if let Some((settings, craft)) = &self.settings {
-            controller.set(settings, craft);
-        }
-        (self.craft, self.table, self.settings) = (None, None, None);
     }
 }
 

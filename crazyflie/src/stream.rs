@@ -61,6 +61,8 @@ pub struct Stream {
     fit: JerkFit,
     /// The newest setpoint has not been fitted yet: snap and crackle are those of the one before, carried on.
     is_due: bool,
+    /// Time from the setpoint before to the newest one, s.
+    gap_s: f32,
 }
 
 /// What a setpoint was to the ones before it.
@@ -88,6 +90,7 @@ impl Stream {
             source: Source::Sent { unsound: 0 },
             fit: JerkFit::NONE,
             is_due: false,
+            gap_s: 0.0,
         }
     }
 
@@ -178,8 +181,11 @@ impl Stream {
     }
 
     /// Takes a motion, with what the one before leads to expect of its higher derivatives until it is fitted.
-    #[inline(never)]
+    #[inline(always)]
     fn keep(&mut self, motion: &Motion, gap_s: f32, source: Source) {
+        if self.is_due {
+            self.fit_newest();
+        }
         let (was_sent, is_sent) = (self.is_sent(), matches!(source, Source::Sent { .. }));
         if was_sent != is_sent {
             self.forget_fit();
@@ -188,9 +194,8 @@ impl Stream {
             |a: &Vector3<f32>, b: &Vector3<f32>| Vector3::new(a.x + gap_s * b.x, a.y + gap_s * b.y, a.z + gap_s * b.z);
         let jerk = if is_sent { motion.jerk_m_s3 } else { ahead(&self.newest.jerk_m_s3, &self.snap_m_s4) };
         self.snap_m_s4 = ahead(&self.snap_m_s4, &self.crackle_m_s5);
-        self.fit.accept(if is_sent { &motion.jerk_m_s3 } else { &motion.acceleration_m_s2 }, gap_s);
         self.newest = Motion { jerk_m_s3: jerk, ..*motion };
-        (self.source, self.is_due) = (source, true);
+        (self.source, self.is_due, self.gap_s) = (source, true, gap_s);
     }
 
     /// Whether the newest setpoint is still to be fitted.
@@ -199,10 +204,18 @@ impl Stream {
         self.is_due
     }
 
+    /// Hands the newest setpoint to the fit, which takes jerks where they are sent and accelerations where not.
+    #[inline(always)]
+    fn fit_newest(&mut self) {
+        self.is_due = false;
+        let Motion { acceleration_m_s2, jerk_m_s3, .. } = &self.newest;
+        self.fit.accept(if self.is_sent() { jerk_m_s3 } else { acceleration_m_s2 }, self.gap_s);
+    }
+
     /// Fits the newest setpoint and the ones before.
     #[inline(never)]
     pub fn catch_up(&mut self) {
-        self.is_due = false;
+        self.fit_newest();
         let [first, second] = self.fit.snap_and_crackle();
         if self.is_sent() {
             (self.snap_m_s4, self.crackle_m_s5) = (first, second);

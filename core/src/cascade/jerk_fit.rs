@@ -50,8 +50,10 @@ impl JerkFit {
         // Powers of time, in units of half the oldest age: all sums are then of the size of the count.
         let per = 2.0 / oldest_s;
         let (mut s1, mut s2, mut s3, mut s4) = (0.0, 0.0, 0.0, 0.0);
-        let (mut bx, mut by, mut bz) = ([0.0; 3], [0.0; 3], [0.0; 3]);
-        for ((age, x), (y, z)) in self.ages_s.iter().zip(&self.x).zip(self.y.iter().zip(&self.z)).take(count) {
+        // The newest is at time 0.
+        let ([x0, xs @ ..], [y0, ys @ ..], [z0, zs @ ..], [_, ages @ ..]) = (&self.x, &self.y, &self.z, &self.ages_s);
+        let (mut bx, mut by, mut bz) = ([*x0, 0.0, 0.0], [*y0, 0.0, 0.0], [*z0, 0.0, 0.0]);
+        for ((age, x), (y, z)) in ages.iter().zip(xs).zip(ys.iter().zip(zs)).take(count.wrapping_sub(1)) {
             let t = -age * per;
             let t2 = t * t;
             (s1, s2, s3, s4) = (s1 + t, s2 + t2, s3 + t * t2, s4 + t2 * t2);

@@ -1,27 +1,20 @@
-//! A command carried to the motors: body-rate loop and mixer, and what is remembered of the motors.
+//! A command carried to the motors: body-rate loop and mixer.
 
 use nalgebra::Vector3;
 
-use super::memory::Memory;
 use super::output::{MotorStep, Step};
 use crate::actuation::{Actuation, refuse};
 use crate::error::StepError;
 
 impl Actuation {
-    /// Motor forces for a step's command, at measured body rates (rad/s); what is remembered of the motors moves on.
+    /// Motor forces for a step's command, at measured body rates (rad/s).
     ///
     /// # Errors
-    /// As [`Self::wrench`]; the memory is then as it was.
+    /// As [`Self::wrench`].
     #[inline]
-    pub fn carry(
-        &self,
-        memory: &mut Memory,
-        step: &Step,
-        body_rates_rad_s: &Vector3<f32>,
-    ) -> Result<MotorStep, StepError> {
+    pub fn carried(&self, step: &Step, body_rates_rad_s: &Vector3<f32>) -> Result<MotorStep, StepError> {
         let wrench = self.body_rates.wrench(&step.command, body_rates_rad_s);
         let Some((forces_n, limited)) = self.airframe.mix(&wrench) else { return Err(refuse(body_rates_rad_s)) };
-        memory.forces_n = self.lag.next(&memory.forces_n, &forces_n);
         Ok(MotorStep { forces_n, limited: limited.with_command(step.limited) })
     }
 }

@@ -134,7 +134,11 @@ impl<'a> Controller<'a> {
     /// body rates that are not finite.
     #[inline]
     pub fn carry(&self, memory: &mut Memory, output: &Output, measured: Measured<'_>) -> Result<MotorStep, StepError> {
-        carry(self.actuation, memory, output, measured)
+        let step = carried(self.actuation, output, measured)?;
+        if let (Output::Command(_), Some(actuation)) = (output, self.actuation) {
+            memory.forces_n = actuation.lag.next(&memory.forces_n, &step.forces_n);
+        }
+        Ok(step)
     }
 
     /// Both in one: a step down to the motors.
@@ -156,9 +160,8 @@ impl<'a> Controller<'a> {
 
 /// Motor forces for an output.
 #[inline]
-pub(super) fn carry(
+pub(super) fn carried(
     actuation: Option<&Actuation>,
-    memory: &mut Memory,
     output: &Output,
     measured: Measured<'_>,
 ) -> Result<MotorStep, StepError> {
@@ -166,7 +169,7 @@ pub(super) fn carry(
         Output::Forces(step) => Ok(*step),
         Output::Command(step) => {
             let body_rates_rad_s = measured.body_rates_rad_s.ok_or(StepError::NoBodyRates)?;
-            actuation.ok_or(StepError::NoActuation)?.carry(memory, step, body_rates_rad_s)
+            actuation.ok_or(StepError::NoActuation)?.carried(step, body_rates_rad_s)
         }
     }
 }

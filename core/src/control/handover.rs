@@ -6,7 +6,7 @@
 
 use nalgebra::Vector3;
 
-use super::controller::{Controller, carry};
+use super::controller::{Controller, carried};
 use super::input::{Measured, Target};
 use super::law::Law;
 use super::memory::Memory;
@@ -34,7 +34,16 @@ impl Handover {
     /// old one has integrated goes on with the new one only where it means the same to it.
     #[inline]
     pub fn begin(steps: u16, old: &Law<'_>, new: &Law<'_>, memory: &mut Memory) -> Self {
-        let before = *memory;
+        let mut way = Self::OVER;
+        way.begin_again(steps, old, new, memory);
+        way
+    }
+
+    /// The same in the place of another: a memory is large where a stack is small.
+    #[inline]
+    pub fn begin_again(&mut self, steps: u16, old: &Law<'_>, new: &Law<'_>, memory: &mut Memory) {
+        (self.steps, self.done) = (steps, 0);
+        self.memory = *memory;
         if !old.integrates_like(new) {
             memory.clear_integral();
         }
@@ -42,13 +51,18 @@ impl Handover {
         if new.follows_samples() && !old.follows_samples() {
             memory.cascade.begin_in_flight();
         }
-        Self { steps, done: 0, memory: before }
     }
 
     /// The way in so many steps between laws that remember nothing.
     #[inline]
     pub const fn of_commands(steps: u16) -> Self {
         Self { steps, ..Self::OVER }
+    }
+
+    /// Ends it here.
+    #[inline]
+    pub const fn end(&mut self) {
+        self.done = self.steps;
     }
 
     /// Whether the way is over: from then on the new controller is stepped alone.
@@ -117,25 +131,21 @@ impl Handover {
         if let (Output::Command(from), Output::Command(to)) = (from, to) {
             return Some(Output::Command(between_commands(from, to, share)));
         }
-        let step = between_carried(actuation?, measured, (from, to), before_n, share)?;
+        let step = between_carried(actuation?, measured, (from, to), share)?;
         memory.forces_n = actuation?.lag.next(&before_n, &step.forces_n);
         Some(Output::Forces(step))
     }
 }
 
-/// Both carried to the motors, from where these are.
+/// Both carried to the motors.
 #[inline(never)]
 fn between_carried(
     actuation: &Actuation,
     measured: Measured<'_>,
     (from, to): (&Output, &Output),
-    before_n: MotorForces,
     share: f32,
 ) -> Option<MotorStep> {
-    let to_motors = |output| {
-        let memory = &mut Memory { forces_n: before_n, ..Memory::at_rest() };
-        carry(Some(actuation), memory, output, measured).ok()
-    };
+    let to_motors = |output: &Output| carried(Some(actuation), output, measured).ok();
     Some(between_forces(&to_motors(from)?, &to_motors(to)?, share))
 }
 

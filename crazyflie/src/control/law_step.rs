@@ -80,13 +80,20 @@ impl LawStep<'_> {
         self.output(table, memory, &mut outcome)
     }
 
-    /// The output of a table's law on a reference of its own; its target into the outcome. Out of line: the stack of two laws
-    /// in one step is then that of one.
-    #[inline(never)]
+    /// The output of a table's law; its target into the outcome. Each out of line: the stack of two laws in one step is then that
+    /// of the larger one, and the cascade's, which is the deepest, has no reference beside it.
+    #[inline(always)]
     fn output(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<LawOutput, Unflown> {
-        if table.gives_forces() {
-            return Ok(self.controlled(table, memory, self.sampled())?);
-        }
+        if table.gives_forces() { self.forces(table, memory) } else { self.command(table, memory, outcome) }
+    }
+
+    #[inline(never)]
+    fn forces(&self, table: &Table, memory: &mut Memory) -> Result<LawOutput, Unflown> {
+        Ok(self.controlled(table, memory, self.sampled())?)
+    }
+
+    #[inline(never)]
+    fn command(&self, table: &Table, memory: &mut Memory, outcome: &mut Outcome) -> Result<LawOutput, Unflown> {
         let reference = &Reference::from_flat_at(&self.sample.flat, self.heading)?;
         outcome.target = reference.state().attitude;
         Ok(self.controlled(table, memory, Target::new(reference))?)

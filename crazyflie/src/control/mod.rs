@@ -51,6 +51,8 @@ pub struct Controller {
     inbox: Inbox,
     stream: Stream,
     headings: HeadingStream,
+    /// The heading of the newest setpoint is still to be taken.
+    is_heading_due: bool,
     ahead: Ahead,
     flight: Flight,
     shaping: Shaping,
@@ -75,6 +77,7 @@ impl Controller {
             inbox: Inbox::new(),
             stream: Stream::new(),
             headings: HeadingStream::new(),
+            is_heading_due: false,
             ahead: Ahead::new(),
             flight: Flight::NoCraft,
             shaping: Shaping::new(PERIOD_S),
@@ -141,11 +144,12 @@ impl Controller {
         // another one later. It is dated by its stamp.
         let is_busy = self.observe(sensors);
         let news = if is_busy { self.inbox.glance(setpoint, step) } else { self.inbox.look(setpoint, step) };
-        let has_time = news == News::Nothing && !is_busy && !self.stream.is_due();
+        let has_time = news == News::Nothing && !(is_busy || self.is_heading_due || self.stream.is_due());
         match news {
             News::Nothing if is_busy || has_time => {}
+            News::Nothing if self.is_heading_due => self.follow_heading(),
             News::Nothing => self.stream.catch_up(),
-            News::Motion => self.follow(),
+            News::Motion => self.follow_motion(),
             News::Other => self.take(setpoint, &units::state(state)),
         }
         self.look_ahead(state, step.wrapping_add(1));
@@ -172,16 +176,25 @@ impl Controller {
         }
     }
 
-    /// Takes one more motion of the stream, with its heading.
+    /// Takes one more motion of the stream. Its heading is left to the next call, so that none has to do everything: until then the
+    /// one before turns on.
     #[inline(never)]
-    fn follow(&mut self) {
+    fn follow_motion(&mut self) {
         let (newest, beyond_jerk) = (self.inbox.newest(), self.looks_beyond_jerk());
         let arrival = self.stream.accept(&newest.motion, newest.date_ms, beyond_jerk);
-        let is_differenced = beyond_jerk && newest.is_by_yaw;
-        self.headings.accept(newest.heading, newest.heading_rate_rad_s, newest.date_ms, is_differenced);
+        self.is_heading_due = true;
         if arrival == Arrival::Jumped {
             self.counters.jumps = self.counters.jumps.wrapping_add(1);
         }
+    }
+
+    /// Takes the heading of the newest setpoint.
+    #[inline(never)]
+    fn follow_heading(&mut self) {
+        let newest = self.inbox.newest();
+        let is_differenced = self.looks_beyond_jerk() && newest.is_by_yaw;
+        self.headings.accept(newest.heading, newest.heading_rate_rad_s, newest.date_ms, is_differenced);
+        self.is_heading_due = false;
     }
 
     #[inline(never)]
@@ -191,7 +204,8 @@ impl Controller {
         }
         self.flight = flight;
         self.ahead.forget();
-        self.follow();
+        self.follow_motion();
+        self.follow_heading();
     }
 
     /// Starts a flight of another kind.
@@ -372,23 +386,29 @@ impl Controller {
         }
     }
 
-    /// Flies another table from the next control step on; in flight over [`FADE_STEPS`] of them, but for a cascade that takes over
-    /// from another one: what they remember is the same, and their limits hold at once.
+    /// Keeps the table that is flown, to fade it out once another one comes: in a call of its own, each copy takes long.
+    #[inline(never)]
+    pub fn keep_table(&mut self) {
+        self.handover.end();
+        self.before = self.table;
+    }
+
+    /// Flies another table from the next control step on, after [`Self::keep_table`]; in flight over [`FADE_STEPS`] of them,
+    /// but for a cascade that takes over from another one: what they remember is the same, and their limits hold at once.
     #[inline(never)]
     pub fn change_table(&mut self, table: &Table) {
-        if self.flight.is_on() && !(self.table.gives_forces() && table.gives_forces()) {
-            self.before = self.table;
-            if !self.before.gives_forces() {
+        self.table = *table;
+        let (old, new) = (&self.before, &self.table);
+        if self.flight.is_on() && !(old.gives_forces() && new.gives_forces()) {
+            if !old.gives_forces() {
                 // The firmware's mixer has carried its commands to the motors: what they have by now nobody has kept.
                 self.memory.assume_hovering(self.craft.airframe());
             }
             let feed_forward = self.settings.feed_forward;
-            let (old, new) = (self.before.law(feed_forward), table.law(feed_forward));
-            if let (Ok(old), Ok(new)) = (old, new) {
-                self.handover = Handover::begin(FADE_STEPS, &old, &new, &mut self.memory);
+            if let (Ok(old), Ok(new)) = (old.law(feed_forward), new.law(feed_forward)) {
+                self.handover.begin_again(FADE_STEPS, &old, &new, &mut self.memory);
             }
         }
-        self.table = *table;
         self.ahead.forget();
     }
 

@@ -1,7 +1,7 @@
 //! Waypoints as rows, as `uav_trajectories` and spreadsheets have them: text in, places and, if given, times out.
 //!
 //! Columns are `t,x,y,z` or `t,x,y,z,yaw` with times in s, or `x,y,z`, with a header or without; m and rad, `yaw_deg` is in
-//! degrees. Separators and the like are those of [`super::table`].
+//! degrees. Separators and the like are those of a table of rows.
 
 use nalgebra::Vector3;
 
