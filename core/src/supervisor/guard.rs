@@ -122,7 +122,7 @@ impl Guard {
     }
 
     /// What is to be done in a step.
-    #[inline]
+    #[inline(always)]
     pub fn order<'a>(
         &'a mut self,
         (config, monitor): (&Config, &MonitorConfig),
@@ -153,6 +153,11 @@ impl Guard {
         let verdict = supervisor.step(config, &conditions);
         match verdict.action {
             Action::Fly => Order::Fly(looked),
+            // A product that never levels links nothing of what follows.
+            _ if !around.levels => {
+                (*braking, *grounded, *hit) = (None, None, false);
+                Order::Off
+            }
             action => instead(action, verdict.mode, looked, (monitor, sample), (braking, grounded, hit)),
         }
     }
@@ -161,7 +166,7 @@ impl Guard {
     #[cold]
     pub fn step_failed(&mut self, now: Tick, rescue: &Rescue, tick_s: f32, levels: bool) -> Option<Levelled> {
         let verdict = self.supervisor.step_failed(now, levels);
-        (verdict.action == Action::Level).then(|| rescue.level(tick_s))
+        (levels && verdict.action == Action::Level).then(|| rescue.level(tick_s))
     }
 
     /// What is to be followed turns out not to be flyable: what is to be followed instead in this very step.
@@ -173,7 +178,7 @@ impl Guard {
         tick_s: f32,
         levels: bool,
     ) -> Option<(FifthOrderSample, Heading)> {
-        if self.supervisor.reference_failed(now, levels).action != Action::Brake {
+        if self.supervisor.reference_failed(now, levels).action != Action::Brake || !levels {
             return None;
         }
         let braking = self.braking.insert(Braking::begin(&rescue.looked(), now));

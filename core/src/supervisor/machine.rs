@@ -146,6 +146,8 @@ pub struct Supervisor {
     /// Since when.
     since: Tick,
     overruns_in_a_row: u32,
+    /// Since when motors have been at their limits, which is nothing wrong for a while.
+    saturated: Option<Tick>,
     /// Since when each has been so; all none while nothing is wrong, which is what [`Self::is_watching`] says.
     watched: Watched,
     is_watching: bool,
@@ -156,18 +158,23 @@ struct Watched {
     tilted: Option<Tick>,
     upside_down: Option<Tick>,
     stuck: Option<Tick>,
-    saturated: Option<Tick>,
     battery_low: Option<Tick>,
     well: Option<Tick>,
 }
 
-const NOTHING: Watched =
-    Watched { tilted: None, upside_down: None, stuck: None, saturated: None, battery_low: None, well: None };
+const NOTHING: Watched = Watched { tilted: None, upside_down: None, stuck: None, battery_low: None, well: None };
 
 impl Supervisor {
     /// On the ground.
     pub const fn new() -> Self {
-        Self { mode: Mode::OnGround, since: 0, overruns_in_a_row: 0, watched: NOTHING, is_watching: false }
+        Self {
+            mode: Mode::OnGround,
+            since: 0,
+            overruns_in_a_row: 0,
+            saturated: None,
+            watched: NOTHING,
+            is_watching: false,
+        }
     }
 
     /// The mode after the last call.
@@ -234,7 +241,7 @@ impl Supervisor {
     /// Takes what a step sees, before it is taken.
     ///
     /// Of several reasons the first in the order of [`Reason`] is named.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, config: &Config, seen: &Conditions) -> Verdict {
         if self.mode == Mode::Flying
             && !self.is_watching
@@ -242,7 +249,8 @@ impl Supervisor {
             && seen.fault.is_none()
             && seen.soundness == Soundness::Sound
             && seen.reference == ReferenceReport::Sound
-            && !seen.limited
+            && !seen.limited_thrust
+            && self.is_limited_briefly(seen, config)
             && seen.upright >= UPRIGHT_LEAST
             && within(seen.link_silence_ticks, config.link_silence_max_ticks)
             && config.geofence.is_none()
@@ -251,6 +259,12 @@ impl Supervisor {
             return Verdict { mode: Mode::Flying, action: Action::Fly, stopped: false };
         }
         self.look_closely(config, seen)
+    }
+
+    /// Notes since when motors have been at their limits; whether that is not too long yet.
+    #[inline(always)]
+    fn is_limited_briefly(&mut self, seen: &Conditions, config: &Config) -> bool {
+        !has_lasted(&mut self.saturated, seen.limited, seen.now, config.saturation_max_ticks)
     }
 
     #[cold]
@@ -278,7 +292,7 @@ impl Supervisor {
             (self.mode, self.since) = (next, now);
             self.watched.well = None;
             if !next.is_in_air() {
-                self.watched = NOTHING;
+                (self.watched, self.saturated) = (NOTHING, None);
             }
         }
         self.is_watching = self.watched != NOTHING || self.overruns_in_a_row > 0;
@@ -332,7 +346,7 @@ impl Supervisor {
             return Mode::Stopped(reason);
         }
         let is_well = trouble.is_none() && !is_final(reason) && seen.soundness == Soundness::Sound;
-        if has_lasted(&mut self.watched.well, is_well, now, config.recovery_ticks) {
+        if lasted(&mut self.watched.well, is_well, now, config.recovery_ticks) {
             return Mode::Flying;
         }
         // What is going on keeps the reason that it began with.
@@ -353,19 +367,24 @@ impl Supervisor {
     fn trouble(&mut self, config: &Config, seen: &Conditions) -> Option<Reason> {
         let now = seen.now;
         let is_low = seen.battery_v.is_some_and(|volts| volts < config.battery_least_v);
-        let is_empty = has_lasted(&mut self.watched.battery_low, is_low, now, config.battery_low_ticks);
-        let is_saturated = has_lasted(&mut self.watched.saturated, seen.limited, now, config.saturation_max_ticks);
+        let is_empty = lasted(&mut self.watched.battery_low, is_low, now, config.battery_low_ticks);
+        let is_saturated = !self.is_limited_briefly(seen, config);
         let is_outside = config.geofence.is_some_and(|fence| !fence.holds(&seen.position_m));
-        let reasons = [
-            (Reason::StateLost, seen.soundness == Soundness::AttitudeOnly),
-            (Reason::LinkLost, !within(seen.link_silence_ticks, config.link_silence_max_ticks)),
-            (Reason::BadReference, seen.reference == ReferenceReport::Bad),
-            (Reason::NoReference, seen.reference == ReferenceReport::Missing),
-            (Reason::Geofence, is_outside),
-            (Reason::Battery, is_empty),
-            (Reason::Saturated, is_saturated),
-        ];
-        reasons.into_iter().find(|(_, is_so)| *is_so).map(|(reason, _)| reason)
+        if seen.soundness == Soundness::AttitudeOnly {
+            Some(Reason::StateLost)
+        } else if !within(seen.link_silence_ticks, config.link_silence_max_ticks) {
+            Some(Reason::LinkLost)
+        } else if seen.reference == ReferenceReport::Bad {
+            Some(Reason::BadReference)
+        } else if seen.reference == ReferenceReport::Missing {
+            Some(Reason::NoReference)
+        } else if is_outside {
+            Some(Reason::Geofence)
+        } else if is_empty {
+            Some(Reason::Battery)
+        } else {
+            is_saturated.then_some(Reason::Saturated)
+        }
     }
 
     /// Whether it flies no more.
@@ -373,10 +392,9 @@ impl Supervisor {
         let (now, v) = (seen.now, &seen.velocity_m_s);
         let is_at_rest = v.dot(v) < AT_REST_M2_S2 && seen.soundness == Soundness::Sound;
         let watched = &mut self.watched;
-        let is_tilted = has_lasted(&mut watched.tilted, seen.upright < UPRIGHT_LEAST, now, config.tilt_max_ticks);
-        let is_down = has_lasted(&mut watched.upside_down, seen.upright < 0.0, now, config.upside_down_max_ticks);
-        let is_stuck =
-            has_lasted(&mut watched.stuck, seen.limited_thrust && is_at_rest, now, config.no_climb_max_ticks);
+        let is_tilted = lasted(&mut watched.tilted, seen.upright < UPRIGHT_LEAST, now, config.tilt_max_ticks);
+        let is_down = lasted(&mut watched.upside_down, seen.upright < 0.0, now, config.upside_down_max_ticks);
+        let is_stuck = lasted(&mut watched.stuck, seen.limited_thrust && is_at_rest, now, config.no_climb_max_ticks);
         if is_down {
             Some(Tumble::UpsideDown)
         } else if is_tilted {
@@ -399,6 +417,12 @@ const fn is_final(reason: Reason) -> bool {
 }
 
 /// Notes since when something is so, and whether that is longer than allowed.
+#[inline(never)]
+fn lasted(since: &mut Option<Tick>, is_so: bool, now: Tick, most: Tick) -> bool {
+    has_lasted(since, is_so, now, most)
+}
+
+#[inline(always)]
 fn has_lasted(since: &mut Option<Tick>, is_so: bool, now: Tick, most: Tick) -> bool {
     *since = if is_so { Some(since.unwrap_or(now)) } else { None };
     since.is_some_and(|since| now.wrapping_sub(since) > most)

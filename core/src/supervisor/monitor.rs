@@ -55,6 +55,8 @@ const NORM_SQUARED_NEAR: [f32; 2] = [0.98, 1.02];
 const FORCE_MAX_M_S2: f32 = 157.0;
 /// Change of a body rate from which on the gyroscope moves, rad/s: one step of its output at 2000 degrees a second.
 const MOVED_RAD_S: f32 = 1e-3;
+/// How long an estimate may stay the same before anybody looks whether it stands still, ticks: three periods of 100 Hz.
+const QUIET_TICKS: Tick = 30;
 /// Drag over mass that bridges a velocity where there is no accelerometer, 1/s.
 const DRAG_PER_S: f32 = 0.4;
 /// Longest step of the bridge, s.
@@ -160,7 +162,7 @@ impl Monitor {
     }
 
     /// Looks at what a step is given.
-    #[inline]
+    #[inline(always)]
     pub fn look<'a>(&'a mut self, config: &MonitorConfig, sample: &Sample<'a>) -> Looked<'a> {
         let rates = sample.body_rates_rad_s.unwrap_or(&NO_RATES);
         if let Some(state) = sample.state
@@ -168,10 +170,15 @@ impl Monitor {
             && self.is_known
             && is_attitude(state.attitude, NORM_SQUARED_NEAR)
             && is_place(state, config)
-            && *state != self.given
             && (sample.body_rates_rad_s.is_none() || is_turning(rates, config) && *rates != self.rates)
         {
-            (self.given, self.rates, self.at) = (*state, *rates, sample.now);
+            // An estimate that comes more rarely than steps is the same in between.
+            if !is_same(state, &self.given) || sample.body_rates_rad_s.is_none() {
+                (self.given, self.at) = (*state, sample.now);
+            } else if sample.now.wrapping_sub(self.at) > QUIET_TICKS {
+                return self.look_closely(config, sample);
+            }
+            self.rates = *rates;
             let soundness = Soundness::Sound;
             return Looked { soundness, state, body_rates_rad_s: rates, velocity_bridged_ticks: None };
         }
@@ -275,6 +282,7 @@ impl Default for Monitor {
 
 impl Bridge {
     /// Carries the state on by what is felt.
+    #[inline(never)]
     fn carry(&mut self, sample: &Sample<'_>, step_s: f32) {
         let State { position_m, attitude, velocity_m_s } = self.state;
         let is_felt = |f: &&Vector3<f32>| f.dot(f) <= FORCE_MAX_M_S2 * FORCE_MAX_M_S2;
@@ -296,6 +304,7 @@ impl Bridge {
     }
 
     /// Makes body rates of the difference of two attitudes.
+    #[inline(never)]
     fn differ(&mut self, before: Quaternion, after: Quaternion, step_s: f32) {
         let turn = before.conjugate() * after;
         let scale = if turn.w < 0.0 { -2.0 } else { 2.0 };
@@ -305,6 +314,7 @@ impl Bridge {
         }
     }
 
+    #[inline(never)]
     fn soundness(&self, is_known: bool, config: &MonitorConfig, now: Tick) -> Soundness {
         let longer = |from: Option<Tick>, most: Tick| from.is_some_and(|from| now.wrapping_sub(from) > most);
         if !is_known || longer(self.attitude, config.attitude_ticks) {
@@ -352,12 +362,15 @@ fn is_turning(w: &Vector3<f32>, config: &MonitorConfig) -> bool {
 }
 
 /// Whether two estimates have the same bits; what is no number is the same as itself.
+#[inline(always)]
 fn is_same(a: &State, b: &State) -> bool {
-    let bits = |s: &State| {
-        let (p, q, v) = (&s.position_m, &s.attitude, &s.velocity_m_s);
-        [p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z].map(f32::to_bits)
-    };
-    bits(a) == bits(b)
+    let differ = |a: f32, b: f32| a.to_bits() ^ b.to_bits();
+    let (p, q, v) = (&a.position_m, &a.attitude, &a.velocity_m_s);
+    let (o, r, u) = (&b.position_m, &b.attitude, &b.velocity_m_s);
+    let place = differ(p.x, o.x) | differ(p.y, o.y) | differ(p.z, o.z);
+    let attitude = differ(q.w, r.w) | differ(q.x, r.x) | differ(q.y, r.y) | differ(q.z, r.z);
+    let velocity = differ(v.x, u.x) | differ(v.y, u.y) | differ(v.z, u.z);
+    (place | attitude | velocity) == 0
 }
 
 /// An attitude as the laws take it: as it is where its norm is near 1, else scaled.
@@ -365,6 +378,7 @@ fn as_attitude(q: Quaternion) -> Option<Quaternion> {
     if is_attitude(q, NORM_SQUARED_NEAR) { Some(q) } else { normalised(q) }
 }
 
+#[inline(never)]
 fn normalised(q: Quaternion) -> Option<Quaternion> {
     is_attitude(q, NORM_SQUARED).then(|| q.scaled(1.0 / sqrt(q.dot(q))))
 }

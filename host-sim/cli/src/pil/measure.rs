@@ -252,7 +252,8 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<InstructionReport, PilE
             if !is_same {
                 return Err(PilError::Answer(format!("{name}, step {step}: another command than the host's")));
             }
-            if controller.is_some() {
+            // The first one takes off: it looks at more, once.
+            if controller.is_some() && step > 0 {
                 tick.add([of_tick; 3], 1);
             }
         }
