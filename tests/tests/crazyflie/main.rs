@@ -9,3 +9,4 @@ mod setpoints;
 mod stream;
 mod survival;
 mod tables;
+mod uploads;

@@ -9,8 +9,10 @@ use quatrack_design::vehicle::Vehicle;
 use quatrack_simulation::scenario::file::{Air, Estimator, OwnAir, ScenarioFile};
 use quatrack_simulation::scenario::flight::Setpoints;
 use quatrack_simulation::scenario::{Law, Scenario};
+use quatrack_simulation::vehicles;
 
 use super::Failure;
+use super::names::did_you_mean;
 use values::{List, estimator, from_here, law, over, over_list, setpoints};
 
 /// A scenario by file and flags; a flag goes before the file.
@@ -182,7 +184,11 @@ impl ScenarioArgs {
             (false, true) => name,
             (false, false) => format!("{name} with flags"),
         };
-        Scenario::checked(&file, &origin, folder).map_err(Failure::input)
+        Scenario::checked(&file, &origin, folder).map_err(|error| {
+            let is_unknown = !file.vehicle.ends_with(".toml") && vehicles::by_name(&file.vehicle).is_err();
+            let alike = if is_unknown { did_you_mean(&file.vehicle, vehicles::names()) } else { String::new() };
+            Failure::input(format!("{error}{alike}"))
+        })
     }
 
     fn put_over(&self, file: &mut ScenarioFile) {

@@ -158,7 +158,7 @@ fn a_plan_ends_in_its_time_and_never_reads_on_for_ever() {
 
 #[test]
 fn names_that_are_nearly_right_are_asked_about() {
-    let (_, _, stderr) = texts(&quatrack(&["robustness", "--vehicle", "crazyfly-2.1"]));
+    let (_, _, stderr) = texts(&quatrack(&["fly", "--vehicle", "crazyfly-2.1"]));
     assert!(stderr.contains("did you mean crazyflie-2.1?"), "{stderr}");
     let (_, _, stderr) = texts(&quatrack(&["fly", "--vehicle", "crazyflie-2.1", "--law", "melinger"]));
     assert!(stderr.contains("did you mean mellinger?"), "{stderr}");

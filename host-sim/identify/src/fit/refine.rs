@@ -255,12 +255,12 @@ fn total(
                 let mut own =
                     Block { flight: one.flight, matrix: DMatrix::zeros(count, count), score: DVector::zeros(count) };
                 let mut line = vec![0.0; active.len()];
-                for i in from..to {
+                for (i, row) in rows.iter().enumerate().take(to).skip(from) {
                     for (line, j) in line.iter_mut().zip(&active) {
-                        *line = changed[*j].as_ref().map_or(0.0, |there| (there.rows[s][k][i] - rows[i]) / 0.02);
+                        *line = changed[*j].as_ref().map_or(0.0, |there| (there.rows[s][k][i] - row) / 0.02);
                     }
                     for (a, j) in active.iter().enumerate() {
-                        own.score[*j] -= weights[k] * line[a] * rows[i];
+                        own.score[*j] -= weights[k] * line[a] * row;
                         for (b, l) in active.iter().enumerate().take(a + 1) {
                             own.matrix[(*j, *l)] += weights[k] * line[a] * line[b];
                         }

@@ -235,11 +235,11 @@ fn score(grid: &Grid, reading: &Reading, acceleration: &[Vec<f64>; 2]) -> f64 {
     let felt: Vec<Vector3<f64>> = attitude.iter().zip(&grid.specific_force).map(|(q, f)| q * f).collect();
     let good: Vec<usize> = (0..grid.len()).filter(|i| grid.pose[*i] && grid.on_board[*i]).collect();
     let mut total = good.iter().map(|i| felt[*i].z / felt[*i].norm().max(1e-9)).sum::<f64>() / good.len().max(1) as f64;
-    for axis in 0..2 {
+    for (axis, acceleration) in acceleration.iter().enumerate() {
         let sign = if axis == 1 { reading.gyro_y } else { 1.0 };
         let own: Vec<f64> = low.both_ways(&channel(&grid.gyro, axis)).into_iter().map(|w| sign * w).collect();
         total += correlation(&good, &own, &low.both_ways(&channel(&turning, axis)));
-        total += correlation(&good, &low.both_ways(&channel(&felt, axis)), &acceleration[axis]);
+        total += correlation(&good, &low.both_ways(&channel(&felt, axis)), acceleration);
     }
     total
 }

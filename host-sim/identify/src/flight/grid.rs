@@ -231,10 +231,12 @@ impl Grid {
 fn attitude_stream(stream: Stream, map: &ColumnMap) -> Stream {
     let Stream { times_s, channels } = stream;
     let angle = map.attitude.unit.as_deref().map_or(1_f64.to_radians(), si);
-    let mut out = vec![Vec::with_capacity(times_s.len()); 4];
+    let mut out = vec![Vec::new(); 4];
     let mut before = Quaternion::identity();
-    for i in 0..times_s.len() {
-        let value = |k: usize| channels[k][i];
+    let mut rows: Vec<_> = channels.iter().map(|channel| channel.iter().copied()).collect();
+    for _ in &times_s {
+        let row: Vec<f64> = rows.iter_mut().filter_map(Iterator::next).collect();
+        let value = |k: usize| row[k];
         let mut q = match map.attitude.form.as_str() {
             "xyzw" => Quaternion::new(value(3), value(0), value(1), value(2)),
             "wxyz" => Quaternion::new(value(0), value(1), value(2), value(3)),

@@ -1,7 +1,5 @@
 //! What was identified as pictures: prediction against flight, what the torque balance leaves over, the lag curve.
 
-#![allow(clippy::redundant_closure_for_method_calls, reason = "a method of a borrowed figure")]
-
 use std::path::Path;
 
 use nalgebra::Vector3;
@@ -13,6 +11,10 @@ use quatrack_identify::predict::{Errors, Example, Prediction};
 use crate::cli::{Failure, output};
 
 /// Writes prediction, ahead, residuals and lag, each as .svg and .png, to a folder.
+#[expect(
+    clippy::redundant_closure_for_method_calls,
+    reason = "a method's path is for one lifetime, the figure's is any"
+)]
 pub(super) fn write(dir: &Path, report: &Report) -> Result<(), Failure> {
     output::create_dir(dir)?;
     if let Ok(prediction) = &report.prediction {
