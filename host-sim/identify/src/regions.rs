@@ -6,23 +6,30 @@ use serde::Deserialize;
 use crate::fit::{Estimate, Fit};
 
 const DESIGNS: [(&str, &str); 9] = [
-    ("actuator-aware", include_str!("../../../gains/actuator-aware.toml")),
-    ("actuator-aware-63ms", include_str!("../../../gains/actuator-aware-63ms.toml")),
-    ("actuator-aware-20ms", include_str!("../../../gains/actuator-aware-20ms.toml")),
-    ("actuator-aware-kit", include_str!("../../../gains/actuator-aware-kit.toml")),
-    ("actuator-aware-kit-63ms", include_str!("../../../gains/actuator-aware-kit-63ms.toml")),
-    ("actuator-aware-kit-20ms", include_str!("../../../gains/actuator-aware-kit-20ms.toml")),
-    ("actuator-aware-brushless", include_str!("../../../gains/actuator-aware-brushless.toml")),
-    ("actuator-brushless-63ms", include_str!("../../../gains/actuator-brushless-63ms.toml")),
-    ("actuator-brushless-20ms", include_str!("../../../gains/actuator-brushless-20ms.toml")),
+    ("cascade-100ms", include_str!("../../../gains/cascade-100ms.toml")),
+    ("cascade-20ms", include_str!("../../../gains/cascade-20ms.toml")),
+    ("cascade-63ms", include_str!("../../../gains/cascade-63ms.toml")),
+    ("cascade-brushless-110ms", include_str!("../../../gains/cascade-brushless-110ms.toml")),
+    ("cascade-brushless-20ms", include_str!("../../../gains/cascade-brushless-20ms.toml")),
+    ("cascade-brushless-50ms", include_str!("../../../gains/cascade-brushless-50ms.toml")),
+    ("cascade-kit-100ms", include_str!("../../../gains/cascade-kit-100ms.toml")),
+    ("cascade-kit-20ms", include_str!("../../../gains/cascade-kit-20ms.toml")),
+    ("cascade-kit-63ms", include_str!("../../../gains/cascade-kit-63ms.toml")),
 ];
 
 /// What of a design is needed here.
 #[derive(Deserialize)]
 struct Design {
     vehicle: String,
-    method: String,
+    air: AirEntry,
     region: Option<RegionEntry>,
+}
+
+/// The air that the law is told, and which share of the identified one that is.
+#[derive(Deserialize)]
+struct AirEntry {
+    moment_n_m_per_m_s: [f64; 2],
+    share_of_identified: f64,
 }
 
 #[derive(Deserialize)]
@@ -38,9 +45,8 @@ struct RegionEntry {
     moment_n_m_per_m_s: Option<[f64; 2]>,
 }
 
-/// Without a figure of its own, a cascade is certified up to this much of the vehicle's identified moment, and up to this drag, 1/s.
+/// Without a figure of its own, a table is certified up to this much of the moment that was identified.
 const CASCADE_MOMENT: f64 = 1.2;
-const CASCADE_DRAG_PER_S: f64 = 0.6;
 
 /// A built-in table for the craft's vehicle, and what of the craft is outside its region.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,24 +59,16 @@ pub struct Standing {
     pub unknown: Vec<&'static str>,
 }
 
-/// Of every built-in table for motor forces whose design is for a vehicle.
+/// Of every built-in table of the cascade whose design is for a vehicle.
 pub(crate) fn standings(vehicle: &Vehicle, fit: &Fit) -> Vec<Standing> {
     let mut standings = Vec::new();
     for (table, text) in DESIGNS {
-        let Ok(Design { vehicle: designed_for, method, region: Some(mut region) }) = toml::from_str(text) else {
+        let Ok(Design { vehicle: designed_for, air, region: Some(mut region) }) = toml::from_str(text) else {
             continue;
         };
-        // Tables carry shorter names than designs: the kit's.
-        if designed_for == vehicle.name()
-            || (vehicle.name().ends_with("upgrade") && designed_for.starts_with(vehicle.name()))
-        {
-            if method == "cascade" {
-                let air = vehicle.flown().air;
-                region.drag_per_s = region.drag_per_s.or(Some(CASCADE_DRAG_PER_S));
-                region.moment_n_m_per_m_s = region
-                    .moment_n_m_per_m_s
-                    .or(air.map(|air| air.moment_n_m_per_m_s.map(|moment| CASCADE_MOMENT * moment)));
-            }
+        if designed_for == vehicle.name() {
+            let told = air.moment_n_m_per_m_s.map(|moment| CASCADE_MOMENT * moment / air.share_of_identified);
+            region.moment_n_m_per_m_s = region.moment_n_m_per_m_s.or(Some(told));
             standings.push(standing(table, &region, vehicle, fit));
         }
     }
@@ -95,12 +93,12 @@ fn standing(table: &'static str, region: &RegionEntry, vehicle: &Vehicle, fit: &
     {
         Some(Ok(Estimate { value, low, high })) => {
             if *low < least || *high > most {
+                let from = if least.is_finite() { format!("from {:.4} ", scale * least) } else { String::new() };
                 standing.outside.push(format!(
-                    "{name} {:.4} ({:.4} to {:.4}) {unit}, the region is {:.4} to {:.4}",
+                    "{name} {:.4} ({:.4} to {:.4}) {unit}, the region goes {from}to {:.4}",
                     scale * value,
                     scale * low,
                     scale * high,
-                    scale * least,
                     scale * most
                 ));
             }
