@@ -96,6 +96,23 @@ pub(super) struct Weights {
     pub(super) q3_rate_input: Option<f64>,
 }
 
+impl Weights {
+    /// The first key that is given and that only a model without motors has.
+    pub(super) fn of_the_paper_alone(&self) -> Option<&'static str> {
+        let keys = [
+            ("attitude", self.attitude.is_some()),
+            ("acceleration", self.acceleration.is_some()),
+            ("q3", self.q3.is_some()),
+            ("thrust_input", self.thrust_input.is_some()),
+            ("body_rate_input", self.body_rate_input.is_some()),
+            ("acceleration_input", self.acceleration_input.is_some()),
+            ("jerk_input", self.jerk_input.is_some()),
+            ("q3_rate_input", self.q3_rate_input.is_some()),
+        ];
+        keys.into_iter().find(|(_, given)| *given).map(|(key, _)| key)
+    }
+}
+
 /// Limits tighter than the vehicle's.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -49,17 +49,7 @@ pub(super) fn actuator_aware(file: &DesignFile, weights: &Weights) -> Result<Pro
         region.delay_ms,
         format!("from 0 to {LONGEST_DELAY_MS}"),
     )?;
-    let foreign: [(&str, bool); 8] = [
-        ("attitude", weights.attitude.is_some()),
-        ("acceleration", weights.acceleration.is_some()),
-        ("q3", weights.q3.is_some()),
-        ("thrust_input", weights.thrust_input.is_some()),
-        ("body_rate_input", weights.body_rate_input.is_some()),
-        ("acceleration_input", weights.acceleration_input.is_some()),
-        ("jerk_input", weights.jerk_input.is_some()),
-        ("q3_rate_input", weights.q3_rate_input.is_some()),
-    ];
-    if let Some((key, _)) = foreign.iter().find(|(_, given)| *given) {
+    if let Some(key) = weights.of_the_paper_alone() {
         return Err(misplaced(&format!("weights.{key}"), &"...", here));
     }
     let group = |key: &str, value: Option<[f64; 3]>| {

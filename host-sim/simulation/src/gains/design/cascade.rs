@@ -133,18 +133,8 @@ fn bounds(region: &RegionEntry, air: &CascadeAir) -> Result<CascadeBounds, Gains
 /// The standard ones with what is written.
 fn weights(weights: Option<&Weights>, here: &dyn ToString) -> Result<CascadeWeights, GainsError> {
     let Some(weights) = weights else { return Ok(CascadeWeights::STANDARD) };
-    let foreign: [(&str, bool); 9] = [
-        ("attitude", weights.attitude.is_some()),
-        ("acceleration", weights.acceleration.is_some()),
-        ("q3", weights.q3.is_some()),
-        ("position_integral", weights.position_integral.is_some()),
-        ("thrust_input", weights.thrust_input.is_some()),
-        ("body_rate_input", weights.body_rate_input.is_some()),
-        ("acceleration_input", weights.acceleration_input.is_some()),
-        ("jerk_input", weights.jerk_input.is_some()),
-        ("q3_rate_input", weights.q3_rate_input.is_some()),
-    ];
-    if let Some((key, _)) = foreign.iter().find(|(_, given)| *given) {
+    let integral = weights.position_integral.map(|_| "position_integral");
+    if let Some(key) = weights.of_the_paper_alone().or(integral) {
         return Err(misplaced(&format!("weights.{key}"), &"...", here));
     }
     let group = |key: &str, value: Option<[f64; 3]>, standard: [f64; 3]| {
