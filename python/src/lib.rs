@@ -47,6 +47,8 @@ mod vehicle;
 /// What Python imports; the package `quatrack` names it.
 #[pyo3::pymodule]
 mod _quatrack {
+    use pyo3::prelude::*;
+
     #[pymodule_export]
     use crate::campaign::campaign;
     #[pymodule_export]
@@ -83,4 +85,12 @@ mod _quatrack {
     /// Version of the workspace.
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+    /// Looks up NumPy's array interface while the package is imported: an interrupt in the middle of that, at the first call, would be
+    /// a panic.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        drop(numpy::PyArray1::<f64>::zeros(module.py(), 0, false));
+        Ok(())
+    }
 }
