@@ -114,8 +114,8 @@ pub enum AirframeError {
 }
 
 impl Airframe {
-    /// Crazyflie 2.1. The sources of these figures stand in its vehicle file, `gains/vehicles/crazyflie-2.1.toml`, as
-    /// do those of the others in theirs.
+    /// Crazyflie 2.1. Its vehicle file, `gains/vehicles/crazyflie-2.1.toml`, names the sources of these figures; those
+    /// of the others do so, too.
     pub const CRAZYFLIE_2_1: Self = Self::constant(AirframeFigures {
         mass_kg: 0.029,
         inertia_kg_m2: [16.571_71e-6, 16.655_602e-6, 29.261_652e-6],
@@ -145,7 +145,7 @@ impl Airframe {
         torque_per_thrust_m: 0.005_692_788_4,
         force_min_n: 0.021_362_63,
         force_max_n: 0.2,
-        motor_lag_s: 0.066,
+        motor_lag_s: 0.05,
     });
 
     /// Checks the figures of a craft.

@@ -1,6 +1,6 @@
 // actuator-aware-brushless for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design f79a7dd14a28b8eef0614201095b7293e69d0de7719e58eb6a85f42686c2c123
-// Certificate c56866dced1be35982eddfabba964fc6024f702c6d2a560d273bd65ae5b97447
+// Design f92af504b33d1fe0b4415902ddbaf3672f847cddc295ec9e759a42140378d915
+// Certificate 6ccad84f65e8b4f2a1ca1a7b27454bb4da062e0238c59721772bc274c5121b31
 
 /// The default for a Crazyflie 2.1 Brushless: straight to the motors, for any published lag of them.
 #[rustfmt::skip]

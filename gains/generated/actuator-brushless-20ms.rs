@@ -1,6 +1,6 @@
 // actuator-brushless-20ms for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design d0491b82046dac8c7ff05b6139d9f22af7a01039fd748d050258187591f36ffb
-// Certificate 38baf2024ed29186b2cc520b4a2ab4756a9f3d775041dd5629c975facdac6b7b
+// Design e2cce1f55c11c088543cfde962bcb96896a7f9342b91ad88196ecc9681aa0c87
+// Certificate 5ad71c6dc3a1d1931dc1c760fedb890b8fe0f38748c0fa6f921c207e497676ab
 
 /// For a Crazyflie 2.1 Brushless whose motors are known to lag about 20 ms.
 #[rustfmt::skip]

@@ -1,6 +1,6 @@
 // actuator-brushless-63ms for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 9b5931590a79fca9779b9ee3060a1fc8eafd80f35c40eb04002c2a1e0f9ab386
-// Certificate 26c39e65c5ee27c18cbee7a7a1d28f2776ff899b3b9af820e883748066f91002
+// Design 0599442d2d202b91f1177cd3f30f69570e9b77bb052871486f17a28ea9c06ce6
+// Certificate e805bf414df2084914fc6177e91eb3d16f7635fe0a808b2d878c7f3d4a983959
 
 /// For a Crazyflie 2.1 Brushless whose motors are known to lag about 63.5 ms.
 #[rustfmt::skip]

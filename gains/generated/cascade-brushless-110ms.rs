@@ -1,6 +1,6 @@
 // cascade-brushless-110ms for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 732aceff8536daffec7912b8663adb74253092cd8fb649ee7db431b48a4c7d87
-// Certificate d46cc5f1d5c463ec4bd41e51d0897eb0ee1b3c87f68a2e43087b33d54d3c0cd9
+// Design 8cbe437c641299a4cfcf137e0cd454effc47d4dca3087d8f9a13185c47e8628d
+// Certificate f980eb84eca32bda94ee8766f94478c52dac02b9ea2df2864ead3e13a347c326
 
 /// For a Crazyflie 2.1 Brushless whose motors lag by up to 126 ms.
 #[rustfmt::skip]

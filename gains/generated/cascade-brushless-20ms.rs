@@ -1,6 +1,6 @@
 // cascade-brushless-20ms for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 4643ab13c461b5e6ad4d6990b1fd1c0841817b77183e3fa06d27e287abc69cc7
-// Certificate fca9082230cad29946f5d96f78beeadf67c163e5c3101a00fa3423c05f2e0707
+// Design 17e6a4b01ba64d011f58726a486db0e4601e480240727cf361c005774bb43a68
+// Certificate 8570105e929a13688d8614e144a2d84c0a642df0fdcdccb5e20696a12976bdbe
 
 /// For a Crazyflie 2.1 Brushless whose motors are known to lag about 20 ms.
 #[rustfmt::skip]

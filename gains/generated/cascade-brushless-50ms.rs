@@ -1,6 +1,6 @@
 // cascade-brushless-50ms for crazyflie-2.1-brushless at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design 359b6a991b891efdf54d353d0ecec0404c6c752b12e60e7a85d8a629d11e869d
-// Certificate 10de08a7b676a480ea14532a62b46b63a9daf9b5152075d9d07fe2c5f460e584
+// Design fc5f135255f992bb0b6f6e2b91a175f0abc9d7cc5a9b9f68ba9001482529bac7
+// Certificate 3c9ea5097efae66d94127d92df33a369b7263ab417e4447b7fbb83ad39ce5971
 
 /// The default for a Crazyflie 2.1 Brushless.
 #[rustfmt::skip]

@@ -11,7 +11,7 @@ use crate::gains::table::{BuiltInCascade, CascadeRange, CascadeTable, Margins, N
 /// For a Crazyflie 2.1 Brushless whose motors are known to lag about 20 ms.
 /// From `gains/cascade-brushless-20ms.toml`.
 pub const BRUSHLESS_20_MS: BuiltInCascade = BuiltInCascade {
-    vehicle: Vehicle { name: Name::literal("crazyflie-2.1-brushless"), id: 0x9d0c0d9b },
+    vehicle: Vehicle { name: Name::literal("crazyflie-2.1-brushless"), id: 0xef3a0847 },
     table: CascadeTable {
         gains: CascadeGains::table([0.31218943, 0.14101066, 0.2553912, -0.21327254, -0.101396486, 0.18415067, 0.015704136, 0.9242351, 0.21375038, 0.10205452, 0.18657702, 0.016106745, 0.8815099, 0.011146897, 0.007981466, 0.05982313]),
         motor_lag_s: 0.02,
@@ -40,7 +40,7 @@ pub const BRUSHLESS_20_MS: BuiltInCascade = BuiltInCascade {
 /// The default for a Crazyflie 2.1 Brushless.
 /// From `gains/cascade-brushless-50ms.toml`.
 pub const BRUSHLESS_50_MS: BuiltInCascade = BuiltInCascade {
-    vehicle: Vehicle { name: Name::literal("crazyflie-2.1-brushless"), id: 0x9d0c0d9b },
+    vehicle: Vehicle { name: Name::literal("crazyflie-2.1-brushless"), id: 0xef3a0847 },
     table: CascadeTable {
         gains: CascadeGains::table([0.3125298, 0.14812583, 0.58468807, -0.2146692, -0.105255775, 0.20049259, 0.018660415, 1.998529, 0.21501802, 0.10595838, 0.20338172, 0.019181836, 1.9205307, 0.011147015, 0.008298051, 0.14903374]),
         motor_lag_s: 0.05,
@@ -69,7 +69,7 @@ pub const BRUSHLESS_50_MS: BuiltInCascade = BuiltInCascade {
 /// For a Crazyflie 2.1 Brushless whose motors lag by up to 126 ms.
 /// From `gains/cascade-brushless-110ms.toml`.
 pub const BRUSHLESS_110_MS: BuiltInCascade = BuiltInCascade {
-    vehicle: Vehicle { name: Name::literal("crazyflie-2.1-brushless"), id: 0x9d0c0d9b },
+    vehicle: Vehicle { name: Name::literal("crazyflie-2.1-brushless"), id: 0xef3a0847 },
     table: CascadeTable {
         gains: CascadeGains::table([0.31295496, 0.15935202, 1.138438, -0.21527366, -0.11194423, 0.24329314, 0.026600828, 4.0994744, 0.21557237, 0.11269411, 0.24667174, 0.02730376, 3.9525213, 0.011147342, 0.008888471, 0.3246608]),
         motor_lag_s: 0.11,

@@ -7,7 +7,7 @@ use quatrack_design::vehicle::Vehicle;
 use crate::fit::{Estimate, Fit};
 
 /// Longest name of a vehicle in a gain table, bytes.
-const LONGEST_NAME: usize = 24;
+const LONGEST_NAME: usize = 31;
 
 /// TOML that `quatrack gains design` and `--vehicle` take.
 pub fn vehicle_toml(fit: &Fit, vehicle: &Vehicle, logs: &[String]) -> String {
@@ -173,6 +173,7 @@ mod tests {
         let texts = [0.067, -12.345_678, 3.8e-4, 1.656_12e-5, 0.0, 4.0].map(figure);
         assert_eq!(texts, ["0.067000", "-12.346", "3.8000e-4", "1.6561e-5", "0.0", "4.0000"]);
         assert!(texts.iter().all(|text| toml::from_str::<toml::Table>(&format!("x = {text}")).is_ok()));
-        assert_eq!(name("crazyflie-2.1-brushl-45g").len(), LONGEST_NAME);
+        assert_eq!(name("crazyflie-2.1-brushless-45g"), "crazyflie-2.1-brushless-45g-own");
+        assert_eq!(name("a-name-of-more-letters-than-a-table-holds").len(), LONGEST_NAME);
     }
 }

@@ -6,7 +6,7 @@ use quatrack_simulation::scenario::file::ScenarioFile;
 use quatrack_simulation::scenario::{Law, Scenario};
 
 /// Drag, airflow moment, rise and fall of the motors and delay as identified (arXiv 2512.14450), mass told, nothing else.
-const BRUSHLESS: &str = "vehicle = \"crazyflie-2.1-brushless-guards-decks\"\nCOURSE\n[air]\ndrag_per_s = [0.447, 0.435, 0.45]\n\
+const BRUSHLESS: &str = "vehicle = \"crazyflie-2.1-brushless-45g\"\nCOURSE\n[air]\ndrag_per_s = [0.447, 0.435, 0.45]\n\
     moment_n_m_per_m_s = [7.0e-4, 9.1e-4]\n[errors]\nlag_rise_ms = 30.0\nlag_fall_ms = 47.0\ndelay_ms = 5.0\n";
 
 /// The same of the brushed craft (arXiv 2603.09908), the motors' lag told.

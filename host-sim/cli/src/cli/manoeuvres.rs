@@ -1,34 +1,29 @@
-//! `quatrack manoeuvres`: a vehicle and its motors' lag in; what flights beyond the linear range come to, and figures of
-//! them, out.
+//! `quatrack manoeuvres`: a vehicle and its conditions in; what flights beyond the linear range come to, law by law, and figures
+//! of them, out.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use quatrack::{Equilibrium, FeedForward, gains};
 use quatrack_cli::figures::{Curve, TrackingFigure};
-use quatrack_design::certify::Region;
-use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
-use quatrack_simulation::flight::manoeuvres::{Manoeuvre, Outcome};
-use quatrack_simulation::flight::motor_laws::{AwareTable, CraftLaw, FlightError, default_lag_s};
 use quatrack_simulation::flight::rigid_loop::RigidFlight;
-use quatrack_simulation::flight::robustness;
+use quatrack_simulation::scenario::manoeuvres::{Manoeuvre, Outcome};
+use quatrack_simulation::scenario::{Law, Scenario};
 use serde::Serialize;
 
-use super::vehicle::VehicleChoice;
+use super::scenario::ScenarioArgs;
 use super::{Failure, output};
 
-/// Flies take-off, landing, a step of 1 m, a shove of half a metre, a gust and a start upside down with the vehicle's default
-/// actuator-aware table, and an eight at 2.1 m/s with that table and with the paper's LQR-E behind the core's body-rate
-/// loop. The f32 core runs at 500 Hz against a rigid body with lagging motors that saturate.
+/// What flies them where no law is named: ours, the stock controller's, what came before ours, and the paper's.
+const LAWS: [Law; 4] = [Law::Quatrack, Law::Mellinger, Law::ActuatorAware, Law::LqrE];
+
+/// Flies take-off, landing, a step of 1 m, a shove of half a metre, a gust as strong as the weight and a start upside down, each
+/// by quatrack, mellinger, actuator-aware and lqr-e, or by --law: on the vehicle in its own air where its file knows it, or under
+/// the conditions of --scenario and its flags. Course and start of a scenario are not flown.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A built-in vehicle, or a TOML file.
-    #[arg(long, value_name = "VEHICLE", default_value = "crazyflie-2.1")]
-    vehicle: VehicleChoice,
-    /// Time constant of the motors, ms; by default the vehicle's own.
-    #[arg(long, value_name = "MS", allow_negative_numbers = true)]
-    lag_ms: Option<f64>,
+    #[command(flatten)]
+    scenario: ScenarioArgs,
     /// Folder for figures, created where it is missing.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -40,62 +35,38 @@ pub(crate) struct Args {
 #[derive(Serialize)]
 struct ManoeuvresReport {
     vehicle: String,
-    lag_ms: f64,
+    conditions: String,
     rows: Vec<Row>,
 }
 
 #[derive(Serialize)]
 struct Row {
-    flight: String,
+    flight: &'static str,
     law: &'static str,
     outcome: Outcome,
 }
 
-/// Shortest and longest lag that the core and the plant can step at 500 Hz, ms.
-const LAGS_MS: std::ops::RangeInclusive<f64> = 4.0..=1000.0;
-
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let vehicle = &args.vehicle.0;
-    let lag_ms = args.lag_ms.unwrap_or(1e3 * vehicle.motors().lag_s);
-    if !LAGS_MS.contains(&lag_ms) {
-        let (least, most) = (LAGS_MS.start(), LAGS_MS.end());
-        return Err(Failure::input(format!("--lag-ms {lag_ms}: must be from {least} to {most} ms")));
-    }
-    let lag_s = 1e-3 * lag_ms;
-    let fail = |error: FlightError| Failure::input(error);
-    let table =
-        AwareTable::new(vehicle, default_lag_s(vehicle), &ActuatorAwareWeights::STANDARD, &Region::of_any_crazyflie())
-            .map_err(fail)?;
-    let mut report = ManoeuvresReport { vehicle: vehicle.name().to_owned(), lag_ms, rows: Vec::new() };
+    let scenario = args.scenario.checked_in_own_air("crazyflie-2.1")?;
+    let laws = args.scenario.law.map_or_else(|| LAWS.to_vec(), |law| vec![law]);
+    let conditions = scenario.conditions().to_string();
+    let mut report = ManoeuvresReport { vehicle: scenario.vehicle.name().to_owned(), conditions, rows: Vec::new() };
     let mut figures = Vec::new();
     for manoeuvre in Manoeuvre::ALL {
-        let flight = manoeuvre.fly(vehicle, lag_s, &table).map_err(fail)?;
-        report.rows.push(Row {
-            flight: manoeuvre.name().to_owned(),
-            law: "actuator-aware-robust",
-            outcome: Outcome::of(&flight),
-        });
-        let title = format!("{}: {}, motor lag {lag_ms} ms", vehicle.name(), manoeuvre.title());
-        figures.push((manoeuvre.name(), title, vec![("actuator-aware", flight)]));
+        let flights = fly(manoeuvre, &scenario, &laws)?;
+        report.rows.extend(flights.iter().map(|(law, flight)| Row {
+            flight: manoeuvre.name(),
+            law,
+            outcome: Outcome::of(flight),
+        }));
+        figures.push((manoeuvre, flights));
     }
-    let lqr_e = Equilibrium { feed_forward: FeedForward::With, ..Equilibrium::new(&gains::paper::LQR_E) };
-    let flights = [
-        ("actuator-aware-robust", table.craft_law().map_err(fail)?),
-        ("lqr-e", CraftLaw::by_body_rates(vehicle, lqr_e, lag_s).map_err(fail)?),
-    ];
-    let mut eights = Vec::new();
-    for (law, craft_law) in flights {
-        let flight = robustness::fly_eight(vehicle, &craft_law, lag_s).map_err(fail)?;
-        report.rows.push(Row { flight: "eight".to_owned(), law, outcome: Outcome::of(&flight) });
-        eights.push((law, flight));
-    }
-    let title = format!("{}: eight at 2.1 m/s, motor lag {lag_ms} ms", vehicle.name());
-    figures.push(("eight", title, eights));
     output::print(&table_text(&report))?;
     if let Some(dir) = &args.out {
         output::create_dir(dir)?;
-        for (name, title, flights) in &figures {
-            write_figure(dir, name, title, flights)?;
+        for (manoeuvre, flights) in &figures {
+            let title = format!("{}: {}, {}", report.vehicle, manoeuvre.title(), report.conditions);
+            write_figure(dir, manoeuvre.name(), &title, flights)?;
         }
     }
     if let Some(path) = &args.json {
@@ -105,11 +76,20 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
+fn fly(manoeuvre: Manoeuvre, scenario: &Scenario, laws: &[Law]) -> Result<Vec<(&'static str, RigidFlight)>, Failure> {
+    let flown = |law: &Law| {
+        let mut flying = law.start(&scenario.vehicle, &scenario.told).map_err(Failure::input)?;
+        let flight = manoeuvre.fly(scenario, flying.as_mut()).map_err(Failure::input)?;
+        Ok((law.name(), flight))
+    };
+    laws.iter().map(flown).collect()
+}
+
 fn table_text(report: &ManoeuvresReport) -> String {
     let mut text = format!(
-        "{}, motor lag {} ms\n{:<12} {:<22} {:>9} {:>9} {:>10} {:>8} {:>9} {:>10}\n",
+        "{}: {}\n\n{:<12} {:<16} {:>9} {:>9} {:>10} {:>8} {:>9} {:>10}\n",
         report.vehicle,
-        report.lag_ms,
+        report.conditions,
         "flight",
         "law",
         "most, m",
@@ -124,7 +104,7 @@ fn table_text(report: &ManoeuvresReport) -> String {
         // Writing to a string does not fail.
         let _ = writeln!(
             text,
-            "{flight:<12} {law:<22} {:>9.4} {:>9.4} {settled:>10} {:>8.3} {:>9.1} {:>10}{}",
+            "{flight:<12} {law:<16} {:>9.4} {:>9.4} {settled:>10} {:>8.3} {:>9.1} {:>10}{}",
             outcome.max_error_m,
             outcome.end_error_m,
             outcome.min_z_m,

@@ -16,7 +16,7 @@ use super::names::did_you_mean;
 use values::{List, estimator, from_here, law, over, over_list, setpoints};
 
 /// A scenario by file and flags; a flag goes before the file.
-#[derive(clap::Args)]
+#[derive(Clone, clap::Args)]
 #[command(next_help_heading = "Scenario")]
 pub(crate) struct ScenarioArgs {
     /// The scenario (TOML): a craft, its air, what is wrong with what is known of it, a course and a law.
@@ -156,6 +156,29 @@ impl ScenarioArgs {
     /// What the file or a flag says without sense, in one line.
     pub(super) fn checked(&self) -> Result<Scenario, Failure> {
         self.checked_for(None)
+    }
+
+    /// The scenario; without a file or a vehicle that of a vehicle, and without a file or a word of the air in the vehicle's own air
+    /// where its file knows it.
+    ///
+    /// # Errors
+    /// As [`Self::checked`].
+    pub(super) fn checked_in_own_air(&self, vehicle: &str) -> Result<Scenario, Failure> {
+        let named = self.vehicle.as_deref().unwrap_or(vehicle);
+        if self.scenario.is_some() {
+            return self.checked();
+        }
+        let mut own = self.clone();
+        own.vehicle = Some(named.to_owned());
+        let mut scenario = own.checked()?;
+        let mut file = ScenarioFile::default();
+        self.put_over_air(&mut file.air);
+        if file.air.is_none() && self.air.is_none() && quatrack_simulation::plant::Air::of(&scenario.vehicle).is_some()
+        {
+            own.air = Some("vehicle".to_owned());
+            scenario = own.checked()?;
+        }
+        Ok(scenario)
     }
 
     /// The same for the vehicle of a table where neither file nor flag names one.

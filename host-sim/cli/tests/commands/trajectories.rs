@@ -165,7 +165,7 @@ fn names_that_are_nearly_right_are_asked_about() {
     let (_, _, stderr) = texts(&quatrack(&["export", "--format", "json", "--design", "lqre"]));
     assert!(stderr.contains("did you mean lqr-e?"), "{stderr}");
     let (_, _, stderr) = texts(&quatrack(&["manoeuvres", "--lag-ms", "-5"]));
-    assert!(stderr.contains("--lag-ms -5: must be from 4 to 1000 ms"), "{stderr}");
+    assert!(stderr.contains("errors.lag_ms = -5: must be from 1 to 1000, in ms"), "{stderr}");
 }
 
 #[test]

@@ -138,43 +138,6 @@ impl FlatTrajectory for RestToRest {
     }
 }
 
-/// From a speed to rest, in the direction of the speed, without a jump up to the jerk: `v0 (1 - S)` with S as in
-/// [`RestToRest`], heading 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Braking {
-    from_m: Vector3<f64>,
-    velocity_m_s: Vector3<f64>,
-    duration_s: f64,
-}
-
-impl Braking {
-    /// From a place and a velocity to rest in `duration_s`, which is positive.
-    pub fn new(from_m: Vector3<f64>, velocity_m_s: Vector3<f64>, duration_s: f64) -> Self {
-        Self { from_m, velocity_m_s, duration_s }
-    }
-}
-
-impl FlatTrajectory for Braking {
-    fn duration_s(&self) -> f64 {
-        self.duration_s
-    }
-
-    fn at(&self, t_s: f64) -> FifthOrder {
-        if t_s >= self.duration_s {
-            return FifthOrder::at_rest(self.from_m + self.velocity_m_s * (0.5 * self.duration_s), 0.0);
-        }
-        let s = t_s / self.duration_s;
-        // 1 - S and its derivatives by s; the way is its integral.
-        let rate = |k: usize| (if k == 0 { 1.0 } else { 0.0 }) - SMOOTH.derivative(Coordinate::X, k, s);
-        let way = s - s.powi(5) * (7.0 - s * (14.0 - s * (10.0 - 2.5 * s)));
-        let position = [0, 1, 2, 3, 4, 5].map(|k: usize| match k {
-            0 => self.from_m + self.velocity_m_s * (way * self.duration_s),
-            _ => self.velocity_m_s * (rate(k - 1) / self.duration_s.powi(k as i32 - 1)),
-        });
-        FifthOrder { position, heading: [0.0; 4] }
-    }
-}
-
 impl FlatTrajectory for PiecewisePolynomial {
     fn duration_s(&self) -> f64 {
         super::Trajectory::duration_s(self)

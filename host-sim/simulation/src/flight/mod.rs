@@ -9,7 +9,7 @@
 //! rigid_loop         a craft with motors under commands at a rate, late and with noise if asked for
 //!   motor_loop       the f32 core down to the motors in the loop
 //!     motor_laws     actuator-aware tables and the paper's laws on a vehicle's motors
-//!       robustness, manoeuvres   the flights they are judged by
+//!       robustness       the flights they are judged by
 //! metrics, log       results of a flight; its rows as CSV
 //! ```
 
@@ -18,7 +18,6 @@ pub mod core_loop;
 pub mod deviation;
 pub mod law;
 pub mod log;
-pub mod manoeuvres;
 pub mod metrics;
 pub mod motor_laws;
 pub mod motor_loop;

@@ -4,6 +4,7 @@
 //! ```text
 //! compare            laws beside each other
 //! varied             one more thing wrong at a time
+//! manoeuvres         take-off, landing, step, shove, gust, start upside down
 //!   checked, checks  a file -> a scenario whose every value has been looked at, or one line that says why not
 //!     whole          the scenario; its flights
 //!       flight       a plant, sensors and a law at 1 kHz
@@ -33,6 +34,7 @@ pub mod filtered;
 pub mod flight;
 mod kept;
 mod laws;
+pub mod manoeuvres;
 mod object_law;
 mod prototype;
 mod recording;

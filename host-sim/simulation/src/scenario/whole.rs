@@ -150,15 +150,19 @@ impl Scenario {
         } else {
             RigidState::at_rest(point.position[0], 0.25 * self.truth.mass_kg * GRAVITY_M_S2)
         };
-        let start = self.start.applied(&start);
+        self.started_at(&self.start.applied(&start))
+    }
+
+    /// The craft at a state, and where its law's estimate comes from.
+    pub(super) fn started_at(&self, start: &RigidState) -> Result<(Plant, Estimation), StartError> {
         let sensors = Sensors::new(self.noise, self.gyro_bias_rad_s, self.accelerometer_bias_m_s2, self.seed);
         let estimation = match self.estimator {
             EstimateFrom::Exact => Estimation::Exact(sensors.into()),
             EstimateFrom::Kalman => {
-                Estimation::Filtered(Filtered::start(&self.filter, sensors, self.noise.position_m, &start)?.into())
+                Estimation::Filtered(Filtered::start(&self.filter, sensors, self.noise.position_m, start)?.into())
             }
         };
-        Ok((self.plant(&start)?, estimation))
+        Ok((self.plant(start)?, estimation))
     }
 
     /// Flies up to four scenarios, each with a law of its own along a track, side by side: every flight has the bits that it has
@@ -240,19 +244,36 @@ impl fmt::Display for CourseChoice {
     }
 }
 
-/// One line that says the conditions.
+/// What a flight is flown in, without its course, as one line.
+pub struct InConditions<'a>(&'a Scenario);
+
+impl Scenario {
+    /// Its conditions for a heading: air, wind, setpoints, noise and estimate.
+    pub fn conditions(&self) -> InConditions<'_> {
+        InConditions(self)
+    }
+}
+
+/// One line that says the course and the conditions.
 impl fmt::Display for Scenario {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.vehicle.name(), self.course)?;
         if let Some(duration_s) = self.duration_s {
             write!(f, ", {duration_s} s")?;
         }
-        let Environment { air, wind, .. } = &self.environment;
+        write!(f, ", {}", self.conditions())
+    }
+}
+
+impl fmt::Display for InConditions<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(scenario) = self;
+        let Environment { air, wind, .. } = &scenario.environment;
         if *air == plant::Air::VACUUM {
-            f.write_str(", in vacuum")?;
+            f.write_str("in vacuum")?;
         } else {
             let ([x, y, z], [c_x, c_y]) = (air.drag_per_s, air.moment_n_m_per_m_s);
-            write!(f, ", drag {x:.3}, {y:.3}, {z:.3} 1/s, moment {:.2}, {:.2} mN m a m/s", 1e3 * c_x, 1e3 * c_y)?;
+            write!(f, "drag {x:.3}, {y:.3}, {z:.3} 1/s, moment {:.2}, {:.2} mN m a m/s", 1e3 * c_x, 1e3 * c_y)?;
         }
         if wind.mean_m_s != Vector3::zeros() {
             write!(f, ", wind {} m/s", wind.mean_m_s.norm())?;
@@ -260,11 +281,11 @@ impl fmt::Display for Scenario {
         if let Some(turbulence) = &wind.turbulence {
             write!(f, ", gusts {} m/s", turbulence.rms_m_s.x)?;
         }
-        let setpoints = if self.setpoints == Setpoints::Exact { "exact setpoints" } else { "setpoints at 100 Hz" };
-        let noise = if self.noise == SensorNoise::default() { "without noise" } else { "with noise" };
+        let setpoints = if scenario.setpoints == Setpoints::Exact { "exact setpoints" } else { "setpoints at 100 Hz" };
+        let noise = if scenario.noise == SensorNoise::default() { "without noise" } else { "with noise" };
         write!(f, ", {setpoints}, {noise}")?;
-        if self.estimator == EstimateFrom::Kalman {
-            let FilterFigures { prediction_hz, drag_per_s, .. } = self.filter;
+        if scenario.estimator == EstimateFrom::Kalman {
+            let FilterFigures { prediction_hz, drag_per_s, .. } = scenario.filter;
             write!(f, ", Kalman filter at {prediction_hz} Hz with drag {drag_per_s} 1/s")?;
         }
         Ok(())

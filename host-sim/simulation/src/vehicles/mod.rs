@@ -13,40 +13,27 @@ use quatrack_design::vehicle::{Vehicle, VehicleError, VehicleFile};
 
 pub use error::VehicleFileError;
 
-/// The built-in vehicles: the name they are asked for by, their own name, which is short enough for a table, and their
-/// file.
-const BUILT_IN: [(&str, &str, &str); 4] = [
-    ("crazyflie-2.1", "crazyflie-2.1", include_str!("../../../../gains/vehicles/crazyflie-2.1.toml")),
-    (
-        "crazyflie-2.1-upgrade-kit",
-        "crazyflie-2.1-upgrade-kit",
-        include_str!("../../../../gains/vehicles/crazyflie-2.1-upgrade-kit.toml"),
-    ),
-    (
-        "crazyflie-2.1-brushless",
-        "crazyflie-2.1-brushless",
-        include_str!("../../../../gains/vehicles/crazyflie-2.1-brushless.toml"),
-    ),
-    (
-        "crazyflie-2.1-brushless-guards-decks",
-        "crazyflie-2.1-brushl-45g",
-        include_str!("../../../../gains/vehicles/crazyflie-2.1-brushless-guards-decks.toml"),
-    ),
+/// The built-in vehicles, each by its own name.
+const BUILT_IN: [(&str, &str); 4] = [
+    ("crazyflie-2.1", include_str!("../../../../gains/vehicles/crazyflie-2.1.toml")),
+    ("crazyflie-2.1-upgrade-kit", include_str!("../../../../gains/vehicles/crazyflie-2.1-upgrade-kit.toml")),
+    ("crazyflie-2.1-brushless", include_str!("../../../../gains/vehicles/crazyflie-2.1-brushless.toml")),
+    ("crazyflie-2.1-brushless-45g", include_str!("../../../../gains/vehicles/crazyflie-2.1-brushless-45g.toml")),
 ];
 
 /// Names of the built-in vehicles.
 pub fn names() -> [&'static str; 4] {
-    BUILT_IN.map(|(name, ..)| name)
+    BUILT_IN.map(|(name, _)| name)
 }
 
-/// A built-in vehicle, by one of [`names`] or by its own name, which is shorter for some.
+/// A built-in vehicle, by one of [`names`].
 ///
 /// # Errors
 /// [`VehicleFileError::Unknown`].
 pub fn by_name(name: &str) -> Result<Vehicle, VehicleFileError> {
-    let (_, _, text) = BUILT_IN
+    let (_, text) = BUILT_IN
         .iter()
-        .find(|(asked, own, _)| *asked == name || *own == name)
+        .find(|(known, _)| *known == name)
         .ok_or_else(|| VehicleFileError::Unknown { name: name.to_owned(), known: names().join(", ") })?;
     from_toml(text)
 }

@@ -4,19 +4,22 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use quatrack_simulation::flight::robustness::CASES;
-use quatrack_simulation::scenario::Law;
+use quatrack_simulation::scenario::{Law, Scenario};
 use serde::Serialize;
 
 use crate::cli::scenario::ScenarioArgs;
-use crate::cli::{Failure, fly, output};
+use crate::cli::{Failure, fly as flights, output};
 
 /// What the figures' file says that it is.
 const SCHEMA: &str = "quatrack/robustness-scenario/1";
 
 #[derive(Serialize)]
-struct Report {
+pub(super) struct Report {
     schema: &'static str,
+    conditions: String,
     rows: Vec<Row>,
+    #[serde(skip)]
+    laws: Vec<Law>,
 }
 
 #[derive(Serialize)]
@@ -30,23 +33,33 @@ struct Row {
     lost: bool,
 }
 
-/// Flies --law, or else every law that takes the vehicle.
+/// Flies a scenario and its cases by --law, or else by every law that takes the vehicle.
 pub(super) fn run(args: &ScenarioArgs, json: Option<&Path>) -> Result<(), Failure> {
-    let scenario = args.checked()?;
-    let trajectory = scenario.course.trajectory().map(fly::trajectory).transpose()?;
+    let report = fly(&args.checked()?, args.law)?;
+    output::print(&report.text())?;
+    if let Some(path) = json {
+        output::write_json(path, &report)?;
+        output::print(&format!("wrote {}\n", path.display()))?;
+    }
+    Ok(())
+}
+
+/// The same for a scenario that has been looked at.
+pub(super) fn fly(scenario: &Scenario, law: Option<Law>) -> Result<Report, Failure> {
+    let trajectory = scenario.course.trajectory().map(flights::trajectory).transpose()?;
     let start = |law: Law| law.start(&scenario.vehicle, &scenario.told);
-    let laws: Vec<Law> = match args.law {
+    let laws: Vec<Law> = match law {
         Some(law) => vec![start(law).map(|_| law).map_err(Failure::input)?],
         None => Law::ALL.into_iter().filter(|law| start(*law).is_ok()).collect(),
     };
-    let mut report = Report { schema: SCHEMA, rows: Vec::new() };
+    let mut rows = Vec::new();
     for case in &CASES {
         let Some(varied) = scenario.varied(case) else { continue };
         let flown = varied.flown(trajectory.clone());
         for law in &laws {
             let mut flying = start(*law).map_err(Failure::input)?;
             let flight = varied.fly(flying.as_mut(), &flown).map_err(Failure::input)?;
-            report.rows.push(Row {
+            rows.push(Row {
                 law: law.name(),
                 case: case.name,
                 iae_m_s: flight.iae_m_s(),
@@ -56,12 +69,14 @@ pub(super) fn run(args: &ScenarioArgs, json: Option<&Path>) -> Result<(), Failur
             });
         }
     }
-    output::print(&format!("{scenario}: position error, m s\n\n{}", table(&report, &laws)))?;
-    if let Some(path) = json {
-        output::write_json(path, &report)?;
-        output::print(&format!("wrote {}\n", path.display()))?;
+    Ok(Report { schema: SCHEMA, conditions: scenario.to_string(), rows, laws })
+}
+
+impl Report {
+    /// Its conditions and its table.
+    pub(super) fn text(&self) -> String {
+        format!("{}: position error, m s\n\n{}", self.conditions, table(self, &self.laws))
     }
-    Ok(())
 }
 
 fn table(report: &Report, laws: &[Law]) -> String {

@@ -20,13 +20,13 @@ use serde_json::Value;
 
 /// A craft of a package, as `fixtures/plants` has it, and the vehicle for which the firmware was built: its arm, its motors'
 /// force and its gains.
-struct Craft {
+pub(super) struct Craft {
     published: Value,
-    built_for: Vehicle,
+    pub(super) built_for: Vehicle,
 }
 
 /// Package, craft, vehicle.
-const CRAFT: [(&str, &str, &str); 5] = [
+pub(super) const CRAFT: [(&str, &str, &str); 5] = [
     ("rotorpy", "crazyflie", "crazyflie-2.1"),
     ("rotorpy", "crazyflie brushless", "crazyflie-2.1-brushless"),
     ("crazyflow", "cf2x_P250", "crazyflie-2.1"),
@@ -39,7 +39,7 @@ fn numbers<const N: usize>(value: &Value) -> [f64; N] {
 }
 
 impl Craft {
-    fn new((package, name, vehicle): (&str, &str, &str)) -> Self {
+    pub(super) fn new((package, name, vehicle): (&str, &str, &str)) -> Self {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/fixtures/plants/{package}.json"));
         let made: Value = serde_json::from_str(&std::fs::read_to_string(path).expect("a fixture")).expect("JSON");
         let plants = made["plants"].as_array().expect("plants");
@@ -47,7 +47,7 @@ impl Craft {
         Self { published, built_for: vehicles::by_name(vehicle).unwrap() }
     }
 
-    fn mass_kg(&self) -> f64 {
+    pub(super) fn mass_kg(&self) -> f64 {
         self.published["mass_kg"].as_f64().expect("a number")
     }
 
@@ -87,14 +87,14 @@ impl Craft {
         if in_air { plant.with_rotor_drag(RotorDrag { across_n_s2_m, along_n_s2_m, lift_n_s2_m2 }) } else { plant }
     }
 
-    fn fly(&self, law: &mut dyn ControlLaw, flown: &Flown, in_air: bool) -> RigidFlight {
+    pub(super) fn fly(&self, law: &mut dyn ControlLaw, flown: &Flown, in_air: bool) -> RigidFlight {
         let mut plant = self.plant(in_air);
         Bench { flown, setpoints: Setpoints::At100Hz, estimation: Estimation::Exact(Sensors::exact().into()) }
             .fly(&mut plant, law)
     }
 
     /// By the estimate of a filter that reckons with a drag, from positions at 100 Hz with 1 mm of noise.
-    fn fly_filtered(&self, law: &mut dyn ControlLaw, flown: &Flown, drag_per_s: f64) -> RigidFlight {
+    pub(super) fn fly_filtered(&self, law: &mut dyn ControlLaw, flown: &Flown, drag_per_s: f64) -> RigidFlight {
         let mut plant = self.plant(true);
         let noise = SensorNoise { position_m: 1e-3, ..SensorNoise::default() };
         let sensors = Sensors::new(noise, Vector3::zeros(), Vector3::zeros(), 1);

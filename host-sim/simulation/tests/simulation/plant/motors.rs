@@ -177,7 +177,7 @@ fn the_built_in_figures_are_those_of_the_flights() {
     let truth = Truth::as_flown(&vehicle());
     assert_eq!((truth.rise_lag_s, truth.fall_lag_s, truth.supply), (0.030, 0.047, Supply::Constant(3.7)));
     // J_r over J_z of arXiv 2512.14450.
-    let decks = vehicles::by_name("crazyflie-2.1-brushless-guards-decks").expect("built in");
+    let decks = vehicles::by_name("crazyflie-2.1-brushless-45g").expect("built in");
     let inertia = Truth::as_flown(&decks).propeller.expect("known").inertia_kg_m2;
     assert!((inertia / decks.inertia_kg_m2().m33 - 1.0e-3).abs() < 1e-12);
     // The brushed one hovers at 80 to 90 % of its command and 3.3 to 3.5 V (arXiv 2603.09908).

@@ -1,31 +1,23 @@
-//! Flights that leave the linear range: take-off, landing, a step, a shove, a start upside down.
+//! Flights that leave the linear range: take-off, landing, a step, a shove, a gust, a start upside down.
 //!
-//! In flow a vehicle, a lag and a table; out flow named flights of the rigid plant under the f32 core at 500 Hz.
-
-use std::cell::Cell;
+//! In go the conditions of a scenario (craft, air, what is wrong, what a law is told) and a law; out comes the flight.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;
-use quatrack_design::vehicle::Vehicle;
-use quatrack_plan::trajectory::fifth_order::{Braking, FifthOrder, FlatTrajectory, Jump, Rest, RestToRest};
+use quatrack_plan::trajectory::fifth_order::{FlatTrajectory, Jump, Rest, RestToRest};
 
-use super::motor_laws::{AwareTable, FlightError, fly};
-use super::motor_loop::{PERIOD_S, STEPS_A_SAMPLE};
-use super::rigid_loop::{Conditions, RigidFlight, fly_rigid};
-use crate::plant::{Craft, Ground, RigidState, Shove};
+use super::course::Flown;
+use super::error::StartError;
+use super::flight::Bench;
+use super::whole::Scenario;
+use crate::control_law::ControlLaw;
+use crate::flight::rigid_loop::RigidFlight;
+use crate::plant::{Ground, RigidState, Shove};
 
 /// Height at which manoeuvres in the air begin, m.
 const HEIGHT_M: f64 = 1.0;
 /// The same for the start upside down, m.
 const RECOVERY_HEIGHT_M: f64 = 15.0;
-/// Acceleration downwards of the reference until the craft is upright, m/s^2: thrust enough to turn by.
-const FALLING_M_S2: f64 = 6.0;
-/// Cosine of the tilt below which a craft counts as upright.
-const UPRIGHT: f64 = 0.95;
-/// Body rates below which it does, rad/s.
-const STILL_RAD_S: f64 = 3.0;
-/// How long it then brakes, s.
-const BRAKING_S: f64 = 3.0;
 
 /// The manoeuvre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +32,7 @@ pub enum Manoeuvre {
     Shove,
     /// A force as large as the weight from the side, for 0.2 s.
     Gust,
-    /// From rest upside down at 15 m: upright first, then to rest in 3 s.
+    /// From rest upside down at 15 m, motors at their least, to where it began.
     UpsideDown,
 }
 
@@ -72,18 +64,30 @@ impl Manoeuvre {
         }
     }
 
-    /// Flies it with a table, on a vehicle whose motors have the lag `lag_s`.
+    /// Flies it with a law under the conditions of a scenario, whose course and start are not looked at, over a floor.
     ///
     /// # Errors
-    /// [`FlightError`] where the core refuses the table's lag.
-    pub fn fly(self, vehicle: &Vehicle, lag_s: f64, table: &AwareTable) -> Result<RigidFlight, FlightError> {
-        let mut craft = Craft::new(vehicle).with_load(Ground::under(vehicle));
-        craft.motors = craft.motors.with_lag(lag_s, lag_s);
+    /// [`StartError`] for figures of the scenario that were changed since they were looked at and have no sense.
+    pub fn fly(self, scenario: &Scenario, law: &mut dyn ControlLaw) -> Result<RigidFlight, StartError> {
+        let mut scenario = scenario.clone();
+        scenario.environment.floor = true;
+        let weight_n = scenario.truth.mass_kg * GRAVITY_M_S2;
+        let (start, course) = self.start_and_course(0.25 * weight_n, scenario.vehicle.motors().thrust_min_n);
+        let (mut plant, estimation) = scenario.started_at(&start)?;
+        if self == Self::Gust {
+            plant = plant.with_load(Shove { from_s: 0.5, to_s: 0.7, force_n: weight_n * Vector3::y() });
+        }
+        let flown = Flown { course, measured_from_s: 0.0 };
+        Ok(Bench { flown: &flown, setpoints: scenario.setpoints, estimation }.fly(&mut plant, law))
+    }
+
+    /// `hover_n` and `least_n` are forces of one motor.
+    fn start_and_course(self, hover_n: f64, least_n: f64) -> (RigidState, Box<dyn FlatTrajectory>) {
         let standing_m = Vector3::new(0.0, 0.0, Ground::standing_height_m());
         let aloft_m = Vector3::new(0.0, 0.0, HEIGHT_M);
-        let hovering = RigidState::at_rest(aloft_m, vehicle.hover_thrust_n());
-        let rest = |position_m, duration_s| Rest { position_m, heading_rad: 0.0, duration_s };
-        let (start, course): (RigidState, Box<dyn FlatTrajectory>) = match self {
+        let hovering = RigidState::at_rest(aloft_m, hover_n);
+        let rest = |position_m, duration_s| Box::new(Rest { position_m, heading_rad: 0.0, duration_s });
+        match self {
             Self::TakeOff => {
                 (RigidState::at_rest(standing_m, 0.0), Box::new(RestToRest::new(standing_m, aloft_m, 2.0, 4.0)))
             }
@@ -94,56 +98,16 @@ impl Manoeuvre {
             }
             Self::Shove => {
                 let aside = RigidState { position_m: aloft_m + 0.5 * Vector3::y(), ..hovering };
-                (aside, Box::new(rest(aloft_m, 5.0)))
+                (aside, rest(aloft_m, 5.0))
             }
-            Self::Gust => {
-                let force_n = vehicle.mass_kg() * GRAVITY_M_S2 * Vector3::y();
-                craft = craft.with_load(Shove { from_s: 0.5, to_s: 0.7, force_n });
-                (hovering, Box::new(rest(aloft_m, 5.0)))
+            Self::Gust => (hovering, rest(aloft_m, 5.0)),
+            Self::UpsideDown => {
+                let high_m = Vector3::new(0.0, 0.0, RECOVERY_HEIGHT_M);
+                let attitude = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
+                (RigidState { attitude, ..RigidState::at_rest(high_m, least_n) }, rest(high_m, 8.0))
             }
-            Self::UpsideDown => return recover(vehicle, &craft, table),
-        };
-        let conditions =
-            Conditions { duration_s: course.duration_s(), steps_a_sample: STEPS_A_SAMPLE, delay_s: 0.0, noise: None };
-        Ok(fly(&table.craft_law()?, &craft, &start, course.as_ref(), &conditions))
+        }
     }
-}
-
-/// From rest upside down: attitude first, then speed.
-///
-/// Until the craft is upright its reference is wherever it is, with little thrust, so that only attitude and body rates are
-/// fed back; then it brakes from the speed that it has to rest.
-fn recover(vehicle: &Vehicle, craft: &Craft, table: &AwareTable) -> Result<RigidFlight, FlightError> {
-    let mut start = RigidState::at_rest(Vector3::new(0.0, 0.0, RECOVERY_HEIGHT_M), vehicle.motors().thrust_min_n);
-    start.attitude = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
-    let law = table.craft_law()?;
-    let mut control = law.started(&start.thrusts_n);
-    let target_m = Cell::new(start.position_m);
-    let mut braking: Option<(u32, Braking)> = None;
-    let conditions = Conditions { duration_s: 6.0, steps_a_sample: STEPS_A_SAMPLE, delay_s: 0.0, noise: None };
-    Ok(fly_rigid(
-        craft,
-        &start,
-        &conditions,
-        |_| target_m.get(),
-        |tick, measured| {
-            let upright = measured.thrust_axis().z > UPRIGHT && measured.body_rates_rad_s.norm() < STILL_RAD_S;
-            if braking.is_none() && upright {
-                braking = Some((tick, Braking::new(measured.position_m, measured.velocity_m_s, BRAKING_S)));
-            }
-            let point = match &braking {
-                Some((since, course)) => course.at(f64::from(tick - since) * PERIOD_S),
-                None => {
-                    let mut point = FifthOrder::at_rest(measured.position_m, 0.0);
-                    point.position[1] = measured.velocity_m_s;
-                    point.position[2] = Vector3::new(0.0, 0.0, -FALLING_M_S2);
-                    point
-                }
-            };
-            target_m.set(point.position[0]);
-            control.as_mut().ok_or("the motors' thrusts are not finite")?.step(measured, &point)
-        },
-    ))
 }
 
 /// The result of a flight.
