@@ -1,11 +1,11 @@
 // cascade-100ms for crazyflie-2.1 at 500 Hz: made by `quatrack gains design` and not edited by hand.
-// Design d538e6303804398b4b2f2e0ae8e7e23bb1990934ad0414c070e336b289bf9995
-// Certificate 26e12e1defc10ad065d928f50e1f4f9d2e08c687f67b40ab09fa8bfda9d483b2
+// Design f8d2e30799d18781cf5636ef48bb167003e77558131b176a07728e43cdcee7fd
+// Certificate e57b35bc4f4e4c1eb601b7ed082a6a1a8bb9a5779dd59540ae81af9463ca84ef
 
 /// The default for a Crazyflie 2.1: for any published lag of its motors.
 #[rustfmt::skip]
 pub static CASCADE_100MS: quatrack::gains::table::CascadeTable = quatrack::gains::table::CascadeTable {
-    gains: quatrack::cascade::CascadeGains::table([0.31222016, 0.14983225, 1.2673048, -0.2136065, -0.104649305, 0.1990894, 0.018505087, 4.4724517, 0.21362759, 0.10468733, 0.19924217, 0.018532433, 4.4630184, 0.011127906, 0.0060562287, 0.4689848]),
+    gains: quatrack::cascade::CascadeGains::table([0.3115765, 0.1845908, 1.4708399, -0.2136065, -0.104649305, 0.1990894, 0.018505087, 4.4724517, 0.21362759, 0.10468733, 0.19924217, 0.018532433, 4.4630184, 0.011127906, 0.0060562287, 0.4689848]),
     motor_lag_s: 0.1,
     air: quatrack::cascade::Air {
         drag_per_s: 0.316,

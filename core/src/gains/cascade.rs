@@ -71,7 +71,7 @@ pub const BRUSHLESS_50_MS: BuiltInCascade = BuiltInCascade {
 pub const BRUSHLESS_110_MS: BuiltInCascade = BuiltInCascade {
     vehicle: Vehicle { name: Name::literal("crazyflie-2.1-brushless"), id: 0xef3a0847 },
     table: CascadeTable {
-        gains: CascadeGains::table([0.31295496, 0.15935202, 1.138438, -0.21527366, -0.11194423, 0.24329314, 0.026600828, 4.0994744, 0.21557237, 0.11269411, 0.24667174, 0.02730376, 3.9525213, 0.011147342, 0.008888471, 0.3246608]),
+        gains: CascadeGains::table([0.38199797, 0.23513117, 1.5053833, -0.21527366, -0.11194423, 0.24329314, 0.026600828, 4.0994744, 0.21557237, 0.11269411, 0.24667174, 0.02730376, 3.9525213, 0.011147342, 0.008888471, 0.3246608]),
         motor_lag_s: 0.11,
         air: Air {
             drag_per_s: 0.353,
@@ -164,7 +164,7 @@ pub const CRAZYFLIE_2_1_63_MS: BuiltInCascade = BuiltInCascade {
 pub const CRAZYFLIE_2_1_100_MS: BuiltInCascade = BuiltInCascade {
     vehicle: Vehicle { name: Name::literal("crazyflie-2.1"), id: 0x89833c06 },
     table: CascadeTable {
-        gains: CascadeGains::table([0.31222016, 0.14983225, 1.2673048, -0.2136065, -0.104649305, 0.1990894, 0.018505087, 4.4724517, 0.21362759, 0.10468733, 0.19924217, 0.018532433, 4.4630184, 0.011127906, 0.0060562287, 0.4689848]),
+        gains: CascadeGains::table([0.3115765, 0.1845908, 1.4708399, -0.2136065, -0.104649305, 0.1990894, 0.018505087, 4.4724517, 0.21362759, 0.10468733, 0.19924217, 0.018532433, 4.4630184, 0.011127906, 0.0060562287, 0.4689848]),
         motor_lag_s: 0.1,
         air: Air {
             drag_per_s: 0.316,
@@ -228,7 +228,7 @@ pub const UPGRADE_KIT_20_MS: BuiltInCascade = BuiltInCascade {
 pub const UPGRADE_KIT_63_MS: BuiltInCascade = BuiltInCascade {
     vehicle: Vehicle { name: Name::literal("crazyflie-2.1-upgrade-kit"), id: 0x456815c7 },
     table: CascadeTable {
-        gains: CascadeGains::table([0.31217313, 0.14623435, 0.81417584, -0.21338, -0.103469454, 0.19376743, 0.017506704, 2.9042785, 0.21339902, 0.10349981, 0.19388522, 0.017527223, 2.8988764, 0.011139942, 0.0071483636, 0.2294418]),
+        gains: CascadeGains::table([0.31198832, 0.15487467, 0.8512832, -0.21338, -0.103469454, 0.19376743, 0.017506704, 2.9042785, 0.21339902, 0.10349981, 0.19388522, 0.017527223, 2.8988764, 0.011139942, 0.0071483636, 0.2294418]),
         motor_lag_s: 0.0635,
         air: Air {
             drag_per_s: 0.316,
@@ -257,7 +257,7 @@ pub const UPGRADE_KIT_63_MS: BuiltInCascade = BuiltInCascade {
 pub const UPGRADE_KIT_100_MS: BuiltInCascade = BuiltInCascade {
     vehicle: Vehicle { name: Name::literal("crazyflie-2.1-upgrade-kit"), id: 0x456815c7 },
     table: CascadeTable {
-        gains: CascadeGains::table([0.31248882, 0.152604, 1.1823446, -0.21440971, -0.106210046, 0.20547901, 0.019663885, 4.1132193, 0.21442536, 0.106242985, 0.20561644, 0.019689139, 4.1062207, 0.011140291, 0.007496189, 0.35820717]),
+        gains: CascadeGains::table([0.3118974, 0.18699412, 1.3693634, -0.21440971, -0.106210046, 0.20547901, 0.019663885, 4.1132193, 0.21442536, 0.106242985, 0.20561644, 0.019689139, 4.1062207, 0.011140291, 0.007496189, 0.35820717]),
         motor_lag_s: 0.1,
         air: Air {
             drag_per_s: 0.316,

@@ -85,7 +85,7 @@ impl CascadeLaw {
 /// [`FlightError`] where there is no design, or the core refuses a figure.
 pub fn cascade_of(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, FlightError> {
     let lag_s = told.lag_s.unwrap_or_else(|| untold_lag_s(vehicle));
-    let design = cascade(vehicle, lag_s, &CascadeWeights::STANDARD, PERIOD_S)?;
+    let design = cascade(vehicle, lag_s, &CascadeWeights::for_lag(lag_s), PERIOD_S)?;
     let gains = CascadeGains::from_numbers(design.numbers().map(|gain| gain as f32))?;
     let figures = *motor_loop::airframe(vehicle, lag_s)?.figures();
     let airframe = Airframe::new(AirframeFigures { mass_kg: told.mass_kg as f32, ..figures })?;

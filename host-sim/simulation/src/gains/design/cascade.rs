@@ -53,7 +53,7 @@ pub(super) fn cascade(file: &DesignFile, vehicle: &Vehicle) -> Result<Problem, G
     check(holds, "region.motor_lag_ms", longest, format!("from motor_lag_ms = {lag_ms} to {LONGEST_LAG_MS} ms"))?;
     Ok(Problem::Cascade {
         motor_lag_s: 1e-3 * lag_ms,
-        weights: weights(file.weights.as_ref(), here)?,
+        weights: weights(file.weights.as_ref(), 1e-3 * lag_ms, here)?,
         air,
         region: bounds(&region, &air)?,
     })
@@ -130,9 +130,10 @@ fn bounds(region: &RegionEntry, air: &CascadeAir) -> Result<CascadeBounds, Gains
     })
 }
 
-/// The standard ones with what is written.
-fn weights(weights: Option<&Weights>, here: &dyn ToString) -> Result<CascadeWeights, GainsError> {
-    let Some(weights) = weights else { return Ok(CascadeWeights::STANDARD) };
+/// The standard ones for a lag with those that are written.
+fn weights(weights: Option<&Weights>, lag_s: f64, here: &dyn ToString) -> Result<CascadeWeights, GainsError> {
+    let standard = CascadeWeights::for_lag(lag_s);
+    let Some(weights) = weights else { return Ok(standard) };
     let integral = weights.position_integral.map(|_| "position_integral");
     if let Some(key) = weights.of_the_paper_alone().or(integral) {
         return Err(misplaced(&format!("weights.{key}"), &"...", here));
@@ -141,7 +142,6 @@ fn weights(weights: Option<&Weights>, here: &dyn ToString) -> Result<CascadeWeig
         let value = value.unwrap_or(standard);
         value.iter().try_for_each(|entry| weight(key, *entry)).map(|()| value)
     };
-    let standard = CascadeWeights::STANDARD;
     let command = weights.force_input.unwrap_or(standard.command);
     weight("force_input", command)?;
     Ok(CascadeWeights {
