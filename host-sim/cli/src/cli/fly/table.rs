@@ -167,7 +167,7 @@ impl Source {
         if let Some(vehicle) = &self.vehicle {
             return Ok(vehicle.clone());
         }
-        let table = GainTable::from_bytes(&self.bytes).map_err(|error| refused(path, &error))?;
+        let table = GainTable::from_bytes(&self.bytes).map_err(|error| no_table(path, &self.bytes, &error))?;
         let head = table.head();
         let mut built_in = vehicles::names().into_iter().filter_map(|name| vehicles::by_name(name).ok());
         built_in.find(|vehicle| vehicles::id(vehicle) == head.vehicle.id).ok_or_else(|| {
