@@ -10,6 +10,7 @@ import re
 import struct
 import sys
 import tempfile
+import textwrap
 from pathlib import Path
 
 import firmware_object
@@ -111,6 +112,21 @@ def nothing_is_sent_in_flight(library):
     assert ending.startswith("upload.py: it flies"), ending
 
 
+def the_first_flight_of_the_chapter(library):
+    made = craft(library, CRAZYFLIE)
+    page = (ROOT / "docs" / "owner.md").read_text()
+    lines = page[page.index("```python\n") :].split("```")[1].removeprefix("python\n")
+    lines = textwrap.dedent(lines).replace("radio://0/80/2M/E7E7E7E7E7", stand_in.URI).replace("time.sleep(", "pauses.append(")
+    lines = lines.replace("rw_cache='./cache'", "rw_cache=None")
+    pauses = []
+    exec(lines, {"pauses": pauses})
+    # COMMAND_TAKEOFF_2 to 0.5 m in 2 s and COMMAND_LAND_2 to 0 m in 2.5 s, each at the yaw that the craft has; COMMAND_STOP.
+    take_off, land, stop = made.commands
+    assert struct.unpack("<BBff?f", take_off) == (7, 0, 0.5, 0.0, True, 2.0)
+    assert struct.unpack("<BBff?f", land) == (8, 0, 0.0, 0.0, True, 2.5)
+    assert stop[0] == 3 and len(pauses) == 3
+
+
 def words_are_those_of_the_source():
     """Every code of the object has words."""
     source = ROOT / "crazyflie" / "src"
@@ -131,6 +147,7 @@ def main():
     a_craft_without_tables(library)
     trajectories(library)
     nothing_is_sent_in_flight(library)
+    the_first_flight_of_the_chapter(library)
     print("upload.py sends, stores and says why not")
 
 
