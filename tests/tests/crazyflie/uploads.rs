@@ -349,7 +349,7 @@ fn a_parameter_that_is_no_number_gets_its_default_back_and_says_so() {
 }
 
 #[test]
-fn the_first_table_of_the_page_on_own_designs_flies_once_its_lag_is_stated() {
+fn the_first_table_of_the_page_on_own_designs_flies_where_its_region_holds_the_lag() {
     let page = include_str!("../../../docs/own-gains.md");
     let toml = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
     let design = Design::from_toml("my-craft", toml, std::path::Path::new("")).unwrap();
@@ -360,9 +360,13 @@ fn the_first_table_of_the_page_on_own_designs_flies_once_its_lag_is_stated() {
     let (parameters, log) = (&ffi::quatrack.parameters, &ffi::quatrack.log);
     parameters.table.store(5, Relaxed);
     ffi::quatrackService();
-    // With nothing stated the motors are taken to lag by 66 ms, and its region ends at 60.
-    assert_eq!((log.table.load(Relaxed), log.refusal.load(Relaxed)), (0, Refusal::MotorLag as u16));
-    parameters.motor_lag_s.set(0.04);
-    ffi::quatrackService();
+    // With nothing stated the motors are taken to lag by 50 ms; its region is 25 to 60.
+    let refused = log.refused_tables.load(Relaxed);
     assert_eq!(log.table.load(Relaxed), 5);
+    for (lag_s, refusals) in [(0.04, 0), (0.1, 1)] {
+        parameters.motor_lag_s.set(lag_s);
+        ffi::quatrackService();
+        assert_eq!(log.refused_tables.load(Relaxed).wrapping_sub(refused), refusals, "{lag_s} s");
+    }
+    assert_eq!((log.table.load(Relaxed), log.refusal.load(Relaxed)), (5, Refusal::MotorLag as u16));
 }
