@@ -63,7 +63,7 @@ fn certified(vehicle: &Vehicle) -> Certified {
 fn a_vehicle_file_flies_with_its_own_table() {
     for vehicle in [
         file("crazyflie-2.1-legacy.toml"),
-        file("crazyflie-2.1-brushless-guards-decks.toml"),
+        file("crazyflie-2.1-brushless-45g.toml"),
         vehicles::from_toml(BOLT).unwrap(),
     ] {
         let own = own_craft(&certified(&vehicle)).unwrap();
