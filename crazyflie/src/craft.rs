@@ -40,7 +40,7 @@ pub struct Craft {
     pub actuation: Actuation,
     /// Who it is for a gain table.
     pub vehicle: Vehicle,
-    /// Which of [`KNOWN`] it is.
+    /// Which of [`KNOWN`] it is; [`OWN`] for none of them.
     pub index: usize,
     /// Time constant of its motors as far as it is known, s.
     pub motor_lag_s: f32,
@@ -76,6 +76,9 @@ const fn known(table: BuiltInCascade, airframe: Airframe) -> Known {
     Known { airframe, vehicle: table.vehicle, air: table.table.air }
 }
 
+/// The place of a craft of the owner's, behind those that are known.
+pub const OWN: usize = KNOWN.len();
+
 /// Largest relative difference of a figure from the one that the tables were made for: what is left out of it in rounding.
 const TOLERANCE: f32 = 2e-3;
 
@@ -83,17 +86,25 @@ const TOLERANCE: f32 = 2e-3;
 /// within what the tables are certified for.
 const MASS_TOLERANCE: f32 = 0.2;
 
+/// Whether a figure that the firmware was built with is the craft's.
+pub(crate) fn is_near(found: f32, known: f32) -> bool {
+    is_within(found, known, TOLERANCE)
+}
+
+fn is_within(found: f32, known: f32, tolerance: f32) -> bool {
+    (found - known).abs() <= tolerance * known
+}
+
 impl Craft {
     /// The craft that the firmware was built for; nothing where no table is for it.
     pub fn of(platform: &Platform) -> Option<Self> {
-        let is_near = |found: f32, known: f32, tolerance: f32| (found - known).abs() <= tolerance * known;
         let root_2 = core::f32::consts::SQRT_2;
         let (index, known) = KNOWN.iter().enumerate().find(|(_, known)| {
             let figures = known.airframe.figures();
-            is_near(platform.mass_kg, figures.mass_kg, MASS_TOLERANCE)
-                && is_near(platform.arm_m, figures.lever_arm_m * root_2, TOLERANCE)
-                && is_near(platform.thrust_max_n, figures.force_max_n, TOLERANCE)
-                && is_near(platform.torque_per_thrust_m, figures.torque_per_thrust_m, TOLERANCE)
+            is_within(platform.mass_kg, figures.mass_kg, MASS_TOLERANCE)
+                && is_near(platform.arm_m, figures.lever_arm_m * root_2)
+                && is_near(platform.thrust_max_n, figures.force_max_n)
+                && is_near(platform.torque_per_thrust_m, figures.torque_per_thrust_m)
         })?;
         // The mass as the owner has set it: the weight is fed forward.
         let figures = AirframeFigures { mass_kg: platform.mass_kg, ..*known.airframe.figures() };

@@ -5,12 +5,15 @@
 #![allow(unsafe_code, reason = "names for the linker; nothing below them is unsafe")]
 #![allow(non_upper_case_globals, non_snake_case, reason = "names of C")]
 
+use core::ffi::{CStr, c_char};
+use core::ptr;
 use core::sync::atomic::Ordering::Relaxed;
 
 use crate::abi::{Control, SensorData, Setpoint, State};
 use crate::control::{self, Controller, Work};
 use crate::craft::Platform;
 use crate::cycles;
+use crate::own_craft::OwnCraft;
 use crate::service::{self, Handover, Service};
 use crate::shared::Shared;
 use crate::try_cell::TryCell;
@@ -74,6 +77,18 @@ pub extern "C" fn controllerOutOfTree(
 #[unsafe(no_mangle)]
 pub extern "C" fn quatrackPlatform(platform: &Platform) -> bool {
     SERVICE.with(|service| service.start(platform)).unwrap_or(false)
+}
+
+/// The app says that the firmware flies a craft of the owner's, instead of [`quatrackPlatform`]. Starts everything anew, motors off.
+///
+/// Returns null where it flies, and why it does not, in words, where it does not.
+#[unsafe(no_mangle)]
+pub extern "C" fn quatrackCraft(platform: &Platform, craft: &OwnCraft) -> *const c_char {
+    match SERVICE.with(|service| service.start_own(platform, craft)) {
+        Some(Ok(())) => ptr::null(),
+        Some(Err(error)) => error.words().as_ptr(),
+        None => CStr::as_ptr(c"the controller is busy: again"),
+    }
 }
 
 /// The app passes a packet of the app channel and gets the answer to send back.

@@ -14,7 +14,7 @@
 //!         heading      headings, dated -> heading to its jerk, at every step
 //!         stream       motions, dated -> position to crackle, at every step
 //!           request    what a setpoint asks for
-//!       tables         gains as flown
+//!       tables, own_craft  gains as flown; a craft with its table
 //!         units        the firmware's units and conventions -> SI
 //!           abi, motion, output
 //!             craft    what the firmware was built for -> which craft
@@ -48,6 +48,7 @@ pub mod heading;
 pub mod inbox;
 pub mod motion;
 pub mod output;
+pub mod own_craft;
 mod parameters;
 pub mod request;
 pub mod service;

@@ -4,16 +4,17 @@
 use core::sync::atomic::Ordering::Relaxed;
 
 use quatrack::Limits;
-use quatrack::gains::table::GainTable;
+use quatrack::gains::table::{CascadeTable, GainTable};
 use quatrack::nalgebra::Vector3;
 
 use crate::abi;
 use crate::control::{Controller, Settings};
 use crate::craft::{Craft, Platform};
 use crate::output::Output;
+use crate::own_craft::{OwnCraft, OwnCraftError};
 use crate::parameters;
 use crate::shared::Shared;
-use crate::tables::{Refusal, Table, Tuning};
+use crate::tables::{Brought, Refusal, Table, Tuning};
 use crate::try_cell::TryCell;
 use crate::units;
 use crate::upload::{Packet, Status, Uploads};
@@ -21,6 +22,8 @@ use crate::upload::{Packet, Status, Uploads};
 /// What the app's task keeps.
 pub struct Service {
     craft: Option<Craft>,
+    /// The table of a craft of the owner's.
+    own: Option<CascadeTable>,
     /// The craft is new, and has to be handed over.
     is_new: bool,
     uploads: Uploads,
@@ -105,6 +108,7 @@ impl Service {
     pub(crate) const fn new() -> Self {
         Self {
             craft: None,
+            own: None,
             is_new: false,
             uploads: Uploads::new(),
             uploaded: None,
@@ -120,6 +124,17 @@ impl Service {
         self.craft = Craft::of(platform);
         self.is_new = self.craft.is_some();
         self.is_new
+    }
+
+    /// Starts anew for a craft of the owner's.
+    ///
+    /// # Errors
+    /// [`OwnCraftError`]: there is no craft then, and the motors stay off.
+    pub fn start_own(&mut self, platform: &Platform, own: &OwnCraft) -> Result<(), OwnCraftError> {
+        *self = Self::new();
+        let (craft, table) = own.on(platform)?;
+        (self.craft, self.own, self.is_new) = (Some(craft), Some(table), true);
+        Ok(())
     }
 
     /// Takes a packet of the app channel and gives the answer to it.
@@ -160,12 +175,14 @@ impl Service {
         let is_asked = self.asked != Some(asked);
         let mut table = None;
         if is_asked {
-            table = match Table::choose(asked.table, &craft, &asked.tuning, self.uploaded.as_ref()) {
+            let brought = Brought { sent: self.uploaded.as_ref(), own: self.own.as_ref() };
+            table = match Table::choose(asked.table, &craft, &asked.tuning, brought) {
                 Ok(table) => Some(table),
                 Err(refusal) => {
                     refuse(shared, refusal);
                     // There is always one to start with.
-                    if self.is_new { Table::for_published_lags(&craft, &asked.tuning).ok() } else { None }
+                    let first = || Table::for_published_lags(&craft, &asked.tuning, brought.own).ok();
+                    if self.is_new { first() } else { None }
                 }
             };
         }

@@ -12,6 +12,15 @@ use crate::builtin::{self, STATED_FROM_S};
 use crate::craft::{Craft, RATE};
 use crate::shared::GAINS;
 
+/// The tables that are not in the image.
+#[derive(Clone, Copy, Default)]
+pub struct Brought<'a> {
+    /// The one that was sent last.
+    pub sent: Option<&'a GainTable<'static>>,
+    /// That of a craft of the owner's.
+    pub own: Option<&'a CascadeTable>,
+}
+
 /// Which table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
@@ -109,33 +118,32 @@ impl Table {
     /// # Errors
     /// [`Refusal`].
     #[inline(never)]
-    pub fn choose(
-        number: u8,
-        craft: &Craft,
-        tuning: &Tuning,
-        uploaded: Option<&GainTable<'static>>,
-    ) -> Result<Self, Refusal> {
+    pub fn choose(number: u8, craft: &Craft, tuning: &Tuning, brought: Brought<'_>) -> Result<Self, Refusal> {
         let id = TableId::numbered(number).ok_or(Refusal::Unknown)?;
         let (gain, (margin, lag_max_s)) = match id {
-            TableId::Cascade => return Self::cascade(craft, tuning),
+            TableId::Cascade => return Self::cascade(craft, tuning, brought.own),
             TableId::LyapE => (ConstantGain::Equilibrium(paper::LYAP_E), builtin::LYAP_E),
             TableId::LqrE => (ConstantGain::Equilibrium(paper::LQR_E), builtin::LQR_E),
             TableId::LyapF => (ConstantGain::FlatOutput(paper::LYAP_F), builtin::LYAP_F),
             TableId::LqrF => (ConstantGain::FlatOutput(paper::LQR_F), builtin::LQR_F),
-            TableId::Uploaded => return Self::uploaded(uploaded.ok_or(Refusal::NothingUploaded)?, craft, tuning),
+            TableId::Uploaded => return Self::uploaded(brought.sent.ok_or(Refusal::NothingUploaded)?, craft, tuning),
         };
         let margin = margin_behind(margin, lag_max_s, craft.motor_lag_s)?;
         Ok(Self::constant(id, &gain, craft.actuation, margin, Limits::NONE, tuning))
     }
 
     /// The craft's own: the gains that are certified for the stated lag, flown with it; with none stated those for the published
-    /// lags, flown with that of their design.
+    /// lags, flown with that of their design. Of a craft of the owner's its table, with the lag of its design.
     ///
     /// # Errors
     /// [`Refusal::MotorLag`] for a stated lag that none is certified for, [`Refusal::Unknown`] where the craft has none.
     #[inline(never)]
-    pub fn cascade(craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
-        let Some(lag_s) = craft.stated_lag_s else { return Self::for_published_lags(craft, tuning) };
+    pub fn cascade(craft: &Craft, tuning: &Tuning, own: Option<&CascadeTable>) -> Result<Self, Refusal> {
+        let lag_s = match (own, craft.stated_lag_s) {
+            (Some(own), _) => return Self::holding_lag(own, craft, tuning),
+            (None, None) => return Self::for_published_lags(craft, tuning, None),
+            (None, Some(lag_s)) => lag_s,
+        };
         let (cascades, _) = builtin::CASCADES.get(craft.index).ok_or(Refusal::Unknown)?;
         let holds = |cascade: &&builtin::Cascade| lag_s <= cascade.stated_to_s;
         let found = cascades.iter().find(holds).filter(|_| lag_s >= STATED_FROM_S).ok_or(Refusal::MotorLag)?;
@@ -147,7 +155,10 @@ impl Table {
     /// # Errors
     /// [`Refusal::Unknown`] where there is none.
     #[inline(never)]
-    pub fn for_published_lags(craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
+    pub fn for_published_lags(craft: &Craft, tuning: &Tuning, own: Option<&CascadeTable>) -> Result<Self, Refusal> {
+        if let Some(own) = own {
+            return Self::of_cascade(&own.gains, own.motor_lag_s, craft, tuning);
+        }
         let (_, unstated) = builtin::CASCADES.get(craft.index).ok_or(Refusal::Unknown)?;
         Self::of_cascade(&unstated.gains, unstated.lag_s, craft, tuning)
     }
@@ -186,7 +197,10 @@ impl Table {
     fn uploaded(table: &GainTable<'static>, craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
         let accepted = table.accept_for(&craft.vehicle, RATE)?;
         if let Some(cascade) = accepted.cascade() {
-            return Self::sent_cascade(cascade, craft, tuning);
+            // With its own air where the owner has not stated another than the craft's.
+            let air = if tuning.air == craft.air { cascade.air } else { tuning.air };
+            let found = Self::holding_lag(cascade, craft, &Tuning { air, ..*tuning })?;
+            return Ok(Self { id: TableId::Uploaded, ..found });
         }
         let gain = table.gain().filter(|gain| !gain.gives_forces()).ok_or(Refusal::Law)?;
         let margin = accepted.margin_behind(craft.motor_lag_s)?;
@@ -194,14 +208,12 @@ impl Table {
         Ok(Self::constant(TableId::Uploaded, gain, actuation, margin, accepted.limits(), tuning))
     }
 
-    /// A cascade that was sent, with its own air where the owner has not stated another than the craft's.
-    fn sent_cascade(table: &CascadeTable, craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
+    /// A cascade that was brought, where it is certified for the craft's motors.
+    fn holding_lag(table: &CascadeTable, craft: &Craft, tuning: &Tuning) -> Result<Self, Refusal> {
         if !table.certified.holds_lag(craft.motor_lag_s) {
             return Err(Refusal::MotorLag);
         }
-        let air = if tuning.air == craft.air { table.air } else { tuning.air };
-        let found = Self::of_cascade(&table.gains, table.motor_lag_s, craft, &Tuning { air, ..*tuning })?;
-        Ok(Self { id: TableId::Uploaded, ..found })
+        Self::of_cascade(&table.gains, table.motor_lag_s, craft, tuning)
     }
 
     /// Of a gain whose feedback is scaled as far as its margin allows.

@@ -65,7 +65,8 @@ impl Status {
     /// What an answer says of a refusal, in words.
     const fn words(self) -> &'static [u8] {
         match self {
-            Self::Taken | Self::Busy => b"",
+            Self::Taken => b"",
+            Self::Busy => b"no craft, or busy: again",
             Self::Unknown => b"no such packet",
             Self::NotBegun => b"announce the table first",
             Self::Length => b"longer than any table",

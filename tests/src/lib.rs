@@ -9,7 +9,12 @@ pub mod design_problem;
 #[cfg(doctest)]
 pub struct Readme;
 
-/// So are the examples of the page on gain tables.
+/// So is that of the core's.
+#[doc = include_str!("../../core/README.md")]
+#[cfg(doctest)]
+pub struct CoreReadme;
+
+/// And the examples of the page on gain tables.
 #[doc = include_str!("../../docs/gain-tables.md")]
 #[cfg(doctest)]
 pub struct GainTablesPage;

@@ -13,6 +13,18 @@ typedef struct {
   float torquePerThrustM; /* THRUST2TORQUE */
 } quatrackPlatform_t;
 
+/* A craft of your own with its table, as `quatrack gains craft` writes it into quatrack_craft.h. The table is for these figures alone. */
+typedef struct {
+  float massKg;
+  float inertiaKgM2[6];   /* xx, xy, xz, yy, yz, zz */
+  float armM;             /* centre to rotor */
+  float forceN[2];        /* least and most of one motor */
+  float torquePerThrustM;
+  float motorLagS;
+  float bodyRatesRadS[3]; /* largest */
+  uint8_t table[326];
+} quatrackCraft_t;
+
 /* A packet of the app channel. */
 typedef struct {
   uint8_t length;
@@ -47,7 +59,7 @@ typedef struct {
   int16_t errorMm[3];       /* position, measured less asked, world frame */
   int16_t rotationMrad[3];  /* rotation from the reference to the craft, body frame */
   uint16_t forces[4];       /* commanded, thousandths of a motor's largest; 0 under a law of thrust and torque */
-  uint16_t limited;         /* bits 0-3 motors, 4-6 thrust, attitude, yaw, 8-11 thrust and body rates of the command */
+  uint16_t limited;         /* bits 0-3 thrust, roll and pitch, yaw, motors; 8-11 thrust and body rates of the command */
   uint16_t cycles;          /* processor cycles of the last control step */
   uint8_t mode;             /* 0 off, 1 flying, 2 descending, 3 blind, 4 no craft */
   uint8_t table;            /* in use */
@@ -89,6 +101,8 @@ extern quatrack_t quatrack;
 
 /* Says which craft this is and starts anew, motors off. False where there is no table for it. */
 bool quatrackPlatform(const quatrackPlatform_t *platform);
+/* The same for a craft of your own. Null where it flies; else why it does not, in words, and the motors stay off. */
+const char *quatrackCraft(const quatrackPlatform_t *platform, const quatrackCraft_t *craft);
 /* Looks at the parameters; to be called a few times a second from the task that calls the others. */
 void quatrackService(void);
 /* Takes a packet of the app channel; the answer is to be sent back. */

@@ -16,12 +16,17 @@
 #include "debug.h"
 
 #include "quatrack.h"
+#ifdef QUATRACK_CRAFT
+/* Made by `make QUATRACK_CRAFT=FILE.toml`: the constant ownCraft. */
+#include "quatrack_craft.h"
+#endif
 
 #define PERIOD_MS 20
 
 _Static_assert(sizeof(quatrackParameters_t) == 64, "as in shared.rs");
 _Static_assert(sizeof(quatrackLog_t) == 42, "as in shared.rs");
 _Static_assert(sizeof(quatrack_t) == 224, "as in shared.rs");
+_Static_assert(sizeof(quatrackCraft_t) == 388, "as in own_craft.rs");
 _Static_assert(APPCHANNEL_MTU == sizeof(((quatrackPacket_t *)0)->bytes), "as in upload.rs");
 
 /* As in quatrackParameters_t. */
@@ -29,6 +34,39 @@ static const char *const floats[] = {
   "posScale", "yawScale", "leash", "speedMax", "accMax", "rpRateMax", "yawRateMax", "motorLag",
   "drag", "momentX", "momentY", "gust", "speed", "climb", "tilt",
 };
+
+/* Tells the controller which craft this is; nothing, or why it does not fly. */
+static const char *startCraft(const quatrackPlatform_t *platform)
+{
+#ifdef QUATRACK_CRAFT
+  return quatrackCraft(platform, &ownCraft);
+#else
+  return quatrackPlatform(platform) ? NULL : "there is no table for the figures that the firmware was built with";
+#endif
+}
+
+/* Why a table is not flown, by quatrackN.refusal. */
+static const char *const refusals[] = {
+  "",
+  "there is no table of that number",
+  "none has been sent",
+  "the motors' lag is outside what it is certified for",
+  "no sound table with a certificate",
+  "it is for another craft or control rate",
+  "its law is not flown here",
+};
+
+/* Says why a table is not flown. */
+static void sayWhatWasRefused(void)
+{
+  static uint16_t said;
+  const uint16_t refused = quatrack.log.refusedTables;
+  const unsigned why = quatrack.log.refusal;
+  if (refused != said && why < sizeof(refusals) / sizeof(refusals[0])) {
+    DEBUG_PRINT("A table is not flown: %s\n", refusals[why]);
+  }
+  said = refused;
+}
 
 /* Says which parameter was no number. */
 static void sayWhatWasPutBack(void)
@@ -55,13 +93,15 @@ void appMain(void)
   CoreDebug->DEMCR |= CoreDebug_DEMCR_TRCENA_Msk;
   DWT->CTRL |= DWT_CTRL_CYCCNTENA_Msk;
 
-  if (!quatrackPlatform(&platform)) {
-    DEBUG_PRINT("No table for this craft: the motors stay off\n");
+  const char *const whyNot = startCraft(&platform);
+  if (whyNot) {
+    DEBUG_PRINT("The motors stay off: %s\n", whyNot);
   }
   while (1) {
     quatrackPacket_t packet, answer;
     quatrackService();
     sayWhatWasPutBack();
+    sayWhatWasRefused();
     packet.length = (uint8_t)appchannelReceiveDataPacket(packet.bytes, sizeof(packet.bytes), PERIOD_MS);
     if (packet.length > 0) {
       memset(&answer, 0, sizeof(answer));

@@ -4,6 +4,7 @@ use std::mem::{align_of, offset_of, size_of};
 use std::path::Path;
 
 use quatrack_crazyflie::craft::Platform;
+use quatrack_crazyflie::own_craft::OwnCraft;
 use quatrack_crazyflie::shared::{Gains, Learned, Log, Parameters, Shared};
 use quatrack_crazyflie::upload::Packet;
 
@@ -102,6 +103,12 @@ fn every_field_of_the_header_lies_where_the_objects_does() {
     );
     assert_lies_as!(header, "quatrackGains_t", Gains, [scale_min, scale_max, entries]);
     assert_lies_as!(header, "quatrackPlatform_t", Platform, [mass_kg, arm_m, thrust_max_n, torque_per_thrust_m]);
+    assert_lies_as!(
+        header,
+        "quatrackCraft_t",
+        OwnCraft,
+        [mass_kg, inertia_kg_m2, arm_m, force_n, torque_per_thrust_m, motor_lag_s, body_rates_rad_s, table]
+    );
     assert_lies_as!(header, "quatrackPacket_t", Packet, [length, bytes]);
     // One after the other, padded as C does.
     let (_, parameters) = layout(header, "quatrackParameters_t");
@@ -113,4 +120,48 @@ fn every_field_of_the_header_lies_where_the_objects_does() {
     assert_eq!(offset_of!(Shared, gains), learned_at + learned);
     // One log packet.
     assert_eq!(offset_of!(Log, bad_states), 26);
+}
+
+/// Parameters and log variables that the app declares, as `group.name`.
+fn declared() -> Vec<String> {
+    let app =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../crazyflie/app/src/quatrack_app.c"));
+    let (mut group, mut found) = (String::new(), Vec::new());
+    for line in app.unwrap().lines() {
+        let Some((macro_, arguments)) = line.trim_end_matches(')').split_once('(') else { continue };
+        let arguments: Vec<&str> = arguments.split(", ").collect();
+        match macro_ {
+            "PARAM_GROUP_START" | "LOG_GROUP_START" => group = arguments[0].to_owned(),
+            "PARAM_ADD" | "LOG_ADD" => found.push(format!("{group}.{}", arguments[1])),
+            "GAIN" => found.push(format!("{group}.{}", arguments[0])),
+            _ => {}
+        }
+    }
+    found
+}
+
+#[test]
+fn every_parameter_and_log_variable_that_the_pages_name_is_declared() {
+    let declared = declared();
+    assert!(declared.len() > 60, "{declared:?}");
+    for page in [
+        "docs/owner.md",
+        "docs/own-gains.md",
+        "docs/crazyswarm2.md",
+        "crazyflie/README.md",
+        "crazyflie/tools/upload.py",
+    ] {
+        let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(page)).unwrap();
+        for name in text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.' && c != '_') {
+            let name = name.trim_end_matches('.');
+            let Some((group, variable)) = name.split_once('.') else { continue };
+            let is_ours = ["quatrack", "quatrackK", "quatrackN", "quatrackA"].contains(&group);
+            // Files and Python modules are called so, too.
+            let is_other =
+                ["", "h", "json", "integrations"].iter().any(|other| variable.split('.').next() == Some(other));
+            if is_ours && !is_other {
+                assert!(declared.iter().any(|known| known == name), "{page}: {name}");
+            }
+        }
+    }
 }

@@ -5,6 +5,7 @@ mod flights;
 mod header;
 mod in_air;
 mod object;
+mod own_craft;
 mod setpoints;
 mod stream;
 mod survival;

@@ -5,7 +5,7 @@ use quatrack::gains::cascade as tables;
 use quatrack::gains::{Scales, paper};
 use quatrack::{Air, CascadeGains, CascadeLimits};
 use quatrack_crazyflie::craft::{Craft as FirmwareCraft, KNOWN};
-use quatrack_crazyflie::tables::{Gain, Refusal, Table, TableId, Tuning};
+use quatrack_crazyflie::tables::{Brought, Gain, Refusal, Table, TableId, Tuning};
 use quatrack_design::certify::cascade::{CascadeCraft, CascadeRegion};
 use quatrack_design::design::discretise::zero_order_hold;
 use quatrack_simulation::crazyflie::Sensors;
@@ -55,7 +55,7 @@ fn a_stated_lag_is_flown_with_the_gains_that_are_certified_for_it() {
         stated().into_iter().zip([(2, 0.1), (2, 0.1), (1, 0.05)]).enumerate()
     {
         let craft = craft_of(index);
-        let chosen = |lag_s: f32| Table::choose(0, &craft.with_motor_lag(lag_s), &TUNING, None);
+        let chosen = |lag_s: f32| Table::choose(0, &craft.with_motor_lag(lag_s), &TUNING, Brought::default());
         let mut shortest_s = 0.004;
         for (longest_s, gains) in of_craft {
             for lag_s in [shortest_s, longest_s] {
@@ -154,7 +154,8 @@ fn lateral_radius([kx, kq, kv]: [f64; 3], lag_s: f64) -> f64 {
 fn the_longest_lags_of_the_papers_tables_are_where_hover_becomes_unstable() {
     let craft = craft_of(0);
     for (number, gain) in [(TableId::LqrE, &paper::LQR_E), (TableId::LyapE, &paper::LYAP_E)] {
-        let is_flown = |lag_s: f32| Table::choose(number as u8, &craft.with_motor_lag(lag_s), &TUNING, None).is_ok();
+        let is_flown =
+            |lag_s: f32| Table::choose(number as u8, &craft.with_motor_lag(lag_s), &TUNING, Brought::default()).is_ok();
         let longest_s =
             (40_u16..1000).map(|steps| f32::from(steps) / 1e4).take_while(|lag_s| is_flown(*lag_s)).last().unwrap();
         let pitch = gain.gain().rows()[2].map(f64::from);

@@ -15,6 +15,7 @@ use quatrack_crazyflie::shared::AtomicF32;
 use quatrack_crazyflie::tables::Refusal;
 use quatrack_crazyflie::upload::{PACKET_BYTES, Packet, Status};
 use quatrack_simulation::crazyflie::{Course, Firmware, Setpoints, Tune};
+use quatrack_simulation::gains::Design;
 use quatrack_simulation::plant::{Craft, RigidState};
 use quatrack_simulation::vehicles;
 
@@ -345,4 +346,27 @@ fn a_parameter_that_is_no_number_gets_its_default_back_and_says_so() {
     }
     ffi::quatrackService();
     assert_eq!(log.put_back.load(Relaxed).wrapping_sub(before), 3, "once each");
+}
+
+#[test]
+fn the_first_table_of_the_page_on_own_designs_flies_where_its_region_holds_the_lag() {
+    let page = include_str!("../../../docs/own-gains.md");
+    let toml = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let design = Design::from_toml("my-craft", toml, std::path::Path::new("")).unwrap();
+    let table = design.certify().unwrap().to_bytes().unwrap();
+    let craft = vehicles::by_name("crazyflie-2.1-brushless").unwrap();
+    let _firmware = Firmware::start(&craft, &Tune::new(0, 0.0), QUIET);
+    assert_eq!(send(&table), Status::Taken as u8);
+    let (parameters, log) = (&ffi::quatrack.parameters, &ffi::quatrack.log);
+    parameters.table.store(5, Relaxed);
+    ffi::quatrackService();
+    // With nothing stated the motors are taken to lag by 50 ms; its region is 25 to 60.
+    let refused = log.refused_tables.load(Relaxed);
+    assert_eq!(log.table.load(Relaxed), 5);
+    for (lag_s, refusals) in [(0.04, 0), (0.1, 1)] {
+        parameters.motor_lag_s.set(lag_s);
+        ffi::quatrackService();
+        assert_eq!(log.refused_tables.load(Relaxed).wrapping_sub(refused), refusals, "{lag_s} s");
+    }
+    assert_eq!((log.table.load(Relaxed), log.refusal.load(Relaxed)), (5, Refusal::MotorLag as u16));
 }

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use quatrack_cli::pil::crazyflie::count;
 use quatrack_cli::pil::image;
-use quatrack_simulation::crazyflie::CrazyflieReport;
+use quatrack_simulation::crazyflie::{CrazyflieReport, knows};
 use quatrack_simulation::scenario::{Law, Scenario};
-use quatrack_simulation::vehicles;
 
 use super::scenario::ScenarioArgs;
 use super::transform::TransformArgs;
+use super::vehicle::VehicleChoice;
 use super::{Failure, fly, output};
 
 /// Flies the Crazyflie controller through its C interface on the rigid plant, with the firmware's setpoints, rates and
@@ -19,7 +19,8 @@ use super::{Failure, fly, output};
 /// instructions of every call and compares every bit of what it puts out with the host's.
 ///
 /// With --scenario, or a flag of one other than --vehicle, flies the controller's default table on that scenario alone, as
-/// `fly` does with the law "quatrack". Otherwise the courses are flown in vacuum, by --vehicle or else crazyflie-2.1.
+/// `fly` does with the law "crazyflie". A vehicle file that the controller does not know flies so, too, with the table that
+/// `gains craft` makes for it. Otherwise the courses are flown in vacuum, by --vehicle or else crazyflie-2.1.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -37,7 +38,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         let counts = image::checkout().and_then(|checkout| count(&checkout)).map_err(Failure::input)?;
         return report(args, "crazyflie-count", &counts);
     }
-    if args.scenario.any_but_vehicle() {
+    let name = args.scenario.vehicle.as_deref().unwrap_or("crazyflie-2.1");
+    let VehicleChoice(vehicle) = name.parse().map_err(Failure::input)?;
+    if args.scenario.any_but_vehicle() || !knows(&vehicle) {
         if args.scenario.law.is_some_and(|law| law != Law::Crazyflie) {
             return Err(Failure::input(
                 "--law: `crazyflie` flies the Crazyflie controller alone; take `fly` for other laws",
@@ -51,8 +54,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
         return figures.outcome();
     }
-    let name = args.scenario.vehicle.as_deref().unwrap_or("crazyflie-2.1");
-    let vehicle = vehicles::by_name(name).map_err(Failure::input)?;
     report(args, "crazyflie", &CrazyflieReport::of(&vehicle).map_err(Failure::input)?)
 }
 

@@ -7,8 +7,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
+use quatrack_simulation::crazyflie::{craft_header, standard_design};
 use quatrack_simulation::gains::{self, Certified, Checked, Design, Failed, GainsError};
 use quatrack_simulation::generated::{self, GenerateError};
+use quatrack_simulation::vehicles;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -77,6 +79,18 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         plot: Option<PathBuf>,
     },
+    /// Writes the header by which the Crazyflie's object flies a craft that it does not know, with a table of its own.
+    ///
+    /// Of a vehicle file the table is the standard cascade for it, certified for what the built-in ones are. Exit code 1 where that
+    /// cannot be had: then write a design.
+    Craft {
+        /// A vehicle, or a design of the cascade for one: TOML files.
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+        /// The header to write [default: quatrack_craft.h]
+        #[arg(long, value_name = "FILE", default_value = "quatrack_craft.h", hide_default_value = true)]
+        out: PathBuf,
+    },
     /// Prints a line for each design of a folder.
     List {
         /// The folder [default: gains]
@@ -94,6 +108,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Command::Generate { folders } => generate(folders),
         Command::Check { paths, json } => check(paths, json.as_deref()),
         Command::Show { file, json, plot } => show::show(file, json.as_deref(), plot.as_deref()),
+        Command::Craft { file, out } => craft(file, out),
         Command::List { folder, json } => list(folder.as_deref(), json.as_deref()),
     }
 }
@@ -137,6 +152,32 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
         output::write_json(path, &output::Named::new("gains-design", &json!({ "designs": summaries })))?;
     }
     Ok(())
+}
+
+fn craft(path: &Path, out: &Path) -> Result<(), Failure> {
+    let text = String::from_utf8_lossy(&read(path)?).into_owned();
+    // A vehicle has a body, a design none.
+    let is_vehicle = text.lines().any(|line| line.trim() == "[body]");
+    let certified = if is_vehicle {
+        let vehicle = vehicles::from_file(path).map_err(Failure::input)?;
+        standard_design(&vehicle).and_then(|design| design.certify()).map_err(|error| failed(path, &error))?
+    } else {
+        certified(path)?
+    };
+    let header = craft_header(&certified).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+    output::write(out, header.as_bytes())?;
+    let (vehicle, document) = (&certified.design.vehicle, gains::json_document(&certified));
+    let cascade = certified.table.as_ref().and_then(gains::Table::cascade);
+    let [from_ms, to_ms] = cascade.map_or([0.0; 2], |table| table.certified.motor_lag_s.map(|lag_s| 1e3 * lag_s));
+    let mut text = format!(
+        "{}: {} kg, motors of {} ms, certified for {from_ms} to {to_ms} ms\n{}",
+        vehicle.name(),
+        vehicle.mass_kg(),
+        1e3 * vehicle.motors().lag_s,
+        figures(&document)
+    );
+    wrote(&mut text, out);
+    output::print(&text)
 }
 
 /// What an owner has to know of the method.

@@ -413,8 +413,70 @@ fn a_table_of_the_cascade_says_what_it_is_certified_for_and_flies_its_vehicle() 
         fs::write(&path, text.replace(from, to)).unwrap();
         assert_refused(&quatrack(&["gains", "design", path.to_str().unwrap()]), code, words);
     };
-    refused("motor_lag_ms = [25.0, 75.0]", "motor_lag_ms = [25.0, 250.0]", 1, &["spectral radius of X", "250.0 ms"]);
+    refused(
+        "motor_lag_ms = [25.0, 75.0]",
+        "motor_lag_ms = [25.0, 250.0]",
+        1,
+        &["spectral radius of x with pitch", "250.0 ms"],
+    );
     refused("motor_lag_ms = [25.0, 75.0]", "motor_lag_ms = [55.0, 75.0]", 2, &["region.motor_lag_ms = 55"]);
     refused("drag_per_s = 0.353", "drag_per_s = 3.53", 2, &["air.drag_per_s = 3.53", "from 0 to 1"]);
     refused("[minimum]", "[weights]\nattitude = [1.0, 1.0, 1.0]\n[minimum]", 2, &["weights.attitude"]);
+}
+
+#[test]
+fn a_vehicle_file_becomes_a_header_for_the_crazyflie_and_flies() {
+    let dir = folder("craft");
+    let vehicle = format!("{GAINS}/vehicles/crazyflie-2.1-legacy.toml");
+    let header = dir.join("quatrack_craft.h");
+    let printed = stdout(&quatrack(&["gains", "craft", &vehicle, "--out", header.to_str().unwrap()]));
+    assert!(printed.starts_with("crazyflie-2.1-legacy: 0.029 kg, motors of 126 ms, certified for "), "{printed}");
+    let text = fs::read_to_string(&header).unwrap();
+    assert!(text.contains("static const quatrackCraft_t ownCraft = {\n  .massKg = "), "{text}");
+    // A design for it does as well; one that the object does not fly writes nothing.
+    let design = design(&dir, "of-legacy.toml", "cascade-100ms.toml", "\"crazyflie-2.1\"", &format!("\"{vehicle}\""));
+    assert_done(&quatrack(&["gains", "craft", &design, "--out", header.to_str().unwrap()]));
+    let other = dir.join("none.h");
+    let refused = quatrack(&["gains", "craft", &format!("{GAINS}/lqr-e.toml"), "--out", other.to_str().unwrap()]);
+    assert_refused(&refused, 2, &["lqr is no law that the Crazyflie object flies", "method = \"cascade\""]);
+    assert!(!other.exists());
+    let flown = quatrack(&["crazyflie", "--vehicle", &vehicle]);
+    assert_done(&flown);
+}
+
+#[test]
+fn a_design_without_an_answer_names_the_states_to_blame() {
+    let dir = folder("unsolved");
+    for (name, of, from, to, named) in [
+        (
+            "blind.toml",
+            "sampled-lqr-e.toml",
+            "position = [",
+            "position = [0.0, 0.0, 0.0] # ",
+            &["unseen is x (row 1 of Q, 0e0), y (row 2 of Q, 0e0), z (row 3 of Q, 0e0)", "give it a weight"][..],
+        ),
+        (
+            "blind-cascade.toml",
+            "cascade-100ms.toml",
+            "[region]",
+            "[weights]\nposition = [2000.0, 0.0, 4000.0]\n[region]",
+            &["unseen is y (row 2 of Q, 0e0)"],
+        ),
+    ] {
+        let refused = quatrack(&["gains", "design", &design(&dir, name, of, from, to)]);
+        assert_refused(&refused, 2, named);
+        let line = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(!line.contains("residual") && !line.contains("NaN"), "{line}");
+    }
+}
+
+#[test]
+fn text_given_for_a_binary_table_is_named_with_the_table_beside_it() {
+    let json = format!("{GAINS}/generated/lqr-e.json");
+    let beside = format!(
+        "is JSON, a certificate perhaps, not a binary gain table; the table beside it is {GAINS}/generated/lqr-e.bin"
+    );
+    assert_refused(&quatrack(&["fly", "--gains", &json]), 2, &[&beside]);
+    assert_refused(&quatrack(&["fly", "--gains", &json, "--trajectory", "mild"]), 2, &[&beside]);
+    assert_refused(&quatrack(&["compare", "--gains", &json]), 2, &[&beside]);
 }

@@ -161,10 +161,7 @@ pub enum DesignError {
         delay_s: f64,
     },
     /// The answer is not good to working precision.
-    #[error(
-        "{equation} was not solved to working precision: the relative residual stays at {residual:.1e}; \
-         scale the states or the weights"
-    )]
+    #[error("{equation} was not solved to working precision; scale the states or the weights")]
     Inaccurate {
         /// Which equation.
         equation: &'static str,

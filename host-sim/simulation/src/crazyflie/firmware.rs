@@ -11,6 +11,7 @@ use nalgebra::{Vector3, Vector4};
 use quatrack_crazyflie::abi::{self, Mode};
 use quatrack_crazyflie::craft::Platform;
 use quatrack_crazyflie::ffi;
+use quatrack_crazyflie::own_craft::OwnCraft;
 use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
 
@@ -120,6 +121,26 @@ impl Firmware {
         has_tables.then_some(firmware)
     }
 
+    /// Switches on a craft that the controller does not know, with its own table; why it does not fly where it does not.
+    ///
+    /// # Errors
+    /// What the object says.
+    pub fn start_own(
+        vehicle: &Vehicle,
+        built_for: &Platform,
+        own: &OwnCraft,
+        tune: &Tune,
+        sensors: Sensors,
+    ) -> Result<Self, String> {
+        let (firmware, flies) =
+            Self::switched_on(vehicle, tune, sensors, None, || ffi::quatrackCraft(built_for, own).is_null());
+        match own.on(built_for) {
+            Ok(_) if flies => Ok(firmware),
+            Ok(_) => Err("the controller is busy".to_owned()),
+            Err(error) => Err(error.words().to_string_lossy().into_owned()),
+        }
+    }
+
     /// The same, with every call recorded.
     pub fn start_recorded(vehicle: &Vehicle, tune: &Tune, sensors: Sensors) -> Self {
         Self::recording(vehicle, &platform(vehicle), tune, sensors, Some(Recording::default())).0
@@ -133,6 +154,17 @@ impl Firmware {
         sensors: Sensors,
         recording: Option<Recording>,
     ) -> (Self, bool) {
+        Self::switched_on(vehicle, tune, sensors, recording, || ffi::quatrackPlatform(platform))
+    }
+
+    /// With what the object answered as the app told it which craft this is.
+    fn switched_on<T>(
+        vehicle: &Vehicle,
+        tune: &Tune,
+        sensors: Sensors,
+        recording: Option<Recording>,
+        tell: impl FnOnce() -> T,
+    ) -> (Self, T) {
         let alone = CONTROLLER.lock().unwrap_or_else(PoisonError::into_inner);
         let motors = vehicle.motors();
         let parameters = &ffi::quatrack.parameters;
@@ -149,7 +181,7 @@ impl Firmware {
         }
         parameters.learn.store(1, Relaxed);
         parameters.feed_forward.store(1, Relaxed);
-        let has_tables = ffi::quatrackPlatform(platform);
+        let answer = tell();
         ffi::quatrackService();
         let mut firmware = Self {
             control: abi::Control::default(),
@@ -173,7 +205,7 @@ impl Firmware {
         // Selected now: in flight, unless a setpoint says that the motors are off.
         ffi::controllerOutOfTreeInit();
         firmware.before.is_selected = true;
-        (firmware, has_tables)
+        (firmware, answer)
     }
 
     /// Puts a course's motion at a time into the setpoint, as somebody would send it.
@@ -270,6 +302,11 @@ impl Firmware {
         let over = asked.iter().fold(0.0_f64, |over, force| over.max(force - FULL));
         Vector4::from(asked.map(|force| (force - over).max(0.0) / FULL * self.thrust_max_n))
     }
+}
+
+/// Whether the object has tables for a vehicle.
+pub fn knows(vehicle: &Vehicle) -> bool {
+    quatrack_crazyflie::craft::Craft::of(&platform(vehicle)).is_some()
 }
 
 /// What the firmware was built for.

@@ -78,6 +78,11 @@ pub fn fly(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case) -> Flig
     fly_with(&mut firmware, vehicle, course, case, None)
 }
 
+/// The same with a firmware that has been switched on.
+pub fn fly_on(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case: &Case) -> FlightErrors {
+    fly_with(firmware, vehicle, course, case, None)
+}
+
 /// How much of a flight is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Recorded {

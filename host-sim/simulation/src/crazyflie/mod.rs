@@ -6,18 +6,21 @@
 //!   flight      a course, a craft and what is wrong with it -> errors
 //!     firmware  the stabilizer at 1 kHz: commander, gyroscope, controller, power distribution
 //!       course  what the high-level commander evaluates
+//!       own_craft  a craft that the controller does not know, with its table
 //! ```
 
 mod course;
 mod firmware;
 mod flight;
+mod own_craft;
 mod paper_limits;
 mod recording;
 mod report;
 
 pub use course::{Course, CourseError, Septics};
-pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune, platform};
-pub use flight::{Case, FlightErrors, Recorded, fly, fly_recorded};
+pub use firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune, knows, platform};
+pub use flight::{Case, FlightErrors, Recorded, fly, fly_on, fly_recorded};
+pub use own_craft::{OwnCraftError, craft_header, own_craft, standard_design};
 pub use paper_limits::{CodegenError, paper_limits};
 pub use recording::{CONTROL_BYTES, Recording};
 pub use report::{CrazyflieReport, Row};

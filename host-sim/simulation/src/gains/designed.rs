@@ -30,6 +30,7 @@ use super::names::{
     EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, INTEGRAL_STATES, MOTOR_INPUTS, MOTOR_STATES,
     PART_INPUTS, PART_STATES, Signal,
 };
+use super::unsolved::blamed;
 
 /// A gain with all that it came from; of gains over time model, P and poles are those of the hover at their end.
 #[derive(Debug, Clone)]
@@ -179,8 +180,23 @@ impl Designed {
     /// Computes the gain.
     ///
     /// # Errors
-    /// [`GainsError::Design`] where the equations have no solution.
+    /// [`GainsError::Unsolved`] with the states to blame where the equations have no solution, [`GainsError::Design`] where none can
+    /// be told.
     pub fn of(design: &Design) -> Result<Self, GainsError> {
+        Self::solved(design).map_err(|error| match error {
+            GainsError::Design(error) => {
+                let (model, weights) = LinearModel::with_weights(design);
+                let period_s = Sampling::at_rate(design.rate.hz()).period_s;
+                match blamed(&error, &model, weights.as_ref(), period_s) {
+                    Some(blamed) => GainsError::Unsolved { error, blamed },
+                    None => GainsError::Design(error),
+                }
+            }
+            other => other,
+        })
+    }
+
+    fn solved(design: &Design) -> Result<Self, GainsError> {
         let rate_hz = design.rate.hz();
         match &design.problem {
             Problem::Equilibrium(Method::Lyapunov { mu_1_s }) => {
@@ -354,6 +370,34 @@ impl Designed {
 }
 
 impl LinearModel {
+    /// What a design is solved for; of gains over time the hover at their end.
+    fn with_weights(design: &Design) -> (Self, Option<Weights>) {
+        match &design.problem {
+            Problem::Equilibrium(Method::Lyapunov { .. }) => (Self::equilibrium(), None),
+            Problem::Equilibrium(Method::Lqr { weights } | Method::SampledLqr { weights, .. })
+            | Problem::Along { weights, .. } => (Self::equilibrium(), Some(of_equilibrium(weights))),
+            Problem::FlatOutput(Method::Lyapunov { .. }) => (Self::flat_chain(), None),
+            Problem::FlatOutput(Method::Lqr { weights } | Method::SampledLqr { weights, .. }) => {
+                (Self::flat_chain(), Some(of_flat(weights)))
+            }
+            Problem::Integral { weights } => {
+                let state: Vec<f64> = weights.equilibrium.state.iter().chain(&weights.integral).copied().collect();
+                let weights = Weights { q: diagonal(&state), r: diagonal(&weights.equilibrium.input) };
+                (Self::integral(), Some(weights))
+            }
+            Problem::ActuatorAware { motor_lag_s, weights, .. } => {
+                let (a, b) = hover_pair_with_integral(&design.vehicle, *motor_lag_s);
+                let weights = Weights { q: diagonal(&weights.state()), r: diagonal(&[weights.command; 4]) };
+                (Self { a, b, states: &MOTOR_STATES, inputs: &MOTOR_INPUTS }, Some(weights))
+            }
+            Problem::Cascade { motor_lag_s, weights, .. } => {
+                let (a, b) = hover_pair(&design.vehicle, *motor_lag_s, 1.0, 1.0);
+                let weights = Weights { q: diagonal(&weights.state()), r: diagonal(&[weights.command; 4]) };
+                (Self { a, b, states: &PART_STATES, inputs: &PART_INPUTS }, Some(weights))
+            }
+        }
+    }
+
     /// Hover, without q0, which no input moves.
     pub fn equilibrium() -> Self {
         let (a, b) = equilibrium_pair();

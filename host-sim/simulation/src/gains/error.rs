@@ -70,6 +70,14 @@ pub enum GainsError {
     /// The equations have no solution.
     #[error(transparent)]
     Design(#[from] DesignError),
+    /// The same, with the states that are to blame.
+    #[error("{error}; {blamed}")]
+    Unsolved {
+        /// What the solver says.
+        error: DesignError,
+        /// Which states, and what to do.
+        blamed: String,
+    },
     /// The gains cannot be certified.
     #[error(transparent)]
     Certify(#[from] CertifyError),
@@ -89,7 +97,7 @@ pub enum GainsError {
     },
     /// The loop of the cascade is not stable all over the region that the design asks for.
     #[error(
-        "refused: in its region the spectral radius of {chain:?} reaches {spectral_radius:.6} at {worst}; it must stay below 1: \
+        "refused: in its region the spectral radius of {chain} reaches {spectral_radius:.6} at {worst}; it must stay below 1: \
          change motor_lag_ms, lower the weights or narrow [region]"
     )]
     CascadeRegion {

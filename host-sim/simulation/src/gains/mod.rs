@@ -8,6 +8,7 @@
 //!       board_certificate  the figures that a table carries, the same on every processor
 //!       table      of any kind, as bytes
 //!       designed   model and gain, in f64
+//!         unsolved why there is none: the states to blame
 //!         design   what belongs together and is in range
 //!           file   TOML
 //!           course the trajectory of gains over time, as the board stores it
@@ -31,6 +32,7 @@ mod file;
 mod names;
 mod rounding;
 mod table;
+mod unsolved;
 
 pub use artifacts::{Artifact, artifacts, default_folder, json_document, rust_source};
 pub use board_certificate::BoardCertificate;

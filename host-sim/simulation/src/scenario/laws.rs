@@ -68,8 +68,8 @@ pub enum LawError {
     },
     /// The Crazyflie controller has no table for it.
     #[error(
-        "{law}: the Crazyflie controller has no table for {vehicle} told {mass_kg} kg; tell a mass within 10 % of a built-in \
-         vehicle's"
+        "{law}: the Crazyflie controller has no table for {vehicle} told {mass_kg} kg; tell a mass within 20 % of a built-in \
+         vehicle's; of a vehicle file its own, and `quatrack gains craft` says what is wrong with it"
     )]
     NoTable {
         /// Which law.

@@ -5,7 +5,7 @@ use quatrack_crazyflie::abi::{self, Mode};
 
 use super::laws::ToldFigures;
 use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ, Setpoint};
-use crate::crazyflie::{Firmware, Sensors, Tune};
+use crate::crazyflie::{Firmware, Sensors, Tune, own_craft, platform, standard_design};
 use crate::plant::RigidState;
 use quatrack_design::vehicle::Vehicle;
 
@@ -18,7 +18,7 @@ pub(super) struct ObjectLaw {
 }
 
 impl ObjectLaw {
-    /// Switched on for a vehicle, with one of the object's tables; nothing where it has none for it.
+    /// Switched on for a vehicle, with one of the object's tables, or with one made for the vehicle; nothing where there is none.
     pub(super) fn start(vehicle: &Vehicle, told: &ToldFigures, table: u8) -> Option<Self> {
         let tune = Tune {
             drag_per_s: told.drag_per_s,
@@ -26,9 +26,21 @@ impl ObjectLaw {
             ..Tune::new(table, told.lag_s.unwrap_or(0.0))
         };
         let sensors = Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 };
-        let firmware = Firmware::start_told(vehicle, told.mass_kg, &tune, sensors)?;
+        let firmware = Firmware::start_told(vehicle, told.mass_kg, &tune, sensors)
+            .or_else(|| with_its_own(vehicle, told.mass_kg, &tune, sensors))?;
         Some(Self { firmware, setpoint: abi::Setpoint::default(), sent_s: None })
     }
+}
+
+/// A vehicle that the object does not know, with the table that `quatrack gains craft` makes for it.
+fn with_its_own(vehicle: &Vehicle, told_kg: f64, tune: &Tune, sensors: Sensors) -> Option<Firmware> {
+    // The table is for the vehicle as its file has it.
+    if tune.table != 0 || told_kg != vehicle.mass_kg() {
+        return None;
+    }
+    let certified = standard_design(vehicle).and_then(|design| design.certify()).ok()?;
+    let own = own_craft(&certified).ok()?;
+    Firmware::start_own(vehicle, &platform(vehicle), &own, tune, sensors).ok()
 }
 
 impl ControlLaw for ObjectLaw {

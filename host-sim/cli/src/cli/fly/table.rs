@@ -122,7 +122,13 @@ pub(in crate::cli) fn in_scenario<T>(
         let reason = format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name());
         return Err(refused(path, &reason));
     }
-    let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| not_accepted(path, &error))?;
+    let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| match error {
+        // No command that flies scenarios takes another rate.
+        AcceptError::Rate { table_hz, loop_hz } => {
+            refused(path, &format!("certified at {table_hz} Hz; a scenario is flown at {loop_hz}"))
+        }
+        other => refused(path, &other),
+    })?;
     if let Some(cascade) = accepted.cascade() {
         let (own_kg, told_kg) = (scenario.vehicle.mass_kg() as f32, scenario.told.mass_kg as f32);
         if !cascade.certified.holds_mass(own_kg, told_kg) {
@@ -167,7 +173,7 @@ impl Source {
         if let Some(vehicle) = &self.vehicle {
             return Ok(vehicle.clone());
         }
-        let table = GainTable::from_bytes(&self.bytes).map_err(|error| refused(path, &error))?;
+        let table = GainTable::from_bytes(&self.bytes).map_err(|error| no_table(path, &self.bytes, &error))?;
         let head = table.head();
         let mut built_in = vehicles::names().into_iter().filter_map(|name| vehicles::by_name(name).ok());
         built_in.find(|vehicle| vehicles::id(vehicle) == head.vehicle.id).ok_or_else(|| {

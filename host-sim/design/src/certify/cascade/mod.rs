@@ -153,6 +153,17 @@ pub enum CascadeChain {
     Yaw,
 }
 
+impl fmt::Display for CascadeChain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::X => "x with pitch",
+            Self::Y => "y with roll",
+            Self::Z => "height",
+            Self::Yaw => "yaw",
+        })
+    }
+}
+
 impl CascadeChain {
     /// All four.
     pub const ALL: [Self; 4] = [Self::X, Self::Y, Self::Z, Self::Yaw];

@@ -21,7 +21,7 @@ use quatrack_design::certify::Minimum;
 use quatrack_design::vehicle::Vehicle;
 
 use super::GainsError;
-use super::file::{self, LimitsEntry, MinimumEntry};
+use super::file::{self, DesignFile, LimitsEntry, MinimumEntry};
 use crate::vehicles;
 
 /// A design that has been read and checked.
@@ -65,6 +65,19 @@ impl Design {
         let file = file::read(text)?;
         let name = Name::new(name).map_err(GainsError::Name)?;
         let vehicle = vehicle(&file.vehicle, folder)?;
+        Self::of(&file, name, vehicle, folder)
+    }
+
+    /// A design from the text of one, for this vehicle whatever the text names; the table has the vehicle's name.
+    ///
+    /// # Errors
+    /// As [`Self::from_file`].
+    pub fn for_vehicle(vehicle: &Vehicle, text: &str) -> Result<Self, GainsError> {
+        let name = Name::new(vehicle.name()).map_err(GainsError::Name)?;
+        Self::of(&file::read(text)?, name, vehicle.clone(), Path::new(""))
+    }
+
+    fn of(file: &DesignFile, name: Name, vehicle: Vehicle, folder: &Path) -> Result<Self, GainsError> {
         let rate = Rate::from_hz(file.control_rate_hz).ok_or_else(|| {
             let must = format!("from {} to {} control steps a second", Rate::MIN_HZ, Rate::MAX_HZ);
             GainsError::Value { key: "control_rate_hz".into(), value: file.control_rate_hz.to_string(), must }
@@ -75,7 +88,7 @@ impl Design {
         Ok(Self {
             name,
             description: file.description.trim().to_owned(),
-            problem: method::problem(&file, &vehicle, folder, rate)?,
+            problem: method::problem(file, &vehicle, folder, rate)?,
             limits: limits(&file.limits, &vehicle, &file.vehicle)?,
             vehicle,
             rate,
