@@ -11,13 +11,16 @@ mod app {
 
     use heapless::spsc::Queue;
     use quatrack::Tick;
-    use quatrack::link::{FRAME_BYTES, LoopStatistics};
+    use quatrack::link::{FRAME_BYTES, LoopStatistics, Nonce};
     use quatrack_firmware::board::crazyflie_2_1 as board;
     use quatrack_firmware::board::i2c::Bus;
     use quatrack_firmware::board::pwm::Channel;
+    use quatrack_firmware::board::rng::Rng;
     use quatrack_firmware::counter::Counter;
     use quatrack_firmware::craft::BoardCraft;
     use quatrack_firmware::flight::{Flight, Store};
+    use quatrack_firmware::kept::InFlash;
+    use quatrack_firmware::provisioned::Keys;
     use quatrack_firmware::session::{Session, Shared as SharedFlight, Uploads, Vitals};
     use quatrack_firmware::timing::Timing;
     use quatrack_firmware::transport::Line as _;
@@ -26,7 +29,7 @@ mod app {
     use rtic::mutex_prelude::Mutex;
     use stm32f4::stm32f405::Interrupt;
 
-    use crate::Line;
+    use crate::{Flash, Line};
 
     static DROPPED_BYTES: AtomicU32 = AtomicU32::new(0);
 
@@ -41,8 +44,9 @@ mod app {
     struct Local {
         craft: BoardCraft<Bus, Channel>,
         receiver: Receiver,
-        session: Session,
+        session: Session<InFlash<Flash>>,
         line: Line,
+        rng: Rng,
     }
 
     #[init(local = [
@@ -73,7 +77,14 @@ mod app {
         }
         let craft = BoardCraft { gyro: board.gyro.ok(), motors: board.motors };
         let receiver = Receiver::new(producer, &DROPPED_BYTES);
-        (shared, Local { craft, receiver, session: Session::new(context.local.uploads, fault), line })
+        let keys = Keys::provisioned();
+        match &keys.link {
+            Some((_, protection)) => defmt::info!("{}", protection),
+            None => defmt::warn!("no key: whoever is on the line can fly"),
+        }
+        let (flash, slot_bytes) = crate::flash(board.sectors);
+        let session = Session::new(context.local.uploads, keys, InFlash::new(flash, slot_bytes), fault);
+        (shared, Local { craft, receiver, session, line, rng: board.rng })
     }
 
     #[task(binds = USART2, priority = 3, local = [receiver])]
@@ -94,11 +105,12 @@ mod app {
         context.shared.flight.lock(|flight| quatrack_firmware::tick::control(flight, timing, counter, craft));
     }
 
-    #[idle(local = [session, line], shared = [flight, &timing])]
+    #[idle(local = [session, line, rng], shared = [flight, &timing])]
     fn idle(mut context: idle::Context) -> ! {
         let (session, line) = (context.local.session, context.local.line);
-        let vitals = OwnVitals { timing: context.shared.timing };
+        let vitals = OwnVitals { timing: context.shared.timing, rng: context.local.rng };
         let mut flight = LockedFlight(&mut context.shared.flight);
+        session.restore(&mut flight);
         let mut received = [0; 64];
         let mut frame = [0; FRAME_BYTES];
         let mut mode = flight.with(|flight| flight.mode());
@@ -145,6 +157,7 @@ mod app {
 
     struct OwnVitals<'a> {
         timing: &'a Timing,
+        rng: &'a Rng,
     }
 
     impl Vitals for OwnVitals<'_> {
@@ -161,6 +174,10 @@ mod app {
                 bytes_dropped: DROPPED_BYTES.load(Relaxed),
                 ..LoopStatistics::default()
             }
+        }
+
+        fn nonce(&self) -> Option<Nonce> {
+            crate::nonce(self.rng)
         }
 
         fn set_decimation(&self, decimation: u32) {

@@ -17,7 +17,10 @@
 //!             rates, timing     how often the loop ticks and steps; overruns, jitter, the longest step
 //!       craft                   a flight's gyroscope and motors
 //!         drivers               BMI088, brushed motors, battery, against the traits of `embedded-hal`
-//!         storage               what survives a loss of power, against those of `embedded-storage`
+//!       provisioned             the keys that the image was given
+//!         signature             gain tables that are signed with them
+//!       kept                    uploads that survive a loss of power
+//!         storage               one of them, in two slots, against the traits of `embedded-storage`
 //! ```
 //!
 //! From `session` and `craft` down nothing knows the hardware, and all of it is tested on the host.
@@ -27,11 +30,14 @@
 pub mod craft;
 pub mod drivers;
 pub mod flight;
+pub mod kept;
 pub mod laws;
 pub mod playback;
+pub mod provisioned;
 pub mod rates;
 #[cfg(feature = "motors")]
 pub mod session;
+pub mod signature;
 pub mod storage;
 pub mod stored;
 pub mod timing;

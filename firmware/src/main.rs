@@ -5,12 +5,30 @@
 include!("app.rs");
 
 #[cfg(target_os = "none")]
-use quatrack_firmware::transport::usart::UsartLine as Line;
+use quatrack_firmware::{
+    board::{
+        flash::{SECTOR_BYTES, Sectors as Flash},
+        rng::Rng,
+    },
+    transport::usart::UsartLine as Line,
+};
 
 /// The line is the USART itself.
 #[cfg(target_os = "none")]
 fn line(usart: Line) -> Line {
     usart
+}
+
+/// Uploads are kept in the flash itself, each in a sector.
+#[cfg(target_os = "none")]
+fn flash(sectors: Flash) -> (Flash, u32) {
+    (sectors, SECTOR_BYTES)
+}
+
+/// Of the board's own noise.
+#[cfg(target_os = "none")]
+fn nonce(rng: &Rng) -> Option<quatrack::link::Nonce> {
+    rng.nonce()
 }
 
 /// On a desk there is nothing to run: the image is built with `cargo firmware`.

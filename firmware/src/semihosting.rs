@@ -2,11 +2,14 @@
 //!
 //! Every call is a BKPT that the emulator or debugger answers; without one it is a hard fault.
 
+pub mod flash;
+
 use core::ffi::CStr;
 
 use cortex_m_semihosting::{debug, nr, syscall};
 
 /// An open file of the host.
+#[derive(Debug)]
 pub struct File {
     handle: usize,
 }
@@ -16,6 +19,8 @@ pub struct File {
 pub enum Mode {
     /// `rb`.
     Read = 1,
+    /// `r+b`.
+    Update = 3,
     /// `wb`.
     Write = 5,
 }
@@ -37,12 +42,27 @@ impl File {
         bytes.len().saturating_sub(missing)
     }
 
+    /// Goes to a place from the start, at which the next read or write begins; whether there is one.
+    #[allow(unsafe_code, reason = "SYS_SEEK takes two numbers")]
+    pub fn seek(&mut self, offset: usize) -> bool {
+        // SAFETY: no memory but the two numbers is looked at.
+        unsafe { syscall(nr::SEEK, &[self.handle, offset]) == 0 }
+    }
+
     /// Writes all of `bytes`; whether the host took them.
     #[allow(unsafe_code, reason = "SYS_WRITE reads only the buffer whose length it is given")]
     pub fn write(&mut self, bytes: &[u8]) -> bool {
         // SAFETY: pointer and length are one borrowed buffer's.
         let missing = unsafe { syscall(nr::WRITE, &[self.handle, bytes.as_ptr() as usize, bytes.len()]) };
         missing == 0
+    }
+}
+
+impl Drop for File {
+    #[allow(unsafe_code, reason = "SYS_CLOSE takes a number")]
+    fn drop(&mut self) {
+        // SAFETY: nobody else has the handle.
+        let _ = unsafe { syscall(nr::CLOSE, &[self.handle]) };
     }
 }
 

@@ -1,28 +1,27 @@
 //! The link's side of the board: bytes in; orders to the flight, and frames, out. Runs whenever nothing else does.
 
+mod parameters;
+mod speaker;
+mod uploads;
+
 use heapless::Vec;
 use quatrack::Tick;
-use quatrack::gains::table::{GainTable, LoadError};
 use quatrack::link::{
-    Admission, BLOB_BYTES_MAX, BlobError, BlobKind, BlobReceiver, DELIMITER, Decoder, Encoder, FRAME_BYTES,
-    FaultReport, FromBoard, Identity, LoopStatistics, Parameter, ParameterId, Received, Refusal, TRAJECTORY_PIECES,
-    Telemetry, ToBoard, TrajectoryCommand, TrajectoryId, UploadBegin, Version,
+    Admission, BLOB_BYTES_MAX, BlobError, BlobReceiver, DELIMITER, Decoder, FRAME_BYTES, FaultReport, FromBoard,
+    Identity, LoopStatistics, Message as _, Nonce, Received, Refusal, TRAJECTORY_PIECES, Telemetry, ToBoard,
+    TrajectoryCommand, TrajectoryId, UploadBegin, Version,
 };
 
-use crate::drivers::battery::CellVoltage;
+use self::speaker::Speaker;
 use crate::flight::{Flight, TICK_RATE_HZ};
+use crate::kept::Keep;
 use crate::laws::Refused;
+use crate::provisioned::Keys;
+use crate::signature::Signatures;
 use crate::stored;
-use crate::vehicle::VEHICLE;
 
 /// Identifies what computes commands: a checksum of its sources, by the build script.
 const CONTROL_IMAGE: u32 = include!(concat!(env!("OUT_DIR"), "/control_image.rs"));
-
-/// Longest decimation: one step a second.
-const DECIMATION_MAX: u32 = TICK_RATE_HZ;
-
-/// Longest age and silence that can be set, ticks: ten seconds.
-const AGE_MAX_TICKS: u32 = 10 * TICK_RATE_HZ;
 
 /// Access to the flight, which the control interrupt shares.
 pub trait Shared {
@@ -36,6 +35,8 @@ pub trait Vitals {
     fn now(&self) -> Tick;
     /// Overruns, jitter, longest step, stack, dropped bytes; the steps are the flight's to count.
     fn statistics(&self) -> LoopStatistics;
+    /// A number that it has not used before, nor will again; nothing where it has no source of them.
+    fn nonce(&self) -> Option<Nonce>;
     /// Takes the ticks for one step.
     fn set_decimation(&self, decimation: u32);
 }
@@ -44,16 +45,20 @@ pub trait Vitals {
 pub type Uploads = BlobReceiver<BLOB_BYTES_MAX>;
 
 /// Frames of one connection after the other.
-pub struct Session {
+pub struct Session<K> {
     decoder: Decoder<ToBoard>,
-    encoder: Option<Encoder>,
+    speaker: Speaker,
     uploads: &'static mut Uploads,
+    kept: K,
+    signatures: Signatures,
     telemetry_period_ticks: Tick,
     telemetry_at: Tick,
     /// Commits that did not put an upload to use.
     uploads_refused: u32,
-    /// The gain table put to use last: a commit may come twice, where its answer is lost.
+    /// The blob put to use last: a commit may come twice, where its answer is lost.
     committed: Option<UploadBegin>,
+    /// The blob kept last: the message may come again while the flash is being written.
+    kept_last: Option<UploadBegin>,
     /// The fault that made the board restart, or was found since.
     fault: Option<FaultReport>,
     fault_told: bool,
@@ -62,17 +67,22 @@ pub struct Session {
 /// What a frame is answered with: an identity may bring a fault with it.
 pub type Answers = Vec<FromBoard, 2>;
 
-impl Session {
-    /// Nobody connected.
-    pub const fn new(uploads: &'static mut Uploads, fault: Option<FaultReport>) -> Self {
+impl<K: Keep> Session<K> {
+    /// Nobody connected; with the keys that the image was given, and what keeps uploads.
+    pub fn new(uploads: &'static mut Uploads, keys: Keys, kept: K, fault: Option<FaultReport>) -> Self {
+        let Keys { link, signatures } = keys;
+        let decoder = link.as_ref().map_or_else(Decoder::new, |(key, protection)| Decoder::keyed(key, *protection));
         Self {
-            decoder: Decoder::new(),
-            encoder: None,
+            decoder,
+            speaker: Speaker::new(link),
             uploads,
+            kept,
+            signatures,
             telemetry_period_ticks: 0,
             telemetry_at: 0,
             uploads_refused: 0,
             committed: None,
+            kept_last: None,
             fault,
             fault_told: false,
         }
@@ -84,11 +94,25 @@ impl Session {
         if byte == DELIMITER {
             self.decoder.admit(flight.with(|flight| admission(flight, now)));
         }
-        let received = self.decoder.push(byte)?.ok()?;
-        flight.with(|flight| flight.hear(now));
+        let received = match self.decoder.push(byte)? {
+            Ok(received) => received,
+            Err(rejected) => {
+                let mut answers = Answers::new();
+                // There is room for two.
+                let _ = answers.push(self.speaker.turned_away(rejected)?);
+                return Some(answers);
+            }
+        };
+        // With a key a hello alone opens no session, and is no sign of life: it may be one that was recorded.
+        if !(self.speaker.has_key() && received.message.opens_session()) {
+            flight.with(|flight| flight.hear(now));
+            if self.speaker.goes_over_to(received.session) {
+                self.fault_told = false;
+            }
+        }
         let mut answers = Answers::new();
         let first = match received.message {
-            ToBoard::Hello => self.greet(received.session, flight, &mut answers),
+            ToBoard::Hello(nonce) => self.greet(&received, nonce, flight, vitals, &mut answers),
             ToBoard::State(state) => {
                 flight.with(|flight| flight.accept(state, now));
                 None
@@ -128,7 +152,7 @@ impl Session {
 
     /// A message that is due by itself: telemetry at its period, a fault once.
     pub fn unasked(&mut self, flight: &mut impl Shared, vitals: &impl Vitals) -> Option<FromBoard> {
-        self.encoder.as_ref()?;
+        self.speaker.is_open().then_some(())?;
         if let Some(fault) = self.fault.filter(|_| !self.fault_told) {
             self.fault_told = true;
             return Some(FromBoard::Fault(fault));
@@ -148,14 +172,26 @@ impl Session {
         }
     }
 
-    /// A message as a frame of the open session; nothing before the first hello.
+    /// A message as a frame of the open session, or of the one that is being opened; nothing before the first hello.
     pub fn frame<'b>(&mut self, message: &FromBoard, buffer: &'b mut [u8; FRAME_BYTES]) -> Option<&'b [u8]> {
-        self.encoder.as_mut()?.encode(message, buffer).ok()
+        self.speaker.frame(message, buffer)
     }
 
-    fn greet(&mut self, session: u32, flight: &mut impl Shared, answers: &mut Answers) -> Option<FromBoard> {
-        if self.encoder.as_ref().is_none_or(|encoder| encoder.session() != session) {
-            self.encoder = Some(Encoder::new(session));
+    fn greet(
+        &mut self,
+        hello: &Received<ToBoard>,
+        host: Nonce,
+        flight: &mut impl Shared,
+        vitals: &impl Vitals,
+        answers: &mut Answers,
+    ) -> Option<FromBoard> {
+        let Received { session, sequence, .. } = *hello;
+        let greeted = match self.speaker.greet(session, host, || vitals.nonce()) {
+            Ok(greeted) => greeted,
+            Err(reason) => return Some(FromBoard::Nack { sequence, reason }),
+        };
+        if let Some(seal) = greeted.to_board {
+            self.decoder.propose(session, sequence, seal);
         }
         let identity = Identity {
             firmware: version(),
@@ -163,9 +199,16 @@ impl Session {
             tick_rate_hz: TICK_RATE_HZ,
             decimation: flight.with(|flight| flight.decimation()),
             trajectory_pieces: TRAJECTORY_PIECES as u32,
+            protection: self.speaker.protection(),
+            signed_tables: self.signatures.are_asked_for(),
+            nonce: greeted.nonce,
         };
         // There is room for two.
         let _ = answers.push(FromBoard::Hello(identity));
+        if self.speaker.has_key() {
+            // Told once the session is open.
+            return None;
+        }
         self.fault_told = true;
         self.fault.map(FromBoard::Fault)
     }
@@ -193,94 +236,10 @@ impl Session {
             ToBoard::UploadQuery => {
                 self.uploads.progress().map(|progress| Some(FromBoard::Upload(progress))).map_err(Refusal::Upload)
             }
-            ToBoard::UploadCommit { id } => {
-                let committed = self.commit(id, flight);
-                if committed.is_err() {
-                    self.uploads_refused = self.uploads_refused.saturating_add(1);
-                }
-                committed.map(|()| None)
-            }
+            ToBoard::UploadCommit { id } => self.counted(|session| session.commit(id, flight)).map(|()| None),
+            ToBoard::UploadKeep { id } => self.counted(|session| session.keep(id, flight)).map(|()| None),
             _ => Err(Refusal::Unsupported),
         }
-    }
-
-    /// Checks the uploaded blob and puts it to use.
-    fn commit(&mut self, id: u32, flight: &mut impl Shared) -> Result<(), Refusal> {
-        let (begin, blob) = self.uploads.finish(id).map_err(Refusal::Upload)?;
-        if self.committed == Some(begin) {
-            return Ok(());
-        }
-        match begin.kind {
-            BlobKind::Trajectory => {
-                // Checking pieces takes longer than a tick, and must not change what is being flown.
-                disarmed(flight)?;
-                flight.with(|flight| flight.playback.store().commit(blob)).map_err(Refusal::Blob)
-            }
-            BlobKind::GainTable => {
-                // Read while the loop goes on; it waits only for the copy.
-                let rate = flight.with(|flight| flight.table_rate()).ok_or(Refusal::NoTable)?;
-                let refused = |error: LoadError| Refusal::Blob(error.into());
-                let table = GainTable::from_bytes(blob).map_err(|error| refused(error.into()))?;
-                let accepted = table.accept_for(&VEHICLE, rate).map_err(|error| refused(error.into()))?;
-                flight.with(|flight| flight.load(&accepted)).map_err(Refusal::from)?;
-                self.committed = Some(begin);
-                Ok(())
-            }
-        }
-    }
-
-    fn parameter(&self, id: ParameterId, flight: &mut impl Shared) -> Parameter {
-        flight.with(|flight| match id {
-            ParameterId::Decimation => Parameter::Decimation(flight.decimation()),
-            ParameterId::Limits => Parameter::Limits(flight.limits()),
-            ParameterId::StateAgeMaxTicks => Parameter::StateAgeMaxTicks(flight.config.state_age_max_ticks),
-            ParameterId::LinkSilenceMaxTicks => Parameter::LinkSilenceMaxTicks(flight.config.link_silence_max_ticks),
-            ParameterId::OverrunsTolerated => Parameter::OverrunsTolerated(flight.config.overruns_tolerated),
-            ParameterId::TelemetryPeriodTicks => Parameter::TelemetryPeriodTicks(self.telemetry_period_ticks),
-            ParameterId::UploadsRefused => Parameter::UploadsRefused(self.uploads_refused),
-            ParameterId::BatteryVoltage => Parameter::BatteryVoltage(flight.motors.battery().volts()),
-            ParameterId::BodyRateBandwidth => Parameter::BodyRateBandwidth(flight.bandwidth_rad_s()),
-        })
-    }
-
-    fn set(&mut self, parameter: Parameter, flight: &mut impl Shared, vitals: &impl Vitals) -> Result<(), Refusal> {
-        if !matches!(parameter, Parameter::TelemetryPeriodTicks(_) | Parameter::BatteryVoltage(_)) {
-            disarmed(flight)?;
-        }
-        let within = |value: u32, max: u32| if value <= max { Ok(value) } else { Err(Refusal::OutOfRange) };
-        match parameter {
-            Parameter::Decimation(ticks) => {
-                let decimation = within(ticks, DECIMATION_MAX)?;
-                flight.with(|flight| flight.set_decimation(decimation));
-                self.committed = None;
-                vitals.set_decimation(decimation);
-            }
-            Parameter::Limits(limits) => {
-                flight.with(|flight| flight.set_limits(limits)).map_err(Refusal::Limits)?;
-            }
-            Parameter::StateAgeMaxTicks(ticks) => {
-                let ticks = within(ticks, AGE_MAX_TICKS)?;
-                flight.with(|flight| flight.config.state_age_max_ticks = ticks);
-            }
-            Parameter::LinkSilenceMaxTicks(ticks) => {
-                let ticks = within(ticks, AGE_MAX_TICKS)?;
-                flight.with(|flight| flight.config.link_silence_max_ticks = ticks);
-            }
-            Parameter::OverrunsTolerated(count) => {
-                flight.with(|flight| flight.config.overruns_tolerated = count);
-            }
-            Parameter::TelemetryPeriodTicks(ticks) => self.telemetry_period_ticks = ticks,
-            Parameter::UploadsRefused(_) => return Err(Refusal::ReadOnly),
-            Parameter::BatteryVoltage(voltage_v) => {
-                let battery = CellVoltage::new(voltage_v).map_err(|_| Refusal::OutOfRange)?;
-                flight.with(|flight| flight.motors.set_battery(battery));
-            }
-            Parameter::BodyRateBandwidth(bandwidth_rad_s) => {
-                let set = flight.with(|flight| flight.set_bandwidth(bandwidth_rad_s));
-                set.map_err(|_| Refusal::OutOfRange)?;
-            }
-        }
-        Ok(())
     }
 
     fn telemetry(&self, flight: &mut impl Shared, vitals: &impl Vitals) -> FromBoard {
@@ -351,102 +310,4 @@ fn version() -> Version {
 }
 
 #[cfg(test)]
-mod tests {
-    use quatrack::State;
-    use quatrack::link::StateIn;
-    use quatrack::nalgebra::Vector3;
-    use quatrack::supervisor::Mode;
-
-    use super::*;
-    use crate::flight::{CONFIG, Flight};
-
-    struct Here(Flight);
-
-    impl Shared for Here {
-        fn with<R>(&mut self, access: impl FnOnce(&mut Flight) -> R) -> R {
-            access(&mut self.0)
-        }
-    }
-
-    struct At(Tick);
-
-    impl Vitals for At {
-        fn now(&self) -> Tick {
-            self.0
-        }
-
-        fn statistics(&self) -> LoopStatistics {
-            LoopStatistics::default()
-        }
-
-        fn set_decimation(&self, _decimation: u32) {}
-    }
-
-    struct Board {
-        flight: Here,
-        session: Session,
-        now: Tick,
-    }
-
-    impl Board {
-        fn new() -> Self {
-            let flight = Flight::new(Box::leak(Box::default()), None);
-            let session = Session::new(Box::leak(Box::new(Uploads::new())), None);
-            Self { flight: Here(flight), session, now: 0 }
-        }
-
-        /// Whether somebody's message was taken.
-        fn hears(&mut self, from: &mut Encoder, message: &ToBoard) -> bool {
-            let mut buffer = [0; FRAME_BYTES];
-            let frame = from.encode(message, &mut buffer).unwrap().to_vec();
-            let at = At(self.now);
-            frame.iter().any(|byte| self.session.push(*byte, &mut self.flight, &at).is_some())
-        }
-
-        /// Armed by a pilot.
-        fn armed() -> (Self, Encoder) {
-            let (mut board, mut pilot) = (Self::new(), Encoder::new(1000));
-            let state = StateIn { tick: 0, state: State::at_rest(Vector3::new(0.0, 0.0, 0.0)) };
-            for message in [ToBoard::Hello, ToBoard::State(state), ToBoard::Arm] {
-                assert!(board.hears(&mut pilot, &message));
-            }
-            assert_eq!(board.flight.0.mode(), Mode::Armed);
-            (board, pilot)
-        }
-    }
-
-    #[test]
-    fn nobody_takes_over_an_armed_craft_but_the_pilot_goes_on() {
-        let (mut board, mut pilot) = Board::armed();
-        for number in [1001, 2000, 999, u32::MAX] {
-            let mut thief = Encoder::new(number);
-            assert!(!board.hears(&mut thief, &ToBoard::Hello) && !board.hears(&mut thief, &ToBoard::Disarm));
-        }
-        assert_eq!(board.flight.0.mode(), Mode::Armed);
-        assert!(board.hears(&mut pilot, &ToBoard::Disarm));
-        assert!(board.hears(&mut Encoder::new(1001), &ToBoard::Hello), "a later session, on the ground");
-        assert!(!board.hears(&mut Encoder::new(999), &ToBoard::Hello), "an earlier one has been replayed");
-    }
-
-    #[test]
-    fn after_silence_a_hello_is_taken_whatever_its_number() {
-        for number in [0, 999, 1001, 1000_u32.wrapping_sub(1 << 31)] {
-            let (mut board, _) = Board::armed();
-            board.now = CONFIG.link_silence_max_ticks;
-            assert!(!board.hears(&mut Encoder::new(number), &ToBoard::Hello), "not yet");
-            board.now += 1;
-            assert!(board.hears(&mut Encoder::new(number), &ToBoard::Hello));
-        }
-    }
-
-    #[test]
-    fn a_frame_is_not_taken_twice() {
-        let (mut board, mut pilot) = Board::armed();
-        let mut buffer = [0; FRAME_BYTES];
-        let frame = pilot.encode(&ToBoard::Disarm, &mut buffer).unwrap().to_vec();
-        let at = At(0);
-        let hear =
-            |board: &mut Board| frame.iter().any(|byte| board.session.push(*byte, &mut board.flight, &at).is_some());
-        assert!(hear(&mut board) && !hear(&mut board));
-    }
-}
+mod tests;

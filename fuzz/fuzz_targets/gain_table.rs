@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use quatrack::checksum::crc32c;
-use quatrack::gains::table::{GainTable, MAGIC, TABLE_BYTES_MAX, TableKind};
+use quatrack::gains::table::{FORMAT_VERSION, GainTable, MAGIC, TABLE_BYTES_MAX, TableKind};
 use quatrack::nalgebra::Vector3;
 use quatrack::{
     Actuation, Airframe, FeedForward, Limits, Memory, MotorReference, Output, Progress, RigidState, Settings, State,
@@ -14,7 +14,7 @@ use quatrack::{
 /// A sound frame around a payload, so that the search is not for a checksum.
 fn framed(payload: &[u8]) -> Option<Vec<u8>> {
     let length = u16::try_from(payload.len()).ok()?;
-    let mut bytes = [&MAGIC[..], &[1, 0], &length.to_le_bytes(), payload].concat();
+    let mut bytes = [&MAGIC[..], &FORMAT_VERSION.to_le_bytes(), &length.to_le_bytes(), payload].concat();
     bytes.extend(crc32c(&bytes).to_le_bytes());
     Some(bytes)
 }

@@ -78,6 +78,23 @@ impl<const N: usize> BlobReceiver<N> {
         Ok((announced, &self.bytes))
     }
 
+    /// Uses the room for a blob that comes from elsewhere: `read` fills the start of a buffer and says how much of it. What was
+    /// announced is forgotten.
+    pub fn fill(&mut self, read: impl FnOnce(&mut [u8]) -> Option<usize>) -> Option<&[u8]> {
+        self.clear();
+        // There is room for as many as there is room for.
+        let _ = self.bytes.resize(N, 0);
+        let bytes = read(&mut self.bytes);
+        self.bytes.truncate(bytes.unwrap_or(0));
+        bytes.map(|_| &*self.bytes)
+    }
+
+    /// Forgets what was announced and received.
+    pub fn clear(&mut self) {
+        self.announced.length = 0;
+        self.bytes.clear();
+    }
+
     fn announced(&self) -> Result<UploadBegin, UploadError> {
         if self.announced.length > 0 { Ok(self.announced) } else { Err(UploadError::NotBegun) }
     }

@@ -39,6 +39,13 @@ pub enum Rejected {
         /// Its sequence number.
         sequence: u32,
     },
+    /// Without the tag of whoever may send it.
+    Unauthentic {
+        /// The frame's session.
+        session: u32,
+        /// Its sequence number.
+        sequence: u32,
+    },
 }
 
 impl fmt::Display for Rejected {
@@ -61,6 +68,9 @@ impl fmt::Display for Rejected {
             }
             Self::Duplicate { sequence } => write!(f, "frame: {sequence} came twice"),
             Self::Stale { sequence } => write!(f, "frame: {sequence} is older than the last one accepted"),
+            Self::Unauthentic { session, sequence } => {
+                write!(f, "frame: {sequence} of session {session} has no tag of this key; give both ends the same key")
+            }
         }
     }
 }
@@ -91,6 +101,8 @@ pub struct Counters {
     pub duplicate: u32,
     /// [`Rejected::Stale`].
     pub stale: u32,
+    /// [`Rejected::Unauthentic`].
+    pub unauthentic: u32,
     /// Sequence numbers that were skipped: frames that never came, or came broken. No frames of their own.
     pub lost: u32,
 }
@@ -108,6 +120,7 @@ impl Counters {
         foreign_session: 0,
         duplicate: 0,
         stale: 0,
+        unauthentic: 0,
         lost: 0,
     };
 
@@ -129,9 +142,10 @@ impl Counters {
             foreign_session,
             duplicate,
             stale,
+            unauthentic,
             lost: _,
         } = *self;
-        [truncated, overlong, checksum, version, unknown, malformed, foreign_session, duplicate, stale]
+        [truncated, overlong, checksum, version, unknown, malformed, foreign_session, duplicate, stale, unauthentic]
             .iter()
             .fold(0, |sum: u32, count| sum.saturating_add(*count))
     }
@@ -152,6 +166,7 @@ impl Counters {
             Rejected::ForeignSession { .. } => &mut self.foreign_session,
             Rejected::Duplicate { .. } => &mut self.duplicate,
             Rejected::Stale { .. } => &mut self.stale,
+            Rejected::Unauthentic { .. } => &mut self.unauthentic,
         };
         *count = count.saturating_add(1);
     }

@@ -6,9 +6,11 @@
 use core::marker::PhantomData;
 
 use super::counters::{Counters, Rejected};
+use super::guard::{Frame, Guard};
+use super::seal::{Key, Protection, Seal};
 use super::size::RAW_FRAME_BYTES;
 use super::window::{Admission, Window};
-use super::{DELIMITER, Message, PROTOCOL_VERSION};
+use super::{DELIMITER, Message, PROTOCOL_VERSION, TAG_BYTES};
 use crate::checksum::Crc32c;
 
 /// A message and the numbers of its frame.
@@ -27,6 +29,7 @@ pub struct Received<M> {
 pub struct Decoder<M> {
     frame: Unstuffer,
     window: Window,
+    guard: Guard,
     admission: Admission,
     counters: Counters,
     message: PhantomData<fn() -> M>,
@@ -35,18 +38,29 @@ pub struct Decoder<M> {
 impl<M: Message> Decoder<M> {
     /// For the board: waits for a hello to open a session.
     pub const fn new() -> Self {
-        Self::with(Window::closed())
+        Self::with(Window::closed(), Guard::CABLE)
     }
 
     /// For the host: takes answers to the session that it is opening.
     pub const fn for_session(session: u32) -> Self {
-        Self::with(Window::open(session))
+        Self::with(Window::open(session), Guard::CABLE)
     }
 
-    const fn with(window: Window) -> Self {
+    /// For a board with a key: takes the hellos of who has it, too. Sessions are [proposed](Self::propose) then.
+    pub fn keyed(key: &Key, protection: Protection) -> Self {
+        Self::with(Window::closed(), Guard::keyed(key.hello(), protection))
+    }
+
+    /// For a host with a key: takes the answer to its hello, and others once it knows [by what](Self::open) they are tagged.
+    pub fn for_keyed_session(session: u32, answer: Seal) -> Self {
+        Self::with(Window::open(session), Guard::keyed(answer, Protection::Everything))
+    }
+
+    const fn with(window: Window, guard: Guard) -> Self {
         Self {
             frame: Unstuffer::new(),
             window,
+            guard,
             admission: Admission::Later,
             counters: Counters::NONE,
             message: PhantomData,
@@ -56,6 +70,17 @@ impl<M: Message> Decoder<M> {
     /// The open session.
     pub const fn session(&self) -> Option<u32> {
         self.window.session()
+    }
+
+    /// For the board: what tags the frames of the session that a hello of this sequence number asks for. The first of them opens it;
+    /// until then the open one goes on.
+    pub fn propose(&mut self, session: u32, hello: u32, seal: Seal) {
+        self.guard.propose(session, hello, seal);
+    }
+
+    /// For the host: what tags the frames of the session, and which of them.
+    pub fn open(&mut self, seal: Seal, protection: Protection) {
+        self.guard.open(seal, protection);
     }
 
     /// Says which hellos open another session from here on.
@@ -75,7 +100,7 @@ impl<M: Message> Decoder<M> {
             return None;
         }
         let result = match self.frame.end()? {
-            Ok(bytes) => Self::read(bytes, &mut self.window, self.admission),
+            Ok(bytes) => Self::read(bytes, &mut self.window, &mut self.guard, self.admission),
             Err(rejected) => Err(rejected),
         };
         self.frame.reset();
@@ -104,7 +129,12 @@ impl<M: Message> Decoder<M> {
     }
 
     /// Reads a frame whose checksum is right and which has been cut off.
-    fn read(bytes: &[u8], window: &mut Window, admission: Admission) -> Result<(Received<M>, u32), Rejected> {
+    fn read(
+        bytes: &[u8],
+        window: &mut Window,
+        guard: &mut Guard,
+        admission: Admission,
+    ) -> Result<(Received<M>, u32), Rejected> {
         let (version, rest) = bytes.split_first().ok_or(Rejected::Malformed)?;
         if *version != PROTOCOL_VERSION {
             return Err(Rejected::Version { version: *version });
@@ -116,10 +146,16 @@ impl<M: Message> Decoder<M> {
             return Err(Rejected::UnknownMessage { kind });
         }
         let (message, left) = postcard::take_from_bytes::<M>(body).map_err(|_| Rejected::Malformed)?;
-        if !left.is_empty() {
-            return Err(Rejected::Malformed);
-        }
-        let skipped = window.take(session, sequence, message.opens_session(), admission)?;
+        let (signed, tag) = match left.len() {
+            0 => (bytes, None),
+            TAG_BYTES => {
+                bytes.split_last_chunk().map(|(signed, tag)| (signed, Some(tag))).ok_or(Rejected::Malformed)?
+            }
+            _ => return Err(Rejected::Malformed),
+        };
+        let frame =
+            Frame { session, sequence, opens: message.opens_session(), tagging: message.tagging(), signed, tag };
+        let skipped = guard.take(&frame, window, admission)?;
         Ok((Received { session, sequence, message }, skipped))
     }
 }

@@ -4,6 +4,8 @@ use core::fmt;
 
 use postcard::ser_flavors::Flavor;
 
+use super::seal::Seal;
+use super::size::RAW_FRAME_BYTES;
 use super::{DELIMITER, Message, PROTOCOL_VERSION};
 use crate::checksum::Crc32c;
 
@@ -65,68 +67,52 @@ impl Encoder {
         self.sequence
     }
 
-    /// Writes a message as a frame, delimiter included, and returns the part of `buffer` that holds it.
+    /// Writes a message as a frame without a tag, delimiter included, and returns the part of `buffer` that holds it.
     ///
     /// # Errors
     /// [`EncodeError`]; the sequence number is not used up then.
     pub fn encode<'b, M: Message>(&mut self, message: &M, buffer: &'b mut [u8]) -> Result<&'b [u8], EncodeError> {
+        self.encode_sealed(message, None, buffer)
+    }
+
+    /// The same, with the tag of a seal where there is one.
+    ///
+    /// # Errors
+    /// As [`Encoder::encode`].
+    pub fn encode_sealed<'b, M: Message>(
+        &mut self,
+        message: &M,
+        seal: Option<&Seal>,
+        buffer: &'b mut [u8],
+    ) -> Result<&'b [u8], EncodeError> {
         let sequence = self.sequence.ok_or(EncodeError::SessionOver)?;
-        let bytes = buffer.len();
+        let too_short = EncodeError::BufferTooShort { bytes: buffer.len() };
         let header = (PROTOCOL_VERSION, self.session, sequence);
-        let frame = postcard::serialize_with_flavor(&(header, message), Framer::new(buffer))
-            .map_err(|_| EncodeError::BufferTooShort { bytes })?;
+        let mut raw = [0; RAW_FRAME_BYTES];
+        let raw = Raw { bytes: &mut raw, length: 0 };
+        let frame = postcard::serialize_with_flavor(&(header, message), raw).map_err(|_| too_short)?;
+        let tag = seal.map(|seal| seal.tag(frame));
+        let framed = Framer::new(buffer).frame(frame, tag.as_ref().map_or(&[], |tag| tag)).ok_or(too_short)?;
         self.sequence = sequence.checked_add(1);
-        Ok(frame)
+        Ok(framed)
     }
 }
 
-/// Takes the bytes of a frame one by one: checksum and COBS on the way into the buffer. No frame is long enough for a
-/// block that ends without a zero.
-struct Framer<'b> {
-    buffer: &'b mut [u8],
-    /// Where the block's code byte stands.
-    code_at: usize,
-    /// Where the next byte goes.
-    next: usize,
-    checksum: Crc32c,
+/// The bytes of a frame before they are framed.
+struct Raw<'r> {
+    bytes: &'r mut [u8; RAW_FRAME_BYTES],
+    length: usize,
 }
 
-impl<'b> Framer<'b> {
-    fn new(buffer: &'b mut [u8]) -> Self {
-        Self { buffer, code_at: 0, next: 1, checksum: Crc32c::new() }
-    }
-
-    fn put(&mut self, at: usize, byte: u8) -> postcard::Result<()> {
-        *self.buffer.get_mut(at).ok_or(postcard::Error::SerializeBufferFull)? = byte;
-        Ok(())
-    }
-
-    fn end_block(&mut self) -> postcard::Result<()> {
-        let code = self.next.wrapping_sub(self.code_at) as u8;
-        self.put(self.code_at, code)?;
-        self.code_at = self.next;
-        self.next += 1;
-        Ok(())
-    }
-
-    fn stuff(&mut self, byte: u8) -> postcard::Result<()> {
-        if byte == 0 {
-            return self.end_block();
-        }
-        self.put(self.next, byte)?;
-        self.next += 1;
-        Ok(())
-    }
-}
-
-impl<'b> Flavor for Framer<'b> {
-    type Output = &'b [u8];
+impl<'r> Flavor for Raw<'r> {
+    type Output = &'r [u8];
 
     // Messages have a hundred fields: inlined into each, these two make the encoder several times as large.
     #[inline(never)]
     fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
-        self.checksum.update(byte);
-        self.stuff(byte)
+        *self.bytes.get_mut(self.length).ok_or(postcard::Error::SerializeBufferFull)? = byte;
+        self.length += 1;
+        Ok(())
     }
 
     #[inline(never)]
@@ -134,13 +120,61 @@ impl<'b> Flavor for Framer<'b> {
         bytes.iter().try_for_each(|byte| self.try_push(*byte))
     }
 
-    fn finalize(mut self) -> postcard::Result<&'b [u8]> {
-        for byte in self.checksum.value().to_le_bytes() {
+    fn finalize(self) -> postcard::Result<&'r [u8]> {
+        self.bytes.get(..self.length).ok_or(postcard::Error::SerializeBufferFull)
+    }
+}
+
+/// Takes the bytes of a frame: checksum and COBS on the way into the buffer. No frame is long enough for a block that ends without
+/// a zero.
+struct Framer<'b> {
+    buffer: &'b mut [u8],
+    /// Where the block's code byte is.
+    code_at: usize,
+    /// Where the next byte goes.
+    next: usize,
+}
+
+impl<'b> Framer<'b> {
+    fn new(buffer: &'b mut [u8]) -> Self {
+        Self { buffer, code_at: 0, next: 1 }
+    }
+
+    /// Two parts and their checksum; nothing where the buffer is too short.
+    fn frame(mut self, first: &[u8], second: &[u8]) -> Option<&'b [u8]> {
+        let mut checksum = Crc32c::new();
+        for byte in first.iter().chain(second) {
+            checksum.update(*byte);
+            self.stuff(*byte)?;
+        }
+        for byte in checksum.value().to_le_bytes() {
             self.stuff(byte)?;
         }
         self.end_block()?;
         self.put(self.code_at, DELIMITER)?;
-        self.buffer.get(..self.next).ok_or(postcard::Error::SerializeBufferFull)
+        self.buffer.get(..self.next)
+    }
+
+    fn put(&mut self, at: usize, byte: u8) -> Option<()> {
+        *self.buffer.get_mut(at)? = byte;
+        Some(())
+    }
+
+    fn end_block(&mut self) -> Option<()> {
+        let code = self.next.wrapping_sub(self.code_at) as u8;
+        self.put(self.code_at, code)?;
+        self.code_at = self.next;
+        self.next += 1;
+        Some(())
+    }
+
+    fn stuff(&mut self, byte: u8) -> Option<()> {
+        if byte == 0 {
+            return self.end_block();
+        }
+        self.put(self.next, byte)?;
+        self.next += 1;
+        Some(())
     }
 }
 
@@ -153,12 +187,12 @@ mod tests {
     fn a_frame_is_these_bytes() {
         let mut buffer = [0xAA; FRAME_BYTES];
         let mut encoder = Encoder::new(0x81);
-        // Version, session 0x81 as a varint, sequence 0, kind 0; then the checksum of these.
-        let checksum = crate::link::crc32c(&[PROTOCOL_VERSION, 0x81, 0x01, 0, 0]).to_le_bytes();
+        // Version, session 0x81 as a varint, sequence 0, kind 6; then the checksum of these.
+        let checksum = crate::link::crc32c(&[PROTOCOL_VERSION, 0x81, 0x01, 0, 6]).to_le_bytes();
         assert!(checksum.iter().all(|byte| *byte != 0), "the frame below takes the checksum to be one block");
         let [a, b, c, d] = checksum;
-        let frame = encoder.encode(&ToBoard::Hello, &mut buffer);
-        assert_eq!(frame, Ok(&[4, PROTOCOL_VERSION, 0x81, 0x01, 1, 5, a, b, c, d, DELIMITER][..]));
+        let frame = encoder.encode(&ToBoard::Disarm, &mut buffer);
+        assert_eq!(frame, Ok(&[4, PROTOCOL_VERSION, 0x81, 0x01, 6, 6, a, b, c, d, DELIMITER][..]));
     }
 
     #[test]
@@ -192,7 +226,9 @@ mod tests {
         let chunk = crate::link::Chunk::new(u32::MAX, u32::MAX, &[0xFF; crate::link::CHUNK_BYTES]).unwrap();
         let mut encoder = Encoder { session: u32::MAX, sequence: Some(u32::MAX) };
         let mut buffer = [0; FRAME_BYTES];
-        assert_eq!(encoder.encode(&ToBoard::UploadChunk(chunk), &mut buffer).map(<[u8]>::len), Ok(FRAME_BYTES));
+        let seal = crate::link::Key::new(&[0; crate::link::KEY_BYTES]).hello();
+        let frame = encoder.encode_sealed(&ToBoard::UploadChunk(chunk), Some(&seal), &mut buffer);
+        assert_eq!(frame.map(<[u8]>::len), Ok(FRAME_BYTES));
         let mut encoder = Encoder { session: u32::MAX, sequence: Some(u32::MAX) };
         let short = encoder.encode(&FromBoard::Ack { sequence: u32::MAX }, &mut buffer).unwrap().len();
         assert!(short < FRAME_BYTES, "{short}");

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Message;
 use super::counters::Counters;
+use super::seal::{Nonce, Protection, Tagging};
 use super::to_board::Parameter;
 use super::trajectory_store::BlobError;
 use super::upload::{Progress, UploadError};
@@ -53,6 +54,14 @@ impl Message for FromBoard {
     fn opens_session(&self) -> bool {
         false
     }
+
+    fn tagging(&self) -> Tagging {
+        match self {
+            Self::Hello(_) => Tagging::Greeting,
+            Self::Command(_) | Self::Forces(_) | Self::Telemetry(_) | Self::Fault(_) => Tagging::Motion,
+            _ => Tagging::Always,
+        }
+    }
 }
 
 /// Version of a firmware.
@@ -81,6 +90,12 @@ pub struct Identity {
     pub decimation: u32,
     /// Pieces that an uploaded trajectory may have.
     pub trajectory_pieces: u32,
+    /// Which frames carry a tag.
+    pub protection: Protection,
+    /// Whether only signed gain tables are taken.
+    pub signed_tables: bool,
+    /// The board's own, from which the session's key follows.
+    pub nonce: Nonce,
 }
 
 /// The command that answers a state, with the exact bits of the step's numbers.
@@ -195,6 +210,12 @@ pub enum Refusal {
     NoTable,
     /// One law is still giving way to another, or the table that an upload would replace is being flown.
     LawChanging,
+    /// The hello has no tag of this board's key. Carries none itself.
+    Key,
+    /// The board has a key and nothing to make a nonce of: its source of random numbers does not work.
+    NoNonce,
+    /// There is nothing to keep blobs in, or it failed; what was kept before is as it was.
+    NotKept,
 }
 
 impl fmt::Display for Refusal {
@@ -210,6 +231,9 @@ impl fmt::Display for Refusal {
             Self::Upload(error) => error.fmt(f),
             Self::Blob(error) => error.fmt(f),
             Self::NoTable => f.write_str("board: no such gain table; upload and commit one for this rate first"),
+            Self::Key => f.write_str("board: it talks to those who have its key alone; give the file of its key"),
+            Self::NoNonce => f.write_str("board: no random numbers to use its key with; restart it"),
+            Self::NotKept => f.write_str("board: its flash did not keep it; what was kept before is as it was"),
             Self::LawChanging => f.write_str("board: the law is changing; ask again when it has, or disarm first"),
         }
     }

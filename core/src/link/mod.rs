@@ -7,6 +7,7 @@
 //! session   varint   the host's number for this connection; the board echoes it
 //! sequence  varint   counts the sender's frames in this session, from 0
 //! message   postcard ToBoard or FromBoard: one byte that says which, then its fields
+//! tag       16 bytes who sent it, where a key says so ([`Key`]); otherwise absent
 //! checksum  u32 LE   CRC-32C of all of the above
 //! ```
 //!
@@ -20,7 +21,13 @@
 //! [`ToBoard::Hello`] with a session number ahead of the current one (in serial-number arithmetic), the host on its own
 //! choice: a restarted host takes a later number, the seconds since 1970 say, and is not locked out. What opens another session
 //! is the receiver's to say ([`Admission`]): nothing while a craft is armed, anything once its link has been silent. A session
-//! ends with its last sequence number, after 49 days at 1 kHz. None of this authenticates: anybody with access to the line can fly.
+//! ends with its last sequence number, after 49 days at 1 kHz.
+//!
+//! Without a key none of this authenticates: anybody with access to the line can fly. With one ([`Protection`]) a hello and its answer
+//! carry tags of the key, and bring a nonce each; from both follows the session's own key, whose tags the other frames carry. The
+//! hello alone opens nothing: the session that was open goes on until the first frame of the new one with a right tag, so that a hello
+//! which is replayed neither takes a craft nor keeps a lost link alive. What carries no tag has sequence numbers of its own, so that
+//! nothing without a tag makes an order late.
 //!
 //! On the target, [`BlobReceiver`] and [`TrajectoryStore`] are best statics of their own: they start as zeros and take
 //! no flash.
@@ -31,7 +38,12 @@ mod decoder;
 mod encoder;
 mod from_board;
 mod gain_store;
+mod guard;
+mod host_session;
+mod key_slot;
 mod law_choice;
+mod seal;
+mod signed;
 mod size;
 mod to_board;
 mod trajectory_store;
@@ -47,7 +59,11 @@ pub use from_board::{
     CommandOut, FaultReport, ForcesOut, FromBoard, Identity, LoopStatistics, NoCommand, Refusal, Telemetry, Version,
 };
 pub use gain_store::GainStore;
+pub use host_session::HostSession;
+pub use key_slot::{GivenKeys, KEY_SLOT_BYTES, KEY_SLOT_MAGIC};
 pub use law_choice::{LawChoice, Table};
+pub use seal::{KEY_BYTES, Key, Nonce, Protection, Seal, SessionSeals, TAG_BYTES, Tagging};
+pub use signed::{SIGNATURE_BYTES, signature, signed_with, unsigned};
 pub use size::{CHUNK_BYTES, FRAME_BYTES, MESSAGE_BYTES};
 pub use to_board::{
     LimitsSetting, Parameter, ParameterId, RigidStateIn, StateIn, ToBoard, TrajectoryCommand, TrajectoryId,
@@ -59,11 +75,11 @@ pub use upload::{BlobKind, Chunk, Progress, UploadBegin, UploadError};
 pub use window::Admission;
 
 /// Version of the frame layout and of every message in it. A changed message is a changed version.
-pub const PROTOCOL_VERSION: u8 = 3;
+pub const PROTOCOL_VERSION: u8 = 4;
 
 /// Bytes of the longest blob of any kind.
 pub const BLOB_BYTES_MAX: usize = {
-    let (trajectory, table) = (TRAJECTORY_BLOB_BYTES, crate::gains::table::TABLE_BYTES_MAX);
+    let (trajectory, table) = (TRAJECTORY_BLOB_BYTES, crate::gains::table::TABLE_BYTES_MAX + SIGNATURE_BYTES);
     if trajectory > table { trajectory } else { table }
 };
 
@@ -77,6 +93,9 @@ pub trait Message: serde::Serialize + serde::de::DeserializeOwned + private::Sea
 
     /// Whether this message opens a session at its receiver.
     fn opens_session(&self) -> bool;
+
+    /// When it carries a tag.
+    fn tagging(&self) -> Tagging;
 }
 
 mod private {

@@ -1,5 +1,7 @@
 //! How long messages and frames get, from the fields of the longest ones.
 
+use super::seal::TAG_BYTES;
+
 /// Most bytes of a blob in one [`super::Chunk`].
 pub const CHUNK_BYTES: usize = 96;
 
@@ -17,7 +19,7 @@ const UPLOAD_CHUNK: usize = KIND + 2 * VARINT_U32 + 1 + CHUNK_BYTES;
 const TELEMETRY: usize = {
     let mode = 3;
     let loop_statistics = 7 * VARINT_U32;
-    let counters = 11 * VARINT_U32;
+    let counters = 12 * VARINT_U32;
     KIND + VARINT_U32 + mode + loop_statistics + counters
 };
 
@@ -33,7 +35,7 @@ const HEADER: usize = 1 + 2 * VARINT_U32;
 const CHECKSUM: usize = 4;
 
 /// Longest frame before COBS, bytes.
-pub(crate) const RAW_FRAME_BYTES: usize = HEADER + MESSAGE_BYTES + CHECKSUM;
+pub(crate) const RAW_FRAME_BYTES: usize = HEADER + MESSAGE_BYTES + TAG_BYTES + CHECKSUM;
 
 /// Longest frame on the wire, bytes; a buffer of this size holds any message. COBS adds one byte to a frame this short,
 /// and there is the delimiter.
@@ -85,6 +87,7 @@ mod tests {
             foreign_session: m,
             duplicate: m,
             stale: m,
+            unauthentic: m,
             lost: m,
         };
         let mode = Mode::Stopped(Reason::Fault(Fault::ClockStopped));

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Message;
 use super::law_choice::LawChoice;
+use super::seal::{Nonce, Tagging};
 use super::upload::{Chunk, UploadBegin};
 use crate::clock::Tick;
 use crate::command::{Limits, LimitsError};
@@ -17,8 +18,8 @@ use crate::state::State;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ToBoard {
-    /// Opens a session and asks who is there. May be repeated until it is answered.
-    Hello,
+    /// Opens a session and asks who is there, with a nonce of the host. May be repeated until it is answered.
+    Hello(Nonce),
     /// A state; the reference comes from the stored trajectory that is playing.
     State(StateIn),
     /// A state and what to follow.
@@ -51,13 +52,27 @@ pub enum ToBoard {
     /// A state with body rates, for a board without a gyroscope; the reference comes from the stored trajectory that is
     /// playing.
     RigidState(RigidStateIn),
+    /// Keep the committed blob over a loss of power, in the place of the one that was kept before. Not while armed: the flash
+    /// holds the processor up.
+    UploadKeep {
+        /// Of the committed blob.
+        id: u32,
+    },
 }
 
 impl Message for ToBoard {
-    const KINDS: u8 = 15;
+    const KINDS: u8 = 16;
 
     fn opens_session(&self) -> bool {
-        matches!(self, Self::Hello)
+        matches!(self, Self::Hello(_))
+    }
+
+    fn tagging(&self) -> Tagging {
+        match self {
+            Self::Hello(_) => Tagging::Greeting,
+            Self::State(_) | Self::StateAndReference(..) | Self::RigidState(_) => Tagging::Motion,
+            _ => Tagging::Always,
+        }
     }
 }
 

@@ -45,6 +45,8 @@ pub enum BlobError {
     Trajectory(TrajectoryError),
     /// The gain table is not flown.
     GainTable(LoadError),
+    /// The board takes only gain tables that are signed for it, and this one is not.
+    Unsigned,
 }
 
 impl fmt::Display for BlobError {
@@ -58,6 +60,9 @@ impl fmt::Display for BlobError {
             Self::BytesLeft { bytes } => write!(f, "blob: {bytes} bytes after the last piece; encode it as documented"),
             Self::Trajectory(error) => error.fmt(f),
             Self::GainTable(error) => error.fmt(f),
+            Self::Unsigned => {
+                f.write_str("gain table: not signed with this board's key; sign it with `quatrack gains sign`")
+            }
         }
     }
 }

@@ -4,7 +4,7 @@
 use proptest::collection::vec;
 use proptest::prelude::*;
 use quatrack::link::{
-    BlobKind, BlobReceiver, Decoder, Encoder, FRAME_BYTES, FromBoard, Refusal, TRAJECTORY_BLOB_BYTES,
+    BlobKind, BlobReceiver, Decoder, Encoder, FRAME_BYTES, FromBoard, Nonce, Refusal, TRAJECTORY_BLOB_BYTES,
     TRAJECTORY_PIECES, ToBoard, TrajectoryStore, UploadBegin, UploadError, encode_trajectory,
 };
 use quatrack::{Piece, Player, Rate, Trajectory};
@@ -84,7 +84,7 @@ impl Board {
 
     fn answer(&mut self, sequence: u32, message: &ToBoard) -> Result<FromBoard, Refusal> {
         let progress = match message {
-            ToBoard::Hello => return Ok(FromBoard::Ack { sequence }),
+            ToBoard::Hello(_) => return Ok(FromBoard::Ack { sequence }),
             ToBoard::UploadBegin(begin) => self.receiver.begin(begin),
             ToBoard::UploadChunk(chunk) => self.receiver.chunk(chunk),
             ToBoard::UploadQuery => self.receiver.progress(),
@@ -178,7 +178,7 @@ proptest! {
         };
         board.store.commit(&blob_of(&pieces(&[1.0; TRAJECTORY_PIECES]))).unwrap();
         let before_ns = board.duration_ns();
-        let hello = host.encoder.encode(&ToBoard::Hello, &mut [0; FRAME_BYTES]).unwrap().to_vec();
+        let hello = host.encoder.encode(&ToBoard::Hello(Nonce::NONE), &mut [0; FRAME_BYTES]).unwrap().to_vec();
         board.hear(&hello);
 
         let (mut there, mut back) = (Line::new(there), Line::new(back));

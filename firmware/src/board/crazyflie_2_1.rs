@@ -18,8 +18,10 @@ use cortex_m::peripheral::syst::SystClkSource;
 use embedded_hal::delay::DelayNs;
 use stm32f4::stm32f405::{FLASH, GPIOA, GPIOB, GPIOC, PWR, Peripherals, RCC, USART2};
 
+use super::flash::Sectors;
 use super::i2c::{Bus, BusError};
 use super::pwm::{self, Channel};
+use super::rng::Rng;
 use crate::counter::Counter;
 use crate::drivers::bmi088::{Address, Bandwidth, Gyro, GyroError, Range};
 use crate::drivers::motors::Motors;
@@ -56,6 +58,10 @@ pub struct Board {
     pub motors: Motors<Channel>,
     /// The gyroscope, or why there is none.
     pub gyro: Result<Gyro<Bus>, GyroError<BusError>>,
+    /// What keeps uploads.
+    pub sectors: Sectors,
+    /// Random numbers.
+    pub rng: Rng,
 }
 
 /// Starts clocks, pins, the counter, the line, motors, gyroscope, and the timer that ticks.
@@ -81,7 +87,8 @@ pub fn start(device: Peripherals, systick: &mut SYST) -> Board {
     systick.enable_counter();
     systick.enable_interrupt();
     let Ok(motors) = Motors::new(channels, ThrustCurve::CRAZYFLIE_2_1);
-    Board { clocks, counter, usart: device.USART2, motors, gyro }
+    let (sectors, rng) = (Sectors::new(device.FLASH), Rng::start(device.RNG, &device.RCC));
+    Board { clocks, counter, usart: device.USART2, motors, gyro, sectors, rng }
 }
 
 /// Runs from the crystal through the PLL; whether it does. A crystal or PLL that does not get ready leaves the board on

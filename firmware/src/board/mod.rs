@@ -2,5 +2,7 @@
 //! `embedded-hal`.
 
 pub mod crazyflie_2_1;
+pub mod flash;
 pub mod i2c;
 pub mod pwm;
+pub mod rng;

@@ -3,6 +3,9 @@
 mod flight;
 mod flight_motors;
 mod gyro;
+mod kept_uploads;
+mod keyed_session;
 mod laws;
 mod motors;
 mod session;
+mod signed_tables;

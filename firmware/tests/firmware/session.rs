@@ -2,13 +2,15 @@
 
 use proptest::prelude::*;
 use quatrack::link::{
-    BlobKind, Chunk, Encoder, FRAME_BYTES, LawChoice, LimitsSetting, LoopStatistics, Parameter, ParameterId,
+    BlobKind, Chunk, Encoder, FRAME_BYTES, LawChoice, LimitsSetting, LoopStatistics, Nonce, Parameter, ParameterId,
     RigidStateIn, StateIn, Table, ToBoard, TrajectoryCommand, TrajectoryId, UploadBegin,
 };
 use quatrack::nalgebra::Vector3;
 use quatrack::{FlatSample, Quaternion, RigidState, State, Tick};
 use quatrack_firmware::craft::BodyRates;
 use quatrack_firmware::flight::Flight;
+use quatrack_firmware::kept::NoFlash;
+use quatrack_firmware::provisioned::Keys;
 use quatrack_firmware::session::{Session, Shared, Uploads, Vitals};
 use quatrack_firmware::vehicle::AIRFRAME;
 
@@ -29,6 +31,10 @@ impl Vitals for At {
 
     fn statistics(&self) -> LoopStatistics {
         LoopStatistics::default()
+    }
+
+    fn nonce(&self) -> Option<Nonce> {
+        None
     }
 
     fn set_decimation(&self, _decimation: u32) {}
@@ -92,7 +98,7 @@ fn message() -> impl Strategy<Value = ToBoard> {
     let chunk = (any::<u32>(), 0..4_u32, prop::collection::vec(any::<u8>(), 0..96))
         .prop_map(|(id, offset, bytes)| ToBoard::UploadChunk(Chunk::new(id, offset, &bytes).unwrap()));
     prop_oneof![
-        4 => Just(ToBoard::Hello),
+        4 => Just(ToBoard::Hello(Nonce::NONE)),
         4 => Just(ToBoard::Arm),
         1 => Just(ToBoard::Disarm),
         10 => (any::<u32>(), state()).prop_map(|(tick, state)| ToBoard::State(StateIn { tick, state })),
@@ -130,7 +136,7 @@ proptest! {
     fn whatever_is_sent_forces_are_sound_and_motors_wait_for_an_arm(events in prop::collection::vec(event(), 1..150)) {
         let figures = *AIRFRAME.figures();
         let mut flight = Here(Flight::new(Box::leak(Box::default()), None));
-        let mut session = Session::new(Box::leak(Box::new(Uploads::new())), None);
+        let mut session = Session::new(Box::leak(Box::new(Uploads::new())), Keys::NONE, NoFlash, None);
         let mut hosts = [Encoder::new(10), Encoder::new(11), Encoder::new(9)];
         let (mut now, mut asked) = (0, false);
         for event in events {

@@ -111,6 +111,7 @@ pub(crate) fn to_board() -> impl Strategy<Value = ToBoard> {
         chunk.prop_map(ToBoard::UploadChunk),
         Just(ToBoard::UploadQuery),
         any::<u32>().prop_map(|id| ToBoard::UploadCommit { id }),
+        any::<u32>().prop_map(|id| ToBoard::UploadKeep { id }),
         Just(ToBoard::TelemetryRequest),
         rigid_state_in().prop_map(ToBoard::RigidState),
     ]
@@ -248,7 +249,7 @@ fn refusal() -> impl Strategy<Value = Refusal> {
 }
 
 fn telemetry() -> impl Strategy<Value = Telemetry> {
-    (any::<u32>(), mode(), any::<[u32; 7]>(), any::<[u32; 11]>()).prop_map(|(tick, mode, s, c)| Telemetry {
+    (any::<u32>(), mode(), any::<[u32; 7]>(), any::<[u32; 12]>()).prop_map(|(tick, mode, s, c)| Telemetry {
         tick,
         mode,
         statistics: LoopStatistics {
@@ -272,19 +273,30 @@ fn telemetry() -> impl Strategy<Value = Telemetry> {
             duplicate: c[8],
             stale: c[9],
             lost: c[10],
+            unauthentic: c[11],
         },
     })
 }
 
 /// Any message from the board.
 pub(crate) fn from_board() -> impl Strategy<Value = FromBoard> {
-    let identity = (any::<[u16; 3]>(), any::<[u32; 4]>()).prop_map(
-        |([major, minor, patch], [control_image, tick_rate_hz, decimation, trajectory_pieces])| Identity {
+    let protection = sample::select(vec![Protection::CableOnly, Protection::Orders, Protection::Everything]);
+    let identity = (any::<[u16; 3]>(), any::<[u32; 4]>(), protection, any::<bool>(), any::<[u8; 16]>()).prop_map(
+        |(
+            [major, minor, patch],
+            [control_image, tick_rate_hz, decimation, trajectory_pieces],
+            protection,
+            signed_tables,
+            nonce,
+        )| Identity {
             firmware: Version { major, minor, patch },
             control_image,
             tick_rate_hz,
             decimation,
             trajectory_pieces,
+            protection,
+            signed_tables,
+            nonce: Nonce(nonce),
         },
     );
     let result = prop_oneof![step().prop_map(Ok), no_command().prop_map(Err)];

@@ -10,7 +10,7 @@ use self::messages::{from_board, to_board};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use quatrack::link::{
-    Counters, Decoder, Encoder, FRAME_BYTES, Message, PROTOCOL_VERSION, Received, Rejected, ToBoard, crc32c,
+    Counters, Decoder, Encoder, FRAME_BYTES, Message, Nonce, PROTOCOL_VERSION, Received, Rejected, ToBoard, crc32c,
 };
 
 const SESSION: u32 = 0x5EED;
@@ -259,15 +259,23 @@ fn a_restarted_host_is_heard_again_and_its_past_is_not() {
     let (mut first, mut second) = (Encoder::new(100), Encoder::new(101));
     let early = frame(&mut first, ToBoard::Arm);
     assert_eq!(hear(&early), Err(Rejected::ForeignSession { session: 100 }), "nothing before a hello");
-    let old_hello = frame(&mut first, ToBoard::Hello);
-    assert_eq!(hear(&old_hello), Ok(ToBoard::Hello));
+    let old_hello = frame(&mut first, ToBoard::Hello(Nonce::NONE));
+    assert_eq!(hear(&old_hello), Ok(ToBoard::Hello(Nonce::NONE)));
     assert_eq!(hear(&early), Err(Rejected::Stale { sequence: 0 }), "not even after it");
     let old = [frame(&mut first, ToBoard::Arm), frame(&mut first, ToBoard::Arm)];
     assert_eq!(hear(&old[0]), Ok(ToBoard::Arm));
 
-    assert_eq!(hear(&frame(&mut second, ToBoard::Hello)), Ok(ToBoard::Hello), "the restarted host");
+    assert_eq!(
+        hear(&frame(&mut second, ToBoard::Hello(Nonce::NONE))),
+        Ok(ToBoard::Hello(Nonce::NONE)),
+        "the restarted host"
+    );
     assert_eq!(hear(&old[1]), Err(Rejected::ForeignSession { session: 100 }), "a late frame");
     assert_eq!(hear(&old_hello), Err(Rejected::ForeignSession { session: 100 }), "a replayed hello");
-    assert_eq!(hear(&frame(&mut second, ToBoard::Hello)), Ok(ToBoard::Hello), "asked again for lack of an answer");
+    assert_eq!(
+        hear(&frame(&mut second, ToBoard::Hello(Nonce::NONE))),
+        Ok(ToBoard::Hello(Nonce::NONE)),
+        "asked again for lack of an answer"
+    );
     assert_eq!(hear(&frame(&mut second, ToBoard::Disarm)), Ok(ToBoard::Disarm));
 }

@@ -1,4 +1,4 @@
-//! The bytes of one frame of every kind, as protocol version 1 has them. A row that changes changes the protocol: it
+//! The bytes of one frame of every kind, as this version of the protocol has them. A row that changes changes the protocol: it
 //! takes a new version, or boards and hosts of different releases misread each other.
 
 use std::fmt::Write;
@@ -34,7 +34,7 @@ fn to_board() -> Vec<ToBoard> {
     };
     let limits = LimitsSetting { thrust_min_m_s2: 1.0, thrust_max_m_s2: 16.0, body_rates_max_rad_s: [20.0, 20.0, 5.0] };
     vec![
-        ToBoard::Hello,
+        ToBoard::Hello(Nonce(core::array::from_fn(|i| i as u8))),
         ToBoard::State(state_in()),
         ToBoard::StateAndReference(state_in(), reference),
         ToBoard::SelectLaw(LawChoice {
@@ -58,6 +58,7 @@ fn to_board() -> Vec<ToBoard> {
             tick: 300,
             state: RigidState { state: state_in().state, body_rates_rad_s: Vector3::new(7.0, 8.0, 9.0) },
         }),
+        ToBoard::UploadKeep { id: 1 },
         ToBoard::SelectLaw(LawChoice::new(Table::ActuatorAware)),
         ToBoard::SetParameter(Parameter::BatteryVoltage(3.75)),
         ToBoard::SetParameter(Parameter::BodyRateBandwidth([25.0, 25.0, 10.0])),
@@ -90,6 +91,7 @@ fn from_board() -> Vec<FromBoard> {
         foreign_session: 8,
         duplicate: 9,
         stale: 10,
+        unauthentic: 12,
         lost: 11,
     };
     let jump = Refusal::Blob(BlobError::Trajectory(TrajectoryError::Jump { piece: 3, size: 1.0 }));
@@ -102,6 +104,9 @@ fn from_board() -> Vec<FromBoard> {
             tick_rate_hz: 1000,
             decimation: 2,
             trajectory_pieces: 64,
+            protection: Protection::Orders,
+            signed_tables: true,
+            nonce: Nonce(core::array::from_fn(|i| i as u8)),
         }),
         FromBoard::Command(CommandOut { tick: 7, state_tick: 300, result: Ok(step) }),
         FromBoard::Command(CommandOut { tick: 7, state_tick: 300, result: Err(refused) }),
@@ -111,6 +116,9 @@ fn from_board() -> Vec<FromBoard> {
         FromBoard::Nack { sequence: 5, reason: Refusal::Arm(ArmError::LinkSilent) },
         FromBoard::Nack { sequence: 5, reason: Refusal::Upload(UploadError::Checksum { announced: 1, found: 2 }) },
         FromBoard::Nack { sequence: 5, reason: jump },
+        FromBoard::Nack { sequence: 5, reason: Refusal::Key },
+        FromBoard::Nack { sequence: 5, reason: Refusal::NotKept },
+        FromBoard::Nack { sequence: 5, reason: Refusal::Blob(BlobError::Unsigned) },
         FromBoard::Nack { sequence: 5, reason: Refusal::Blob(BlobError::GainTable(column.into())) },
         FromBoard::Nack { sequence: 5, reason: Refusal::Blob(BlobError::GainTable(other.into())) },
         FromBoard::Upload(Progress { id: 1, wanted_offset: 96, length: 300 }),
@@ -141,7 +149,7 @@ fn lines<M: Message + std::fmt::Debug>(messages: &[M]) -> String {
 
 #[test]
 fn frames_have_the_bytes_of_their_protocol_version() {
-    assert_eq!(PROTOCOL_VERSION, 3, "a new version has frames of its own: write them down");
-    insta::assert_snapshot!("to_board_version_3", lines(&to_board()));
-    insta::assert_snapshot!("from_board_version_3", lines(&from_board()));
+    assert_eq!(PROTOCOL_VERSION, 4, "a new version has frames of its own: write them down");
+    insta::assert_snapshot!("to_board_version_4", lines(&to_board()));
+    insta::assert_snapshot!("from_board_version_4", lines(&from_board()));
 }

@@ -1,6 +1,7 @@
 //! `quatrack gains`: design files in; tables, their check and their figures out.
 
 mod show;
+mod sign;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -91,6 +92,18 @@ enum Command {
         #[arg(long, value_name = "FILE", default_value = "quatrack_craft.h", hide_default_value = true)]
         out: PathBuf,
     },
+    /// Signs tables, for boards that take signed ones alone: NAME.bin becomes NAME.signed.bin.
+    Sign {
+        /// Tables, as `design` writes them.
+        #[arg(required = true, value_name = "TABLE")]
+        tables: Vec<PathBuf>,
+        /// The file of the key to sign with (`quatrack keys new`).
+        #[arg(long, value_name = "FILE")]
+        key_file: PathBuf,
+        /// Folder to write to [default: the table's]
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
     /// Prints a line for each design of a folder.
     List {
         /// The folder [default: gains]
@@ -109,6 +122,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Command::Check { paths, json } => check(paths, json.as_deref()),
         Command::Show { file, json, plot } => show::show(file, json.as_deref(), plot.as_deref()),
         Command::Craft { file, out } => craft(file, out),
+        Command::Sign { tables, key_file, out } => sign::sign(tables, key_file, out.as_deref()),
         Command::List { folder, json } => list(folder.as_deref(), json.as_deref()),
     }
 }

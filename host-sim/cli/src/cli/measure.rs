@@ -42,10 +42,16 @@ fn counted(args: &Args) -> Result<InstructionReport, PilError> {
     let images = match &args.image {
         Some(path) => {
             let folder = if path.is_dir() { path.as_path() } else { path.parent().unwrap_or(path) };
-            let [counting, control_path, motor_path, estimator, flying] =
-                [Image::Measure, Image::ControlPath, Image::MotorPath, Image::MeasureEstimator, Image::Pipes]
-                    .map(|image| folder.join(image.binary()));
-            Images { counting, control_path, motor_path, estimator, flying }
+            let [counting, control_path, motor_path, estimator, link, flying] = [
+                Image::Measure,
+                Image::ControlPath,
+                Image::MotorPath,
+                Image::MeasureEstimator,
+                Image::MeasureLink,
+                Image::Pipes,
+            ]
+            .map(|image| folder.join(image.binary()));
+            Images { counting, control_path, motor_path, estimator, link, flying }
         }
         None => {
             let checkout = image::checkout()?;
@@ -55,6 +61,7 @@ fn counted(args: &Args) -> Result<InstructionReport, PilError> {
                 motor_path: build(Image::MotorPath)?,
                 counting: build(Image::Measure)?,
                 estimator: build(Image::MeasureEstimator)?,
+                link: build(Image::MeasureLink)?,
                 flying: build(Image::Pipes)?,
             }
         }

@@ -9,6 +9,8 @@ mod faults;
 mod fly;
 mod gains;
 mod identify;
+mod key_file;
+mod keys;
 mod limits;
 mod manoeuvres;
 mod measure;
@@ -74,6 +76,7 @@ enum Command {
     Fly(fly::Args),
     Gains(gains::Args),
     Identify(identify::Args),
+    Keys(keys::Args),
     Man(shell::ManArgs),
     Manoeuvres(manoeuvres::Args),
     Measure(measure::Args),
@@ -102,6 +105,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Fly(args) => fly::run(args),
         Command::Gains(args) => gains::run(args),
         Command::Identify(args) => identify::run(args),
+        Command::Keys(args) => keys::run(args),
         Command::Man(args) => shell::man(args),
         Command::Manoeuvres(args) => manoeuvres::run(args),
         Command::Measure(args) => measure::run(args),

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 
 use clap::{ArgGroup, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
+use quatrack::link::Key;
 use quatrack_cli::pil::client::Client;
-use quatrack_cli::pil::emulated::{self, Transport};
+use quatrack_cli::pil::emulated::{self, Equipment, Transport};
 use quatrack_cli::pil::interrupt::Interrupt;
 use quatrack_cli::pil::line::Line;
 use quatrack_cli::pil::{PilError, image, lock_step};
 
-use super::{Failure, output};
+use super::{Failure, key_file, output};
 
 /// Flies both of the paper's trajectories with all four controllers on the target, in lock-step with the plant on this
 /// host, and compares every command with the same core's here.
@@ -22,6 +23,7 @@ use super::{Failure, output};
 ///   quatrack pil --emulator
 ///   quatrack pil --emulator --transport usart --steps 500
 ///   quatrack pil --port /dev/ttyUSB0
+///   quatrack pil --port /dev/ttyUSB0 --key-file ~/keys/craft
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment, group(ArgGroup::new("board").required(true).args(["emulator", "port"])))]
 pub(crate) struct Args {
@@ -43,6 +45,12 @@ pub(crate) struct Args {
     /// Write what the image logs over the pipes, for `defmt-print -e IMAGE < FILE`; a board's log is read by its probe.
     #[arg(long, value_name = "FILE", requires = "emulator")]
     log: Option<PathBuf>,
+    /// The file of the key that the board was given (`quatrack keys`), 64 hexadecimal digits.
+    #[arg(long, value_name = "FILE")]
+    key_file: Option<PathBuf>,
+    /// Keep uploads of the emulated board in this file, which is made where it is missing.
+    #[arg(long, value_name = "FILE", requires = "emulator", conflicts_with = "port")]
+    flash: Option<PathBuf>,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -55,7 +63,8 @@ enum TransportName {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let report = flown(args).map_err(Failure::input)?;
+    let key = args.key_file.as_deref().map(key_file::read).transpose()?.map(|bytes| Key::new(&bytes));
+    let report = flown(args, key).map_err(Failure::input)?;
     output::print(&report.to_string())?;
     if let Some(path) = &args.json {
         output::write_json(path, &output::Named::new("pil", &report))?;
@@ -68,11 +77,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-fn flown(args: &Args) -> Result<lock_step::LockStepReport, PilError> {
+fn flown(args: &Args, key: Option<Key>) -> Result<lock_step::LockStepReport, PilError> {
     let interrupt = Interrupt::listen()?;
     let mut client = match &args.port {
-        Some(port) => Client::connect(Line::open_port(port)?, None, interrupt)?,
-        None => emulated(args, interrupt)?,
+        Some(port) => Client::connect(Line::open_port(port)?, None, key, interrupt)?,
+        None => emulated(args, key, interrupt)?,
     };
     let bar = ProgressBar::new(lock_step::step_count(args.steps));
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {pos}/{len} steps, {per_sec}, {eta} left") {
@@ -84,7 +93,7 @@ fn flown(args: &Args) -> Result<lock_step::LockStepReport, PilError> {
 }
 
 /// A board in an emulator, on the image that is given or on one that is built.
-fn emulated(args: &Args, interrupt: Interrupt) -> Result<Client, PilError> {
+fn emulated(args: &Args, key: Option<Key>, interrupt: Interrupt) -> Result<Client, PilError> {
     let transport = match args.transport {
         TransportName::Pipes => Transport::Pipes,
         TransportName::Usart => Transport::Usart,
@@ -93,5 +102,9 @@ fn emulated(args: &Args, interrupt: Interrupt) -> Result<Client, PilError> {
         Some(path) => path.clone(),
         None => image::build(&image::checkout()?, transport.image())?,
     };
-    emulated::connect(&image, transport, args.log.as_deref(), interrupt)
+    if let Some(flash) = args.flash.as_deref().filter(|flash| !flash.exists()) {
+        emulated::new_flash(flash)?;
+    }
+    let equipment = Equipment { log: args.log.as_deref(), flash: args.flash.as_deref(), key };
+    emulated::connect(&image, transport, equipment, interrupt)
 }

@@ -3,8 +3,8 @@
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use quatrack::link::{
-    CommandOut, Decoder, Encoder, FRAME_BYTES, FaultReport, ForcesOut, FromBoard, Identity, Parameter, RigidStateIn,
-    StateIn, Telemetry, ToBoard,
+    CommandOut, FRAME_BYTES, FaultReport, ForcesOut, FromBoard, HostSession, Identity, Key, Nonce, Parameter,
+    Protection, Refusal, RigidStateIn, StateIn, Telemetry, ToBoard,
 };
 use quatrack::{RigidState, State};
 
@@ -27,42 +27,53 @@ pub struct Client {
     line: Line,
     emulator: Option<Emulator>,
     interrupt: Interrupt,
-    encoder: Encoder,
-    decoder: Decoder<FromBoard>,
+    session: HostSession,
+    key: Option<Key>,
     received: Vec<u8>,
     identity: Identity,
     fault: Option<FaultReport>,
 }
 
 impl Client {
-    /// Opens a session. The emulator, where there is one, lives as long as the connection.
+    /// Opens a session, with the board's key where it has one. The emulator, where there is one, lives as long as the connection.
     ///
     /// # Errors
-    /// [`PilError::Silent`] where nobody answers in the protocol's version.
-    pub fn connect(line: Line, emulator: Option<Emulator>, interrupt: Interrupt) -> Result<Self, PilError> {
+    /// [`PilError::Silent`] where nobody answers in the protocol's version, or with this key; [`PilError::Refused`] where the
+    /// board has a key and none is given.
+    pub fn connect(
+        line: Line,
+        emulator: Option<Emulator>,
+        key: Option<Key>,
+        interrupt: Interrupt,
+    ) -> Result<Self, PilError> {
         // Later than any session before it, as the board wants it.
         let session = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs() as u32;
-        Self::open(session, line, emulator, interrupt)
+        Self::open(session, line, emulator, key, interrupt)
     }
 
-    fn open(session: u32, line: Line, emulator: Option<Emulator>, interrupt: Interrupt) -> Result<Self, PilError> {
-        let mut client = Self {
-            line,
-            emulator,
-            interrupt,
-            encoder: Encoder::new(session),
-            decoder: Decoder::for_session(session),
-            received: Vec::new(),
-            identity: NOBODY,
-            fault: None,
+    fn open(
+        number: u32,
+        line: Line,
+        emulator: Option<Emulator>,
+        key: Option<Key>,
+        interrupt: Interrupt,
+    ) -> Result<Self, PilError> {
+        let session = match key.clone() {
+            Some(key) => HostSession::keyed(number, key, nonce()?),
+            None => HostSession::new(number),
         };
+        let mut client =
+            Self { line, emulator, interrupt, session, key, received: Vec::new(), identity: NOBODY, fault: None };
         // Ends any noise before it.
         client.line.send(&[quatrack::link::DELIMITER])?;
-        client.identity =
-            client.exchange(&ToBoard::Hello, "the board does not say hello", |answer, _| match answer {
-                FromBoard::Hello(identity) => Some(*identity),
-                _ => None,
-            })?;
+        let hello = client.session.hello();
+        let answer = client.exchange(&hello, "the board does not say hello", |answer, _| match answer {
+            FromBoard::Hello(identity) => Some(Ok(*identity)),
+            FromBoard::Nack { reason: reason @ (Refusal::Key | Refusal::NoNonce), .. } => Some(Err(*reason)),
+            _ => None,
+        })?;
+        client.identity = answer
+            .map_err(|reason| PilError::Refused { request: "the hello".to_owned(), reason: reason.to_string() })?;
         Ok(client)
     }
 
@@ -71,8 +82,8 @@ impl Client {
     /// # Errors
     /// As [`Client::connect`].
     pub fn reconnect(self) -> Result<Self, PilError> {
-        let session = self.encoder.session().wrapping_add(1);
-        Self::open(session, self.line, self.emulator, self.interrupt)
+        let number = self.session.session().wrapping_add(1);
+        Self::open(number, self.line, self.emulator, self.key, self.interrupt)
     }
 
     /// The identity of the board that answered.
@@ -172,13 +183,13 @@ impl Client {
         waiting_for: &str,
         pick: impl Fn(&FromBoard, u32) -> Option<T>,
     ) -> Result<T, PilError> {
-        let sequence = self.encoder.next_sequence().unwrap_or_default();
+        let sequence = self.session.next_sequence().unwrap_or_default();
         let start = Instant::now();
         let mut sent_at = start;
         self.send(message)?;
         let mut chunk = [0; 256];
         loop {
-            while let Some((received, rest)) = self.decoder.next(&self.received) {
+            while let Some((received, rest)) = self.session.next(&self.received) {
                 let left = rest.len();
                 self.received.drain(..self.received.len() - left);
                 if let FromBoard::Fault(fault) = received.message {
@@ -211,8 +222,11 @@ impl Client {
     }
 
     fn silent(&self, waiting_for: &str) -> PilError {
-        let rejected = self.decoder.counters().rejected();
+        let rejected = self.session.counters().rejected();
         let heard = match (self.fault, rejected) {
+            _ if self.session.counters().unauthentic > 0 => {
+                format!("{waiting_for} with this key; it has another one, or none, or no random numbers to use it with")
+            }
             (Some(fault), _) => format!("{waiting_for}; it has reported a {} at {:#010x}", fault.fault, fault.address),
             (None, 0) => format!("{waiting_for}; check the line, and that the image is quatrack's"),
             (None, _) => format!("{waiting_for}; {rejected} frames came that were none of this protocol version"),
@@ -222,7 +236,7 @@ impl Client {
 
     fn send(&mut self, message: &ToBoard) -> Result<(), PilError> {
         let mut buffer = [0; FRAME_BYTES];
-        let frame = self.encoder.encode(message, &mut buffer).map_err(|error| PilError::Answer(error.to_string()))?;
+        let frame = self.session.encode(message, &mut buffer).map_err(|error| PilError::Answer(error.to_string()))?;
         self.line.send(frame)
     }
 }
@@ -234,4 +248,14 @@ const NOBODY: Identity = Identity {
     tick_rate_hz: 0,
     decimation: 0,
     trajectory_pieces: 0,
+    protection: Protection::CableOnly,
+    signed_tables: false,
+    nonce: Nonce::NONE,
 };
+
+/// Sixteen bytes of the system's random numbers.
+fn nonce() -> Result<Nonce, PilError> {
+    let mut bytes = [0; 16];
+    getrandom::fill(&mut bytes).map_err(|error| PilError::io("taking random numbers")(error.into()))?;
+    Ok(Nonce(bytes))
+}

@@ -1,6 +1,10 @@
 //! A board in an emulator: an image and how to talk to it in; a connected board out.
 
+use std::fs;
+use std::io::Write as _;
 use std::path::{Path, absolute};
+
+use quatrack::link::Key;
 
 use super::PilError;
 use super::client::Client;
@@ -8,6 +12,9 @@ use super::emulator::{Emulator, Folder};
 use super::image::{self, Image};
 use super::interrupt::Interrupt;
 use super::line::Line;
+
+/// Bytes of an emulated flash: two slots of 16 kB for each of two kinds of upload.
+const FLASH_BYTES: usize = 4 * 16 * 1024;
 
 /// How the emulated board is talked to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,23 +35,44 @@ impl Transport {
     }
 }
 
-/// Starts an image and opens a session with it. The folder of the pipes is gone once both sides have opened them. What an
-/// image on pipes logs goes to `log`, as defmt writes it.
+/// What an emulated board has beside its image.
+#[derive(Clone, Debug, Default)]
+pub struct Equipment<'a> {
+    /// Where an image on pipes logs to, as defmt writes it.
+    pub log: Option<&'a Path>,
+    /// The file in which an image on pipes keeps uploads, as [`new_flash`] makes one.
+    pub flash: Option<&'a Path>,
+    /// The key that the image was given.
+    pub key: Option<Key>,
+}
+
+/// Makes the file of a flash that nothing was kept in yet.
+///
+/// # Errors
+/// [`PilError::Io`], also where the file is there already.
+pub fn new_flash(path: &Path) -> Result<(), PilError> {
+    let file = fs::File::create_new(path).and_then(|mut file| file.write_all(&[0xFF; FLASH_BYTES]));
+    file.map_err(PilError::io(format!("making the flash {}", path.display())))
+}
+
+/// Starts an image and opens a session with it. The folder of the pipes is gone once both sides have opened them.
 ///
 /// # Errors
 /// [`PilError`] where there is no emulator, no such image, or no answer.
 pub fn connect(
     image: &Path,
     transport: Transport,
-    log: Option<&Path>,
+    equipment: Equipment<'_>,
     interrupt: Interrupt,
 ) -> Result<Client, PilError> {
     image::size(image)?;
     let folder = Folder::create()?;
-    if let Some(log) = log {
-        // The image opens its log in the folder; the link that it finds there leads out of it.
-        let log = absolute(log).map_err(PilError::io(format!("finding {}", log.display())))?;
-        link(&log, &folder.path().join("log.defmt")).map_err(PilError::io("placing the log"))?;
+    for (file, name) in [(equipment.log, "log.defmt"), (equipment.flash, "flash.bin")] {
+        if let Some(file) = file {
+            // The image opens it in the folder; the link that it finds there leads out of it.
+            let file = absolute(file).map_err(PilError::io(format!("finding {}", file.display())))?;
+            link(&file, &folder.path().join(name)).map_err(PilError::io(format!("placing {name}")))?;
+        }
     }
     let (line, arguments): (Line, &[&str]) = match transport {
         Transport::Pipes => {
@@ -60,7 +88,7 @@ pub fn connect(
         }
     };
     let emulator = Emulator::start(image, folder.path(), arguments)?;
-    Client::connect(line, Some(emulator), interrupt)
+    Client::connect(line, Some(emulator), equipment.key, interrupt)
 }
 
 #[cfg(unix)]

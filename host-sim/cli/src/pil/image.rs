@@ -27,6 +27,8 @@ pub enum Image {
     Measure,
     /// Counts the estimator's instructions and stack.
     MeasureEstimator,
+    /// Counts the instructions of the link's frames.
+    MeasureLink,
     /// The control path alone, for its size.
     ControlPath,
     /// The same down to the motors.
@@ -41,6 +43,7 @@ impl Image {
             Self::Pipes => "quatrack-firmware-pipes",
             Self::Measure => "quatrack-measure",
             Self::MeasureEstimator => "quatrack-measure-estimator",
+            Self::MeasureLink => "quatrack-measure-link",
             Self::ControlPath => "quatrack-control-path",
             Self::MotorPath => "quatrack-motor-path",
         }
@@ -50,7 +53,9 @@ impl Image {
         match self {
             Self::Usart => &[],
             Self::Pipes => &["--features", "semihosting"],
-            Self::Measure | Self::MeasureEstimator => &["--no-default-features", "--features", "semihosting"],
+            Self::Measure | Self::MeasureEstimator | Self::MeasureLink => {
+                &["--no-default-features", "--features", "semihosting"]
+            }
             Self::ControlPath => &["--no-default-features"],
             Self::MotorPath => &["--no-default-features", "--features", "motors"],
         }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use quatrack::link::{LawChoice, LimitsSetting, Parameter, ToBoard, TrajectoryCommand};
+use quatrack::link::{LawChoice, LimitsSetting, Parameter, Protection, ToBoard, TrajectoryCommand};
 use quatrack::{Command, ErrorForm, State, Step};
 use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
@@ -31,6 +31,9 @@ pub struct LockStepReport {
     pub hash: String,
     /// The flights down to the motors.
     pub motors: MotorReport,
+    /// Which frames of the link carried a tag.
+    #[serde(skip)]
+    pub protection: Protection,
     /// The first command that differed.
     #[serde(skip)]
     pub difference: Option<Difference>,
@@ -80,6 +83,7 @@ pub fn fly_all(client: &mut Client, limit: Option<u32>, advance: &dyn Fn()) -> R
         steps: comparison.steps,
         hash: comparison.hash.to_string(),
         motors,
+        protection: client.identity().protection,
         difference: comparison.difference,
         worst_step_ns: telemetry.statistics.worst_step_ns,
         stack_bytes: telemetry.statistics.stack_bytes,
@@ -225,6 +229,7 @@ impl fmt::Display for LockStepReport {
         }
         writeln!(f, "\n{}", self.motors)?;
         let (step_us, stack, overruns) = (f64::from(self.worst_step_ns) / 1e3, self.stack_bytes, self.overruns);
-        writeln!(f, "on the target: longest step {step_us} us, stack {stack} bytes, {overruns} overruns")
+        writeln!(f, "on the target: longest step {step_us} us, stack {stack} bytes, {overruns} overruns")?;
+        writeln!(f, "the link is {}", self.protection)
     }
 }

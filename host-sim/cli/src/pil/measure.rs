@@ -14,12 +14,13 @@ use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_simulation::reproduction::table::Controller;
 use serde::Serialize;
 
-use super::emulated::{self, Transport};
+use super::emulated::{self, Equipment, Transport};
 use super::emulator::{Emulator, Folder};
 use super::estimator;
 use super::flights::{COURSES, HostCore, Plans, fly};
 use super::image;
 use super::interrupt::Interrupt;
+use super::link::{self, LinkReport};
 use super::lock_step;
 use super::motors::MotorFlight;
 use super::worst_case::{
@@ -92,6 +93,9 @@ pub struct InstructionReport {
     /// The estimator, counted by its own image.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub estimator: Option<estimator::EstimatorReport>,
+    /// The link's frames, counted by an image of their own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub link: Option<LinkReport>,
     /// Steps flown.
     pub steps: usize,
     /// Code and tables of the control path, without stored trajectories: all that its own image puts in flash, start-up
@@ -117,6 +121,8 @@ pub struct Images {
     pub motor_path: PathBuf,
     /// Counts the estimator.
     pub estimator: PathBuf,
+    /// Counts the link's frames.
+    pub link: PathBuf,
     /// Flies, over pipes.
     pub flying: PathBuf,
 }
@@ -212,7 +218,8 @@ pub fn count(images: &Images, limit: Option<usize>) -> Result<InstructionReport,
     let words: Vec<u32> = words.iter().copied().map(u32::from_le_bytes).collect();
     let mut report = report(&flights, &words)?;
     report.estimator = Some(estimator::count(&images.estimator, &interrupt)?);
-    let mut client = emulated::connect(&images.flying, Transport::Pipes, None, interrupt)?;
+    report.link = Some(link::count(&images.link, &interrupt)?);
+    let mut client = emulated::connect(&images.flying, Transport::Pipes, Equipment::default(), interrupt)?;
     report.stack_bytes = lock_step::fly_all(&mut client, Some(STACK_STEPS), &|| {})?.stack_bytes;
     report.flash_bytes = control_path.flash_bytes;
     report.flash_to_motors_bytes = image::size(&images.motor_path)?.flash_bytes;
@@ -267,6 +274,7 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<InstructionReport, PilE
         motor_reference_turning: motor_reference_turning.count(),
         tick: tick.count(),
         estimator: None,
+        link: None,
         steps: flights.iter().map(|flight| flight.steps.len()).sum(),
         flash_bytes: 0,
         flash_to_motors_bytes: 0,
@@ -330,6 +338,13 @@ impl fmt::Display for InstructionReport {
             for (name, count) in &estimator.update {
                 row(&format!("position, {name}"), count)?;
             }
+        }
+        if let Some(LinkReport { frames, signature }) = &self.link {
+            writeln!(f, "\n{:<32}{:>8}{:>10}", "", "no tag", "tag")?;
+            for link::FrameCost { frame, without_tag, with_tag } in frames {
+                writeln!(f, "frame, {frame:<25}{without_tag:>8}{with_tag:>10}")?;
+            }
+            writeln!(f, "{:<32}{:>18}", "signature of a gain table", signature)?;
         }
         writeln!(f, "\ncontrol path   flash {:>6} bytes, without stored trajectories", self.flash_bytes)?;
         writeln!(f, "to the motors  flash {:>6} bytes, the actuator-aware law included", self.flash_to_motors_bytes)?;

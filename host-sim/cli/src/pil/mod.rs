@@ -6,6 +6,7 @@
 //! measure          instructions a step, flash, RAM
 //! crazyflie        the same of the Crazyflie controller's object
 //! estimator        the same of the estimator, and its stack
+//! link             the same of the link's frames
 //!   worst_case     inputs with which a step costs most, on the host
 //!   flights        the paper's flights, flown by the core on the host
 //!     bits         the compared bits, and their hash
@@ -26,6 +27,7 @@ pub mod flights;
 pub mod image;
 pub mod interrupt;
 pub mod line;
+pub mod link;
 pub mod lock_step;
 pub mod measure;
 pub mod motors;

@@ -8,5 +8,6 @@ mod figures_png;
 mod fly_scenario;
 mod gains;
 mod identify;
+mod keys;
 mod pil;
 mod trajectories;

@@ -14,5 +14,6 @@ mod reproduction_extensions;
 mod rigid;
 mod robustness;
 mod sampled_along;
+mod scenario_files;
 mod trajectory_refit;
 mod vehicle;

@@ -16,6 +16,7 @@ fn report() -> InstructionReport {
         control_path: build(Image::ControlPath),
         motor_path: build(Image::MotorPath),
         estimator: build(Image::MeasureEstimator),
+        link: build(Image::MeasureLink),
         flying: pipes_image(),
     };
     count(&images, Some(STEPS)).unwrap()
@@ -56,6 +57,14 @@ fn every_part_stays_within_its_bound_when_everything_is_turned_fed_forward_and_l
     assert!(report.motor_reference_turning.max <= 700, "{:?}", report.motor_reference_turning);
     // The estimator: 9 by 9 times 9 by 9 twice would be 1458 products, each with an addition and its loads; every bit is
     // compared on the way.
+    // A block of the hash is some 2,500. A tag takes two to four, one of them for its second pass; a hello with its answer, whose
+    // tags are the key's, and the session's own key take eleven.
+    let link = report.link.unwrap();
+    for frame in &link.frames {
+        let bound = if frame.frame.contains("hello") { 30_000 } else { 14_000 };
+        assert!(frame.without_tag <= 4_500 && frame.with_tag <= bound, "{frame:?}");
+    }
+    assert!(link.signature <= 22_000, "{}", link.signature);
     let estimator = report.estimator.unwrap();
     for (prediction, update) in estimator.prediction.values().zip(estimator.update.values()) {
         assert!(prediction.max <= 3_500 && update.max <= 3_200, "{prediction:?}, {update:?}");

@@ -11,7 +11,7 @@ use quatrack::link::{
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{Mode, Reason};
 use quatrack_cli::pil::client::Client;
-use quatrack_cli::pil::emulated::{self, Transport};
+use quatrack_cli::pil::emulated::{self, Equipment, Transport};
 use quatrack_cli::pil::image::{self, Image};
 use quatrack_cli::pil::interrupt::Interrupt;
 use quatrack_cli::pil::lock_step::fly_all;
@@ -26,7 +26,7 @@ pub(crate) fn pipes_image() -> PathBuf {
 }
 
 pub(crate) fn connected() -> Client {
-    emulated::connect(&pipes_image(), Transport::Pipes, None, Interrupt::default()).unwrap()
+    emulated::connect(&pipes_image(), Transport::Pipes, Equipment::default(), Interrupt::default()).unwrap()
 }
 
 /// A board in flight: armed, one state answered with a command.

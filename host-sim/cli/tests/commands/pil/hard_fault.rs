@@ -35,7 +35,7 @@ fn a_hard_fault_restarts_the_board_disarmed_for_good() {
     let line = Line::create_pipes(&to_board, &from_board).unwrap();
     let debugger = ["-serial", "none", "-gdb", "unix:gdb,server=on,wait=off"];
     let emulator = Emulator::start(&pipes_image(), folder.path(), &debugger).unwrap();
-    let mut client = Client::connect(line, Some(emulator), Interrupt::default()).unwrap();
+    let mut client = Client::connect(line, Some(emulator), None, Interrupt::default()).unwrap();
     client.set(Parameter::Decimation(0)).unwrap();
     client.request(&ToBoard::Arm).unwrap();
 

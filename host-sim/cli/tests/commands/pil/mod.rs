@@ -5,6 +5,7 @@ mod emulated;
 mod failures;
 mod gain_tables;
 mod hard_fault;
+mod keyed;
 mod motors;
 mod support;
 mod two_ways;
