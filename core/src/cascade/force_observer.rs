@@ -20,8 +20,11 @@ const SLOPE_MAX_M_S3: f32 = 15.0;
 /// What is left of the slope after a step with the disturbance on its bound.
 const SLOPE_DECAY: f32 = 0.95;
 
-/// Velocity jump along an axis, between a step and what was expected of it, that no force makes, m/s.
-const JUMP_M_S: f32 = 1.0;
+/// Velocity jump along an axis, between a step and what was expected of it, that no air makes, m/s: that of 15 m/s^2 while an
+/// estimate is held for 10 ms. A wall stops a craft faster.
+const JUMP_M_S: f32 = 0.15;
+/// Jump beyond which it is another estimate, or the first one, m/s.
+const ANOTHER_M_S: f32 = 3.0;
 
 /// Poles along the thrust: natural frequency, rad/s, and damping.
 const ALONG_RAD_S: f32 = 5.0;
@@ -73,9 +76,9 @@ impl ForceObserver {
         }
     }
 
-    /// Moves the memory on by a step.
+    /// Moves the memory on by a step; whether the craft has been stopped over ground as only a wall or a hand does.
     #[inline(always)]
-    pub(super) fn step(&self, memory: &mut Disturbance, pushed: &Pushed) {
+    pub(super) fn step(&self, memory: &mut Disturbance, pushed: &Pushed) -> bool {
         let (h, n, v, mean) = (self.period_s, &pushed.axis, &pushed.velocity, &pushed.mean_velocity);
         let Disturbance { velocity: known, across: [dx, dy], slope: [sx, sy], along } = *memory;
         let (thrust, d) = (pushed.thrust + along, pushed.drag);
@@ -87,7 +90,9 @@ impl ForceObserver {
         let (ex, ey, ez) = (v.x - expected.x, v.y - expected.y, v.z - expected.z);
         if is_beyond(ex, JUMP_M_S) || is_beyond(ey, JUMP_M_S) || is_beyond(ez, JUMP_M_S) {
             memory.velocity = *v;
-            return;
+            let is_same = ex.abs() <= ANOTHER_M_S && ey.abs() <= ANOTHER_M_S;
+            let is_across = is_beyond(ex, JUMP_M_S) || is_beyond(ey, JUMP_M_S);
+            return is_same && is_across && ex * expected.x + ey * expected.y < 0.0;
         }
         let [l1, l2, l3] = self.across;
         let [m1, m2] = self.along;
@@ -97,6 +102,7 @@ impl ForceObserver {
         memory.across = [x, y];
         memory.slope = [slope_x, slope_y];
         memory.along = within(along + m2 * (n.z * ez), ALONG_MAX_M_S2);
+        false
     }
 }
 
@@ -116,6 +122,11 @@ impl Disturbance {
     /// Forgotten, at a velocity: what a craft sees that stands.
     pub(super) fn rest(&mut self, velocity: &Vector3<f32>) {
         *self = Self { velocity: *velocity, ..Self::NONE };
+    }
+
+    /// At a velocity that is not known any more.
+    pub(super) fn anew(self) -> Self {
+        Self { velocity: Self::NONE.velocity, ..self }
     }
 
     /// Whether it is on its bound.
@@ -160,6 +171,25 @@ mod tests {
     fn a_thrust_that_is_off_is_found_along_the_thrust() {
         let Disturbance { across, along, .. } = found(4.0, 0.0, -1.0);
         assert!((along + 1.0).abs() < 1e-3 && across == [0.0; 2], "{along}");
+    }
+
+    #[test]
+    fn a_wall_stops_a_craft_and_a_gust_or_another_estimate_does_not() {
+        let observer = ForceObserver::new(H);
+        let at = |speed: f32| Vector3::new(speed, 0.0, 0.0);
+        for (before, after, is_stopped) in [(1.0, 0.7, true), (1.0, 1.3, false), (1.0, 0.9, false), (1.0, -4.0, false)]
+        {
+            let mut memory = Disturbance { velocity: at(before), ..Disturbance::NONE };
+            let (velocity, axis, thrust) = (at(after), Vector3::z(), GRAVITY_M_S2);
+            let found =
+                observer.step(&mut memory, &Pushed { velocity, mean_velocity: velocity, axis, thrust, drag: 0.3 });
+            assert_eq!(found, is_stopped, "{before} {after}");
+            assert!(!is_stopped || memory.across == [0.0; 2], "nothing is learned of it");
+        }
+        let mut memory = Disturbance { velocity: at(1.0), ..Disturbance::NONE }.anew();
+        let first =
+            Pushed { velocity: at(0.0), mean_velocity: at(0.0), axis: Vector3::z(), thrust: GRAVITY_M_S2, drag: 0.3 };
+        assert!(!observer.step(&mut memory, &first) && memory.velocity == at(0.0));
     }
 
     #[test]

@@ -52,6 +52,7 @@ impl Cascade {
         *memory = CascadeMemory {
             carried: CascadeMemory::IN_FLIGHT.carried,
             held: CascadeMemory::IN_FLIGHT.held,
+            disturbance: memory.disturbance.anew(),
             seen: Seen { mean_forces: memory.coming, axis, undisturbed: false, answer: [0.0; 2], ..before },
             coming: middle(&forces, &turned(&parts_of(forces_n), share)),
             ..*memory

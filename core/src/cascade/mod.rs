@@ -50,6 +50,7 @@ use self::allocation::Allocation;
 use self::bounds::smaller;
 use self::force_observer::{ForceObserver, Pushed};
 pub use self::gains::{CascadeGainError, CascadeGains, HeightGains, TiltGains, YawGains};
+use self::ground::HELD_M_S;
 use self::inner::{Errors, InnerLoop};
 pub use self::jerk_fit::JerkFit;
 pub use self::limits::{CascadeLimits, CascadeLimitsError};
@@ -211,7 +212,8 @@ impl Cascade {
         let flat = &input.sample.flat;
         let position = difference(&now.position, &flat.position_m);
         let velocity = difference(&now.velocity, &flat.velocity_m_s);
-        let approach = self.outer.approach(&memory.approach, &position, period_s);
+        let speed_m_s = if memory.ground.is_held() { HELD_M_S } else { self.outer.speed_m_s() };
+        let approach = self.outer.approach(&memory.approach, &position, (speed_m_s, period_s));
 
         let (standing, disturbance, air) =
             (memory.ground.is_standing(), &memory.disturbance, self.air_learner.now(&memory.air));
@@ -230,7 +232,8 @@ impl Cascade {
         let reference = InAir::of(input.sample, input.heading, &around, now.attitude, self.airframe()).ok()?;
 
         let wanted = if height {
-            let correction = self.outer.correction(&position, &velocity, across && !standing);
+            let sideways_m_s = (across && !standing).then_some(speed_m_s);
+            let correction = self.outer.correction(&position, &velocity, sideways_m_s);
             self.outer.limited(&reference.acceleration, &correction)
         } else {
             let a = &reference.acceleration;
@@ -298,7 +301,10 @@ impl Cascade {
         }
         let pushed =
             Pushed { velocity: seen.now.velocity, mean_velocity, axis: mean(&before.axis, &seen.axis), thrust, drag };
-        self.force_observer.step(&mut memory.disturbance, &pushed);
+        if self.force_observer.step(&mut memory.disturbance, &pushed) {
+            memory.ground.stop(&seen.now.position);
+            return memory.rest();
+        }
         if seen.undisturbed {
             memory.motors.step(thrust, memory.disturbance.along, period_s);
         }

@@ -74,25 +74,39 @@ impl OuterLoop {
     /// How the craft should move beside its reference: the velocity that the position error asks for, as the velocity
     /// loop makes it.
     #[inline(always)]
-    pub(super) fn approach(&self, before: &Approach, position: &Vector3<f32>, period_s: f32) -> Approach {
+    pub(super) fn approach(
+        &self,
+        before: &Approach,
+        position: &Vector3<f32>,
+        (speed_m_s, period_s): (f32, f32),
+    ) -> Approach {
         let across = &self.across;
-        let [x, y] = shortened([across.position * position.x, across.position * position.y], self.limits.speed_m_s);
+        let [x, y] = shortened([across.position * position.x, across.position * position.y], speed_m_s);
         let [ux, uy] = before.velocity;
         let [bx, by] = [across.velocity * (-x - ux), across.velocity * (-y - uy)];
         Approach { velocity: [ux + period_s * bx, uy + period_s * by], acceleration: [bx, by] }
     }
 
-    /// What the errors of position and velocity ask for, beside the reference's own acceleration; nothing sideways
-    /// where the craft stands or is flown by tilt.
+    /// The speed over ground with which a position error is made good, m/s.
     #[inline(always)]
-    pub(super) fn correction(&self, position: &Vector3<f32>, velocity: &Vector3<f32>, sideways: bool) -> Vector3<f32> {
+    pub(super) const fn speed_m_s(&self) -> f32 {
+        self.limits.speed_m_s
+    }
+
+    /// What the errors of position and velocity ask for, beside the reference's own acceleration, where a position error over ground
+    /// is made good with a speed; nothing sideways where the craft stands or is flown by tilt.
+    #[inline(always)]
+    pub(super) fn correction(
+        &self,
+        position: &Vector3<f32>,
+        velocity: &Vector3<f32>,
+        sideways_m_s: Option<f32>,
+    ) -> Vector3<f32> {
         let (across, height) = (&self.across, &self.height);
         let climb = within(height.position * position.z, self.limits.climb_m_s);
         let up = -height.velocity * within(velocity.z + climb, VELOCITY_MOST_M_S);
-        if !sideways {
-            return Vector3::new(0.0, 0.0, up);
-        }
-        let [sx, sy] = shortened([across.position * position.x, across.position * position.y], self.limits.speed_m_s);
+        let Some(speed_m_s) = sideways_m_s else { return Vector3::new(0.0, 0.0, up) };
+        let [sx, sy] = shortened([across.position * position.x, across.position * position.y], speed_m_s);
         let [x, y] = shortened([velocity.x + sx, velocity.y + sy], VELOCITY_MOST_M_S);
         Vector3::new(-across.velocity * x, -across.velocity * y, up)
     }
@@ -139,7 +153,7 @@ mod tests {
     #[test]
     fn near_the_goal_it_is_the_lqrs_answer() {
         let (outer, off, speed) = (outer(), 0.01, 0.02);
-        let found = outer.correction(&Vector3::new(off, off, off), &Vector3::new(speed, speed, speed), true);
+        let found = outer.correction(&Vector3::new(off, off, off), &Vector3::new(speed, speed, speed), Some(1.8));
         // The figures of the design: 10.4 1/s^2 and 5.1 1/s, the two directions within 2 % of it.
         let pitch = -9.81 * (0.2150 * off + 0.1060 * speed) / 0.2034;
         assert!((found.x / pitch - 1.0).abs() < 0.02 && found.x == found.y, "{found}");
@@ -151,13 +165,13 @@ mod tests {
     fn a_far_goal_asks_for_a_speed() {
         let outer = outer();
         let at = |distance: f32, speed: f32| {
-            outer.correction(&Vector3::new(-distance, 0.0, -distance), &Vector3::new(speed, 0.0, speed), true)
+            outer.correction(&Vector3::new(-distance, 0.0, -distance), &Vector3::new(speed, 0.0, speed), Some(1.8))
         };
         // At the bound of the speed nothing more is asked for, however far the goal.
         for distance in [2.0, 50.0, 1e6] {
             assert!(at(distance, 1.8).x.abs() < 1e-5 && at(distance, 1.5).z.abs() < 1e-5, "{distance}");
         }
-        assert_eq!(outer.correction(&Vector3::new(1.0, 1.0, 0.0), &Vector3::zeros(), false), Vector3::zeros());
+        assert_eq!(outer.correction(&Vector3::new(1.0, 1.0, 0.0), &Vector3::zeros(), None), Vector3::zeros());
     }
 
     #[test]
