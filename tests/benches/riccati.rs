@@ -15,7 +15,7 @@ fn matrix(rows: usize, columns: usize, from: u32) -> DMatrix<f64> {
 fn equations(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("riccati");
     group.sample_size(10).measurement_time(Duration::from_secs(2));
-    for n in [4, 9, 20, 40] {
+    for n in [4_usize, 9, 20, 40] {
         let m = n.div_ceil(4);
         let (a, b) = (matrix(n, n, 0), matrix(n, m, 5000));
         let (q, r) = (DMatrix::identity(n, n), DMatrix::identity(m, m));
