@@ -78,8 +78,7 @@ proptest! {
             let craft = craft(lane);
             let calm = LinearWind { slope_m_s2: Vector3::zeros(), ..step.wind };
             let felt = craft.motion(state, &step.goals_n, &calm, step.from_s).specific_force_m_s2;
-            let (own, has_air) = plants[lane].unwrap();
-            prop_assert_eq!(felt_m_s2(&own, has_air, state, &calm.from_m_s).map(|x| x + 0.0), felt.map(|x| x + 0.0));
+            prop_assert_eq!(felt_m_s2(&figures, has_air, state, &calm.from_m_s).map(|x| x + 0.0), felt.map(|x| x + 0.0));
             prop_assert_eq!(bits(&alone(&figures, has_air, state, step)), expected, "alone {}", lane);
         }
     }
