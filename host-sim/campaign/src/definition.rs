@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::scenario::file::ScenarioFile;
 use quatrack_simulation::scenario::{CourseChoice, Law, Scenario, ScenarioError};
@@ -38,6 +39,8 @@ pub struct Campaign {
     laws: Vec<Law>,
     seed: u64,
     trajectory: Option<PiecewisePolynomial>,
+    /// The vehicle of all runs, once it has been read.
+    vehicle: Option<Vehicle>,
 }
 
 /// One run: its scenario and the numbers that were drawn for it.
@@ -91,7 +94,9 @@ impl Campaign {
             key,
             reason,
         })?;
-        let mut campaign = Self { text, files, origin, folder, nominal, varied, laws, seed, trajectory: None };
+        let mut campaign =
+            Self { text, files, origin, folder, nominal, varied, laws, seed, trajectory: None, vehicle: None };
+        campaign.vehicle = Some(campaign.nominal()?.vehicle);
         campaign.look_at_bounds()?;
         campaign.look_at_laws(trajectories, &file)?;
         Ok(campaign)
@@ -99,7 +104,6 @@ impl Campaign {
 
     /// Every figure at both its ends, the others as they are: what can be drawn is then what a scenario takes.
     fn look_at_bounds(&self) -> Result<(), CampaignError> {
-        self.checked(self.nominal.clone())?;
         for varied in &self.varied {
             for end in varied.kind.bounds() {
                 let mut table = self.nominal.clone();
@@ -140,7 +144,10 @@ impl Campaign {
             let words: Vec<&str> = error.message().split_whitespace().collect();
             ScenarioError::Named { origin: self.origin.clone(), key: "vary", reason: words.join(" ") }
         })?;
-        Scenario::checked(&file, &self.origin, &self.folder)
+        match &self.vehicle {
+            Some(vehicle) => Scenario::on(vehicle.clone(), &file, &self.origin, &self.folder),
+            None => Scenario::checked(&file, &self.origin, &self.folder),
+        }
     }
 
     /// The table of one run: no distributions, every figure as it was drawn, and its seed.

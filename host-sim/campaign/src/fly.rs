@@ -258,3 +258,35 @@ fn put(row: &mut Row, tally: Tally) {
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::definition::Asked;
+
+    /// Steady plants take the short way, those with a delay, a battery or gusts the long one, and a filter looks at every step.
+    #[test]
+    fn a_flight_beside_others_has_the_bits_that_it_has_alone() {
+        let conditions = [
+            "",
+            "[air]\ndrag_per_s = [0.4, 0.4, 0.4]\nwind_m_s = [1.0, 0.5, 0.0]\n[errors]\nlag_rise_ms = 30.0\nlag_fall_ms = 47.0\n",
+            "[air]\ndrag_per_s = [0.4, 0.4, 0.4]\ngust_rms_m_s = 0.5\n[errors]\ndelay_ms = 3.3\n[noise]\nposition_m = 0.001\n",
+            "estimator = \"kalman\"\n[noise]\ngyro_rad_s = 0.02\n",
+        ];
+        let dir = tempfile::tempdir().unwrap();
+        for condition in conditions {
+            let text = format!(
+                "vehicle = \"crazyflie-2.1-brushless\"\ncourse = \"eight\"\nduration_s = 0.5\n\
+                 laws = [\"quatrack\", \"actuator-aware\", \"lqr-f\", \"mellinger\"]\n{condition}[vary]\n\
+                 errors.mass_factor = {{ uniform = [0.9, 1.1] }}\nerrors.inertia_factor = {{ uniform = [0.8, 1.2] }}\n"
+            );
+            let path = dir.path().join("s.toml");
+            std::fs::write(&path, text).unwrap();
+            let campaign = Campaign::read(&path, &Asked::default(), &|name| Err(name.to_owned())).unwrap();
+            let together = Crew::default().fly(&campaign, 0..5);
+            let alone: Vec<Row> = (0..5).flat_map(|run| Crew::default().fly(&campaign, run..run + 1)).collect();
+            assert!(together.iter().any(|row| row.outcome == Outcome::Flown), "{condition}");
+            assert_eq!(Row::to_csv(&together), Row::to_csv(&alone), "{condition}");
+        }
+    }
+}

@@ -22,7 +22,7 @@ pub const PERIOD_S: f64 = 0.002;
 
 /// The number of the control step at a time of one, s.
 pub fn step_at(time_s: f64) -> usize {
-    (time_s / PERIOD_S).round() as usize
+    (time_s / PERIOD_S + 0.5) as usize
 }
 
 fn vector(v: &Vector3<f64>) -> Vector3<f32> {

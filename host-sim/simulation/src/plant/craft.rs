@@ -104,7 +104,8 @@ impl Craft {
     }
 
     fn rate(&self, time_s: f64, x: &RigidVector, commands_n: &Vector4<f64>, wind: &LinearWind) -> RigidVector {
-        let state = RigidState::from_vector(x);
+        // Of the quaternion as it is, between the steps of an integrator of almost unit length: no slope needs it longer.
+        let state = RigidState::of_numbers((*x).into());
         let rates = &state.body_rates_rad_s;
         let thrust_rates_n_s = self.motors.thrust_rates_n_s(&state.thrusts_n, commands_n);
         let mut own = self.motors.wrench(&state.thrusts_n);

@@ -23,6 +23,7 @@ impl DelayLine {
     }
 
     /// A command is given at a time, s.
+    #[inline]
     pub(super) fn give(&mut self, time_s: f64, command: &Vector4<f64>) {
         if self.delay_s > 0.0 {
             self.on_the_way.push_back((time_s + self.delay_s, *command));
@@ -33,6 +34,7 @@ impl DelayLine {
 
     /// The commands that act from a time, s, and the time of their next change. Times less than a nanosecond apart are
     /// the same, so that sums of steps and delays meet.
+    #[inline]
     pub(super) fn at(&mut self, time_s: f64) -> (Option<Vector4<f64>>, f64) {
         while let Some((from_s, command)) = self.on_the_way.front() {
             if *from_s > time_s + 1e-9 {

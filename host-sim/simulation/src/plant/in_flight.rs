@@ -33,6 +33,8 @@ pub struct Plant {
     craft: Craft,
     /// The craft's figures where it is plain, and whether it has air.
     plain: Option<(Figures, bool)>,
+    /// Whether commands act at once, at one voltage, in a wind that stays the same.
+    steady: bool,
     wind: Blowing,
     line: DelayLine,
     supply: Supply,
@@ -41,17 +43,27 @@ pub struct Plant {
     acting: Option<Acting>,
     time_s: f64,
     state: RigidState,
+    finite: bool,
     wind_m_s: Vector3<f64>,
 }
 
 /// A time that is flown step by step: parts between delayed commands, each in equal steps.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Way {
     end_s: f64,
     from_s: f64,
     part_s: f64,
     steps: f64,
     taken: f64,
+}
+
+/// A step in which nothing but the commands is new.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SteadyStep {
+    pub(super) end_s: f64,
+    pub(super) from_s: f64,
+    pub(super) step_s: f64,
+    pub(super) goals_n: Vector4<f64>,
 }
 
 /// From commands to the thrusts that the motors go to.
@@ -74,16 +86,20 @@ struct Acting {
 
 impl Converter {
     /// Commands within their limits, with their powers taken.
+    #[inline]
     fn acting(&self, commands_n: &Vector4<f64>) -> Acting {
         let [least_n, most_n] = self.limits_n;
         let mapped = commands_n.map(|command_n| {
-            let command_n = command_n.max(least_n).min(most_n);
+            // By comparison: what is no number becomes the least, and f64::max costs five times as much.
+            let command_n = if command_n > least_n { command_n } else { least_n };
+            let command_n = if command_n < most_n { command_n } else { most_n };
             self.map.map_or(command_n, |map| map.share(command_n / most_n))
         });
         Acting { commands_n: *commands_n, mapped }
     }
 
     /// Thrusts that the motors go to at a time and a voltage, N.
+    #[inline]
     fn goals_n(&self, mapped: &Vector4<f64>, time_s: f64, voltage_v: f64) -> Vector4<f64> {
         let factor = (self.factor + self.factor_per_s * time_s).max(0.0);
         let all = factor * self.map.map_or(1.0, |map| map.most_n(voltage_v));
@@ -111,6 +127,7 @@ impl Plant {
             plain: kernel::figures(&craft),
             craft,
             wind_m_s: wind.at(0.0),
+            steady: truth.delay_s <= 0.0 && wind.is_steady() && matches!(truth.supply, Supply::Constant(_)),
             wind,
             line: DelayLine::new(truth.delay_s),
             acting: None,
@@ -124,6 +141,7 @@ impl Plant {
             },
             time_s: 0.0,
             state: *start,
+            finite: start.is_finite(),
         })
     }
 
@@ -155,18 +173,51 @@ impl Plant {
                 Some((figures, has_air)) => kernel::alone(figures, *has_air, &self.state, &step),
                 None => self.craft.step_in_wind(&self.state, &step.goals_n, &step.wind, step.from_s, step.step_s),
             };
-            self.arrive(to_s, state);
+            self.arrive(to_s, state, state.is_finite());
         }
         self.end(&way);
     }
 
     /// Gives commands; what follows goes a time from there.
+    #[inline]
     pub(super) fn begin(&mut self, commands_n: &Vector4<f64>, duration_s: f64) -> Way {
         self.line.give(self.time_s, commands_n);
         Way { end_s: self.time_s + duration_s, from_s: 0.0, part_s: 0.0, steps: 0.0, taken: 0.0 }
     }
 
+    /// Whether a time is one step in which nothing but the commands is new.
+    #[inline]
+    pub(super) fn takes_steady_step(&self, duration_s: f64) -> bool {
+        self.steady && self.plain.is_some() && duration_s / STEP_MAX_S - 1e-9 <= 1.0
+    }
+
+    /// That step: what [`Self::begin`] and [`Self::next_step`] then come to, for less.
+    #[inline]
+    pub(super) fn steady_step(&mut self, commands_n: &Vector4<f64>, duration_s: f64) -> SteadyStep {
+        self.line.give(self.time_s, commands_n);
+        let mapped = match &self.acting {
+            Some(acting) if acting.commands_n == *commands_n => acting.mapped,
+            _ => {
+                let acting = self.converter.acting(commands_n);
+                self.acting = Some(acting);
+                acting.mapped
+            }
+        };
+        let end_s = self.time_s + duration_s;
+        let to_s = self.time_s + (end_s - self.time_s);
+        let goals_n = self.converter.goals_n(&mapped, self.time_s, self.voltage_v());
+        SteadyStep { end_s, from_s: self.time_s, step_s: to_s - self.time_s, goals_n }
+    }
+
+    /// Where a steady step is written to, and when it ends.
+    #[inline]
+    pub(super) fn arrive_steadily(&mut self, end_s: f64) -> (&mut RigidState, &mut bool) {
+        self.time_s = end_s;
+        (&mut self.state, &mut self.finite)
+    }
+
     /// The next step on the way, and when it ends; none at its end.
+    #[inline]
     pub(super) fn next_step(&mut self, way: &mut Way) -> Option<(f64, Step)> {
         if way.taken >= way.steps {
             if self.time_s >= way.end_s - 1e-9 {
@@ -177,7 +228,8 @@ impl Plant {
                 self.acting = commands_n.map(|commands_n| self.converter.acting(&commands_n));
             }
             way.part_s = until_s.min(way.end_s) - self.time_s;
-            way.steps = (way.part_s / STEP_MAX_S - 1e-9).ceil().max(1.0);
+            let steps = way.part_s / STEP_MAX_S - 1e-9;
+            way.steps = if steps <= 1.0 { 1.0 } else { steps.ceil() };
             way.from_s = self.time_s;
             way.taken = 0.0;
         }
@@ -187,20 +239,35 @@ impl Plant {
         let goals_n = self.goals_n(self.acting);
         let from_m_s = self.wind_m_s;
         self.wind_m_s = self.wind.at(to_s);
-        let wind = LinearWind { from_s: self.time_s, from_m_s, slope_m_s2: (self.wind_m_s - from_m_s) / step_s };
+        let steady = self.wind_m_s == from_m_s;
+        let slope_m_s2 = if steady { Vector3::zeros() } else { (self.wind_m_s - from_m_s) / step_s };
+        let wind = LinearWind { from_s: self.time_s, from_m_s, slope_m_s2 };
         self.supply.drain(&self.state.thrusts_n, step_s);
         Some((to_s, Step { goals_n, wind, from_s: self.time_s, step_s }))
     }
 
-    /// Takes the state after a step.
-    pub(super) fn arrive(&mut self, to_s: f64, state: RigidState) {
-        self.state = state;
+    /// Takes the state after a step, and whether it is finite.
+    #[inline]
+    pub(super) fn arrive(&mut self, to_s: f64, state: RigidState, finite: bool) {
+        (self.state, self.finite) = (state, finite);
         self.time_s = to_s;
     }
 
+    /// Whether a way ends where its last step did.
+    #[inline]
+    pub(super) fn is_at_end(&self, way: &Way) -> bool {
+        way.taken >= way.steps && self.time_s >= way.end_s - 1e-9
+    }
+
     /// At the end of the way.
+    #[inline]
     pub(super) fn end(&mut self, way: &Way) {
         self.time_s = way.end_s;
+    }
+
+    /// Whether its steps can be taken beside those of others.
+    pub(super) fn is_plain(&self) -> bool {
+        self.plain.is_some()
     }
 
     /// Its figures where it is plain, and whether it has air.
@@ -209,6 +276,7 @@ impl Plant {
     }
 
     /// Before the first command acts, the thrusts stay.
+    #[inline]
     fn goals_n(&self, acting: Option<Acting>) -> Vector4<f64> {
         acting.map_or(self.state.thrusts_n, |acting| {
             self.converter.goals_n(&acting.mapped, self.time_s, self.voltage_v())
@@ -218,6 +286,11 @@ impl Plant {
     /// Where it is.
     pub fn state(&self) -> &RigidState {
         &self.state
+    }
+
+    /// Whether every number of its state is finite.
+    pub fn is_finite(&self) -> bool {
+        self.finite
     }
 
     /// Time since the start, s.
@@ -236,6 +309,7 @@ impl Plant {
     }
 
     /// Voltage at the motors, V; 0 where nothing depends on it.
+    #[inline]
     pub fn voltage_v(&self) -> f64 {
         self.supply.voltage_v(&self.state.thrusts_n)
     }
@@ -256,6 +330,14 @@ impl Plant {
     /// Least and most thrust that each motor can be commanded to now, N.
     pub fn thrust_limits_n(&self) -> [Vector4<f64>; 2] {
         self.converter.limits_n.map(|limit_n| self.goals_n(Some(self.converter.acting(&Vector4::repeat(limit_n)))))
+    }
+
+    /// What an accelerometer at the centre of mass reads, body frame, m/s^2: that of [`Self::motion`], for less.
+    pub fn specific_force_m_s2(&mut self) -> Vector3<f64> {
+        match &self.plain {
+            Some((figures, has_air)) => kernel::felt_m_s2(figures, *has_air, &self.state, &self.wind_m_s),
+            None => self.motion().specific_force_m_s2,
+        }
     }
 
     /// Specific force at the centre of mass under the commands that act now.

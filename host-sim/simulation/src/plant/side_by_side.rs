@@ -12,6 +12,8 @@ pub struct PlantGroup {
     plants: Vec<Plant>,
     lanes: SideBySide,
     flying: [bool; LANES],
+    /// Plants that are elsewhere than their lanes.
+    apart: [bool; LANES],
 }
 
 impl PlantGroup {
@@ -23,7 +25,7 @@ impl PlantGroup {
         plants.truncate(LANES);
         let plain = std::array::from_fn(|lane| plants.get(lane).and_then(Plant::plain));
         let flying = std::array::from_fn(|lane| lane < plants.len());
-        Self { lanes: SideBySide::new(&plain), flying, plants }
+        Self { lanes: SideBySide::new(&plain), flying, apart: [true; LANES], plants }
     }
 
     /// One of them.
@@ -31,8 +33,8 @@ impl PlantGroup {
         self.plants.get(lane)
     }
 
-    /// One of them, to be asked what it feels.
-    pub fn plant_mut(&mut self, lane: usize) -> Option<&mut Plant> {
+    /// One of them, to be asked what it feels, and not to be moved.
+    pub(crate) fn plant_mut(&mut self, lane: usize) -> Option<&mut Plant> {
         self.plants.get_mut(lane)
     }
 
@@ -45,35 +47,73 @@ impl PlantGroup {
 
     /// Gives each its commands, N, and flies on for a time, s, as [`Plant::advance`] does.
     pub fn advance(&mut self, commands_n: &[Vector4<f64>; LANES], duration_s: f64) {
-        let mut ways: [Option<Way>; LANES] = [None; LANES];
+        if self.advance_steadily(commands_n, duration_s) {
+            return;
+        }
+        let mut ways = [Way::default(); LANES];
+        let mut under_way = [false; LANES];
         for (lane, plant) in self.plants.iter_mut().enumerate().filter(|(lane, _)| self.flying[*lane]) {
-            if plant.plain().is_some() {
-                ways[lane] = Some(plant.begin(&commands_n[lane], duration_s));
+            under_way[lane] = plant.is_plain();
+            if under_way[lane] {
+                ways[lane] = plant.begin(&commands_n[lane], duration_s);
             } else {
                 plant.advance(&commands_n[lane], duration_s);
             }
         }
-        loop {
-            let mut ends_s = [None; LANES];
-            for (lane, plant) in self.plants.iter_mut().enumerate() {
-                let Some(way) = &mut ways[lane] else { continue };
-                if let Some((to_s, step)) = plant.next_step(way) {
-                    self.lanes.put(lane, plant.state(), &step);
-                    ends_s[lane] = Some(to_s);
-                } else {
-                    plant.end(way);
-                    ways[lane] = None;
+        while under_way != [false; LANES] {
+            let mut ends_s = [0.0; LANES];
+            for (lane, plant) in self.plants.iter_mut().enumerate().filter(|(lane, _)| under_way[*lane]) {
+                // There is a step until it is at its end.
+                let Some((to_s, step)) = plant.next_step(&mut ways[lane]) else { continue };
+                if self.apart[lane] {
+                    self.lanes.put_state(lane, plant.state());
                 }
-            }
-            if ends_s.iter().all(Option::is_none) {
-                return;
+                self.lanes.put_step(lane, &step);
+                ends_s[lane] = to_s;
             }
             self.lanes.advance();
             for (lane, plant) in self.plants.iter_mut().enumerate() {
-                if let Some(to_s) = ends_s[lane] {
-                    plant.arrive(to_s, self.lanes.state(lane));
+                self.apart[lane] = !under_way[lane];
+                if under_way[lane] {
+                    let mut state = *plant.state();
+                    self.lanes.take(lane, &mut state);
+                    plant.arrive(ends_s[lane], state, self.lanes.is_finite(lane));
+                    if plant.is_at_end(&ways[lane]) {
+                        plant.end(&ways[lane]);
+                        under_way[lane] = false;
+                    }
                 }
             }
         }
+    }
+
+    /// The same where nothing but commands changes and one step takes all of it; whether that is so.
+    fn advance_steadily(&mut self, commands_n: &[Vector4<f64>; LANES], duration_s: f64) -> bool {
+        if !self.plants.iter().all(|plant| plant.takes_steady_step(duration_s)) {
+            return false;
+        }
+        let mut ends_s = [0.0; LANES];
+        for (lane, plant) in self.plants.iter_mut().enumerate() {
+            if !self.flying[lane] {
+                continue;
+            }
+            if self.apart[lane] {
+                self.lanes.put_state(lane, plant.state());
+                self.lanes.put_wind(lane, plant.wind_m_s());
+            }
+            let step = plant.steady_step(&commands_n[lane], duration_s);
+            self.lanes.put_goals(lane, &step.goals_n, step.from_s, step.step_s);
+            ends_s[lane] = step.end_s;
+        }
+        self.lanes.advance();
+        for (lane, plant) in self.plants.iter_mut().enumerate() {
+            self.apart[lane] = !self.flying[lane];
+            if self.flying[lane] {
+                let (state, finite) = plant.arrive_steadily(ends_s[lane]);
+                self.lanes.take(lane, state);
+                *finite = self.lanes.is_finite(lane);
+            }
+        }
+        true
     }
 }

@@ -39,7 +39,10 @@ impl RigidState {
 
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
-        self.to_vector().iter().all(|value| value.is_finite())
+        // Times 0 each is 0 or no number.
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] =
+            <[f64; 17]>::from(self.to_vector()).map(|value| 0.0 * value);
+        ((a + b) + (c + d)) + ((e + f) + (g + h)) + ((i + j) + (k + l)) + ((m + n) + (o + p)) + q == 0.0
     }
 
     pub(super) fn to_vector(self) -> RigidVector {
@@ -50,12 +53,19 @@ impl RigidState {
     }
 
     pub(super) fn from_vector(x: &RigidVector) -> Self {
+        let attitude = UnitQuaternion::from_quaternion(Quaternion::new(x[6], x[7], x[8], x[9]));
+        Self { attitude, ..Self::of_numbers((*x).into()) }
+    }
+
+    /// Of numbers, the quaternion as long as it is.
+    pub(super) fn of_numbers(x: [f64; 17]) -> Self {
+        let [rx, ry, rz, vx, vy, vz, w, i, j, k, p, q, r, f1, f2, f3, f4] = x;
         Self {
-            position_m: x.fixed_rows::<3>(0).into_owned(),
-            velocity_m_s: x.fixed_rows::<3>(3).into_owned(),
-            attitude: UnitQuaternion::from_quaternion(Quaternion::new(x[6], x[7], x[8], x[9])),
-            body_rates_rad_s: x.fixed_rows::<3>(10).into_owned(),
-            thrusts_n: x.fixed_rows::<4>(13).into_owned(),
+            position_m: Vector3::new(rx, ry, rz),
+            velocity_m_s: Vector3::new(vx, vy, vz),
+            attitude: UnitQuaternion::new_unchecked(Quaternion::new(w, i, j, k)),
+            body_rates_rad_s: Vector3::new(p, q, r),
+            thrusts_n: Vector4::new(f1, f2, f3, f4),
         }
     }
 }

@@ -88,6 +88,7 @@ pub enum Supply {
 
 impl Supply {
     /// Voltage at the motors while they give thrusts, V.
+    #[inline]
     pub fn voltage_v(&self, thrusts_n: &nalgebra::Vector4<f64>) -> f64 {
         match self {
             Self::Constant(voltage_v) => *voltage_v,
@@ -98,6 +99,7 @@ impl Supply {
     }
 
     /// Takes the charge of a time.
+    #[inline]
     pub(super) fn drain(&mut self, thrusts_n: &nalgebra::Vector4<f64>, duration_s: f64) {
         if let Self::Battery { battery, charge } = self {
             *charge = (*charge - battery.current_a(thrusts_n) * duration_s / battery.capacity_a_s).max(0.0);

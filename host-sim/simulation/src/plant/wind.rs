@@ -89,6 +89,7 @@ impl Blowing {
     }
 
     /// Velocity of the air, m/s, at a time that never goes back.
+    #[inline]
     pub(super) fn at(&mut self, time_s: f64) -> Vector3<f64> {
         let mut velocity = self.mean_m_s;
         if let Some(gust) = &self.gust {
@@ -98,6 +99,11 @@ impl Blowing {
             velocity += grid.at(time_s);
         }
         velocity
+    }
+
+    /// Whether it stays the same.
+    pub(super) fn is_steady(&self) -> bool {
+        self.gust.is_none() && self.turbulence.is_none()
     }
 
     /// Root mean square of the turbulence so far along the mean wind, across it and upwards, m/s.

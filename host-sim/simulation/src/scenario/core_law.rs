@@ -8,7 +8,7 @@ use quatrack::airframe::AirframeFigures;
 use quatrack::law::{ActuatorAwareGain, EquilibriumGain, FlatOutputGain};
 use quatrack::{
     Actuation, ActuatorAware, Airframe, Controller, Equilibrium, FeedForward, FlatOutput, Limits, Memory,
-    MotorReference, Rate, ReferenceError, State,
+    MotorReference, Output, Rate, ReferenceError, State,
 };
 use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use quatrack_design::vehicle::Vehicle;
@@ -98,20 +98,22 @@ impl CoreLaw {
     /// Takes its references along a track from now on, evaluated once for this and its copies.
     pub(super) fn share(&mut self, track: &Track) {
         let mut beyond_jerk = BeyondJerk::default();
-        let references = track.told(RATE.hz()).map(|(time_s, setpoint)| {
-            let point = beyond_jerk.filled(setpoint).carried_to(time_s);
-            MotorReference::from_flat(&motor_loop::sample(&point), self.actuation.airframe())
-        });
+        let airframe = self.actuation.airframe();
+        let references =
+            track.told(RATE.hz()).map(|(time_s, setpoint)| reference(&mut beyond_jerk, airframe, time_s, setpoint));
         self.shared = Some(references.collect());
     }
+}
 
-    fn reference(&mut self, input: &Input) -> Result<MotorReference, ReferenceError> {
-        if let Some(shared) = self.shared.as_ref().and_then(|shared| shared.get(motor_loop::step_at(input.time_s))) {
-            return *shared;
-        }
-        let point = self.beyond_jerk.filled(&input.setpoint).carried_to(input.time_s);
-        MotorReference::from_flat(&motor_loop::sample(&point), self.actuation.airframe())
-    }
+/// The reference of a setpoint at a time.
+fn reference(
+    beyond_jerk: &mut BeyondJerk,
+    airframe: &Airframe,
+    time_s: f64,
+    setpoint: &Setpoint,
+) -> Result<MotorReference, ReferenceError> {
+    let point = beyond_jerk.filled(setpoint).carried_to(time_s);
+    MotorReference::from_flat(&motor_loop::sample(&point), airframe)
 }
 
 /// A vehicle's way to its motors at a control rate, told its mass, with motors of a lag, s.
@@ -147,25 +149,42 @@ impl ControlLaw for CoreLaw {
     }
 
     fn step(&mut self, input: &Input) -> Result<Vector4<f64>, String> {
+        let Self { gain, actuation, limits, memory, beyond_jerk, shared } = self;
         let feed_forward = FeedForward::With;
-        let reference = self.reference(input).map_err(|error| error.to_string())?;
-        let controller = match &self.gain {
-            Gain::ActuatorAware(gain) => Controller::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE),
-            Gain::Equilibrium(gain) => {
-                Controller::new(Equilibrium { feed_forward, ..Equilibrium::new(gain) }, self.limits)
+        let own;
+        // Borrowed from where it is: a copy costs as much as a chain of the law.
+        let found = match shared.as_ref().and_then(|shared| shared.get(motor_loop::step_at(input.time_s))) {
+            Some(found) => found,
+            None => {
+                own = reference(beyond_jerk, actuation.airframe(), input.time_s, &input.setpoint);
+                &own
             }
-            Gain::FlatOutput(gain) => Controller::new(FlatOutput { gain, feed_forward }, self.limits),
         };
+        let reference = found.as_ref().map_err(ToString::to_string)?;
         let state = rigid_state(&input.estimate);
-        let step = controller
-            .with_actuation(&self.actuation)
-            .step_to_motors(&mut self.memory, (&state).into(), (&reference).into())
-            .map_err(|error| error.to_string())?;
-        Ok(Vector4::from(step.forces_n.map(f64::from)))
+        let controller = match gain {
+            Gain::ActuatorAware(gain) => {
+                let controller = Controller::new(ActuatorAware::new(gain, actuation), Limits::NONE);
+                // Forces come at once: there is nothing to be carried to the motors.
+                return match controller.step(memory, (&state).into(), reference.into()) {
+                    Ok(Output::Forces(step)) => Ok(Vector4::from(step.forces_n.map(f64::from))),
+                    Ok(Output::Command(_)) => Err("the law gives no forces".to_owned()),
+                    Err(error) => Err(error.to_string()),
+                };
+            }
+            Gain::Equilibrium(gain) => Controller::new(Equilibrium { feed_forward, ..Equilibrium::new(gain) }, *limits),
+            Gain::FlatOutput(gain) => Controller::new(FlatOutput { gain, feed_forward }, *limits),
+        };
+        let step = controller.with_actuation(actuation).step_to_motors(memory, (&state).into(), reference.into());
+        match step {
+            Ok(step) => Ok(Vector4::from(step.forces_n.map(f64::from))),
+            Err(error) => Err(error.to_string()),
+        }
     }
 }
 
 /// An estimate as the core takes it.
+#[inline]
 pub(super) fn rigid_state(estimate: &Estimate) -> quatrack::RigidState {
     let f32s = |v: &Vector3<f64>| v.map(|value| value as f32);
     let q = estimate.attitude.quaternion();

@@ -1,6 +1,6 @@
 //! The flight of a law: a craft, what is wrong with what is known of it, a course and a law in; where it went out.
 
-use nalgebra::{UnitQuaternion, Vector3, Vector4};
+use nalgebra::{Vector3, Vector4};
 use serde::Deserialize;
 
 use super::course::Flown;
@@ -54,8 +54,13 @@ pub(super) struct Flying<'a> {
     law: &'a mut dyn ControlLaw,
     estimation: Estimation,
     law_steps: u32,
+    /// Steps that the craft goes on at once.
+    stride: u32,
+    /// Whether anybody looks at the accelerometer.
+    feels: bool,
     commands_n: Vector4<f64>,
-    known: Estimate,
+    /// What the law was told last.
+    told: Input,
     pub(super) saturated_steps: u64,
     pub(super) lost: Option<Lost>,
 }
@@ -63,13 +68,21 @@ pub(super) struct Flying<'a> {
 impl<'a> Flying<'a> {
     /// Before its first step.
     pub(super) fn new(track: &'a Track, law: &'a mut dyn ControlLaw, estimation: Estimation, plant: &Plant) -> Self {
+        let law_steps = STEPS_HZ / law.rate_hz().clamp(1, STEPS_HZ);
         Self {
             track,
-            law_steps: STEPS_HZ / law.rate_hz().clamp(1, STEPS_HZ),
+            law_steps,
+            stride: stride(law_steps, &estimation),
+            feels: law.feels() || estimation.feels(),
             law,
             estimation,
             commands_n: plant.state().thrusts_n,
-            known: truth(plant.state(), &Vector3::zeros()),
+            told: Input {
+                time_s: 0.0,
+                estimate: truth(plant.state(), &Vector3::zeros()),
+                setpoint: *track.setpoint(0),
+                battery_v: plant.voltage_v(),
+            },
             saturated_steps: 0,
             lost: None,
         }
@@ -77,22 +90,31 @@ impl<'a> Flying<'a> {
 
     /// To the end of the track, or where it is lost.
     pub(super) fn fly(&mut self, plant: &mut Plant, keep: &mut impl Keep) {
-        for step in 0..=self.track.steps() {
+        for step in (0..=self.track.steps()).step_by(self.stride as usize) {
             if !self.decide(step, plant, keep) {
                 return;
             }
-            plant.advance(&self.commands_n, STEP_S);
+            plant.advance(&self.commands_n, self.stride_s());
         }
     }
 
-    /// One step of the flight but for the craft's own; whether it goes on. Rows every 10 ms of what is measured, and where it
+    /// Steps that the craft goes on at once.
+    pub(super) fn stride(&self) -> u32 {
+        self.stride
+    }
+
+    fn stride_s(&self) -> f64 {
+        f64::from(self.stride) * STEP_S
+    }
+
+    /// What is looked at before the craft goes on; whether it goes on. Rows every 10 ms of what is measured, and where it
     /// was lost, also before anything is measured.
     fn decide<K: Keep>(&mut self, step: u32, plant: &mut Plant, keep: &mut K) -> bool {
-        let (time_s, state) = (f64::from(step) * STEP_S, *plant.state());
+        let (time_s, state) = (f64::from(step) * STEP_S, plant.state());
         let target_m = self.track.target_m(step);
         let error_m = (state.position_m - target_m).norm();
         // Written so that NaN fails it.
-        if !(error_m < LOST_M && state.is_finite()) {
+        if !(error_m < LOST_M && plant.is_finite()) {
             return self.lose(step, format!("{error_m:.0} m from the course"), plant, keep);
         }
         let measured = self.track.is_measured(time_s);
@@ -100,45 +122,60 @@ impl<'a> Flying<'a> {
             (step.is_multiple_of(self.law_steps), step.is_multiple_of(SAMPLE_STEPS) && measured);
         // An estimate that nobody looks at is left out where that changes none after it.
         if K::SEES_ESTIMATES || law_s_turn || self.estimation.remembers() {
-            let felt = K::SEES_ESTIMATES || self.law.feels() || self.estimation.feels();
-            let felt_m_s2 = if felt { plant.motion().specific_force_m_s2 } else { Vector3::zeros() };
-            self.known = match self.estimation.estimate(&state, &felt_m_s2) {
-                Ok(estimate) => estimate,
-                Err(error) => return self.lose(step, format!("no estimate: {error}"), plant, keep),
-            };
+            let felt_m_s2 =
+                if K::SEES_ESTIMATES || self.feels { plant.specific_force_m_s2() } else { Vector3::zeros() };
+            if let Err(error) = self.estimation.estimate(plant.state(), &felt_m_s2, &mut self.told.estimate) {
+                return self.lose(step, format!("no estimate: {error}"), plant, keep);
+            }
         }
         if law_s_turn {
-            let setpoint = *self.track.setpoint(step);
-            match self.law.step(&Input { time_s, estimate: self.known, setpoint, battery_v: plant.voltage_v() }) {
-                Ok(asked_n) if asked_n.iter().all(|force| force.is_finite()) => self.commands_n = asked_n,
+            let setpoint = self.track.setpoint(step);
+            if setpoint.sent_s != self.told.setpoint.sent_s {
+                self.told.setpoint = *setpoint;
+            }
+            (self.told.time_s, self.told.battery_v) = (time_s, plant.voltage_v());
+            match self.law.step(&self.told) {
+                // Times 0 each is 0 or no number.
+                Ok(asked_n) if (asked_n * 0.0).sum() == 0.0 => self.commands_n = asked_n,
                 Ok(_) => return self.lose(step, "a force that is not finite".to_owned(), plant, keep),
                 Err(reason) => return self.lose(step, reason, plant, keep),
             }
             self.saturated_steps += u64::from(measured && at_limit(&self.commands_n, plant.command_limits_n()));
         }
         if row_s_turn {
-            keep.row(time_s, plant, &self.commands_n, &target_m, &self.known);
+            keep.row(time_s, plant, &self.commands_n, &target_m, &self.told.estimate);
         }
+        self.estimation.pass_over(self.stride - 1);
         true
     }
 
+    #[cold]
     fn lose(&mut self, step: u32, reason: String, plant: &Plant, keep: &mut impl Keep) -> bool {
         let time_s = f64::from(step) * STEP_S;
         self.lost = Some(Lost { time_s, reason });
-        if plant.state().is_finite() {
-            keep.row(time_s, plant, &self.commands_n, &self.track.target_m(step), &self.known);
+        if plant.is_finite() {
+            keep.row(time_s, plant, &self.commands_n, &self.track.target_m(step), &self.told.estimate);
         }
         false
     }
 }
 
-/// Flies up to four at once, each with the bits that it has alone.
+/// Steps between two looks at a craft: at the steps of its law and for the rows, but at every one where a filter follows it.
+fn stride(law_steps: u32, estimation: &Estimation) -> u32 {
+    let most = if estimation.feels() { 1 } else { SAMPLE_STEPS };
+    (1..=most).rev().find(|n| law_steps.is_multiple_of(*n) && SAMPLE_STEPS.is_multiple_of(*n)).unwrap_or(1)
+}
+
+/// Flies up to four that go on by as many steps at once, each with the bits that it has alone.
 pub(super) fn together(plants: Vec<Plant>, flights: &mut [Flying<'_>], keep: &mut [impl Keep]) {
     let mut group = PlantGroup::new(plants);
     let mut goes_on = [false; PlantGroup::MOST];
     goes_on.iter_mut().take(flights.len()).for_each(|goes| *goes = true);
     let steps = flights.iter().map(|flying| flying.track.steps()).max().unwrap_or(0);
-    for step in 0..=steps {
+    let Some((stride, stride_s)) = flights.first().map(|flying| (flying.stride as usize, flying.stride_s())) else {
+        return;
+    };
+    for step in (0..=steps).step_by(stride) {
         let mut commands_n = [Vector4::zeros(); PlantGroup::MOST];
         for (lane, (flying, keep)) in flights.iter_mut().zip(keep.iter_mut()).enumerate() {
             let Some(plant) = group.plant_mut(lane).filter(|_| goes_on[lane]) else { continue };
@@ -151,7 +188,7 @@ pub(super) fn together(plants: Vec<Plant>, flights: &mut [Flying<'_>], keep: &mu
         if goes_on.iter().all(|goes| !goes) {
             return;
         }
-        group.advance(&commands_n, STEP_S);
+        group.advance(&commands_n, stride_s);
     }
 }
 
@@ -163,11 +200,12 @@ fn at_limit(commands_n: &Vector4<f64>, [least_n, most_n]: [f64; 2]) -> bool {
 }
 
 /// An estimate that is the truth.
+#[inline]
 pub(super) fn truth(state: &RigidState, specific_force_m_s2: &Vector3<f64>) -> Estimate {
     Estimate {
         position_m: state.position_m,
         velocity_m_s: state.velocity_m_s,
-        attitude: UnitQuaternion::new_normalize(*state.attitude.quaternion()),
+        attitude: state.attitude,
         body_rates_rad_s: state.body_rates_rad_s,
         specific_force_m_s2: *specific_force_m_s2,
     }

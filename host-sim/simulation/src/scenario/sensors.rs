@@ -27,6 +27,8 @@ pub struct Sensors {
     noise: SensorNoise,
     gyro_bias_rad_s: Vector3<f64>,
     accelerometer_bias_m_s2: Vector3<f64>,
+    draws: bool,
+    biased: bool,
     /// Gyroscope, accelerometer, position, velocity, attitude: what one of them draws leaves the others as they are.
     streams: [Stream; 5],
 }
@@ -41,7 +43,9 @@ impl Sensors {
     ) -> Self {
         let sources = [Source::Gyroscope, Source::Accelerometer, Source::Position, Source::Velocity, Source::Attitude];
         let streams = sources.map(|source| Stream::new(seed, source));
-        Self { noise, gyro_bias_rad_s, accelerometer_bias_m_s2, streams }
+        let draws = noise != SensorNoise::default();
+        let biased = gyro_bias_rad_s != Vector3::zeros() || accelerometer_bias_m_s2 != Vector3::zeros();
+        Self { noise, gyro_bias_rad_s, accelerometer_bias_m_s2, draws, biased, streams }
     }
 
     /// Exact ones.
@@ -66,9 +70,33 @@ impl Sensors {
         }
     }
 
+    /// Draws what estimates at this many steps would have drawn.
+    #[inline]
+    pub(super) fn pass_over(&mut self, steps: u32) {
+        if self.draws() {
+            self.draw(steps);
+        }
+    }
+
+    fn draw(&mut self, steps: u32) {
+        let SensorNoise { gyro_rad_s, accelerometer_m_s2, position_m, velocity_m_s, attitude_rad } = self.noise;
+        let deviations = [gyro_rad_s, accelerometer_m_s2, position_m, velocity_m_s, attitude_rad];
+        for (stream, deviation) in self.streams.iter_mut().zip(deviations) {
+            for _ in 0..steps {
+                white(stream, deviation);
+            }
+        }
+    }
+
+    /// Whether what is measured is the truth.
+    #[inline]
+    pub(super) fn are_exact(&self) -> bool {
+        !self.draws && !self.biased
+    }
+
     /// Whether an estimate changes those after it: each draws from the streams of what is noisy.
     pub(super) fn draws(&self) -> bool {
-        self.noise != SensorNoise::default()
+        self.draws
     }
 }
 

@@ -182,10 +182,13 @@ impl Scenario {
             }
         }
         let mut kept = vec![Errors::default(); flying.len()];
-        if flying.len() > 1 {
+        let alike = flying.windows(2).all(|pair| pair[0].stride() == pair[1].stride());
+        if flying.len() > 1 && alike {
             flight::together(plants, &mut flying, &mut kept);
-        } else if let ([flying], [plant], [kept]) = (&mut flying[..], &mut plants[..], &mut kept[..]) {
-            flying.fly(plant, kept);
+        } else {
+            for ((flying, plant), kept) in flying.iter_mut().zip(&mut plants).zip(&mut kept) {
+                flying.fly(plant, kept);
+            }
         }
         let mut flown = flying.into_iter().zip(&kept);
         let tally = |(flying, kept): (Flying<'_>, &Errors)| Tally::of(kept, flying.saturated_steps, flying.lost);
