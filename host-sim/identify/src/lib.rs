@@ -12,8 +12,9 @@
 //!           error, filter  why there is nothing; low-pass, derivative, shift, lag
 //! ```
 //!
-//! Why not output error: its input, the logged commands, is noisy, and it inflates the inertia two- to threefold. What is minimised is
-//! the balance of torques and of forces along the flight as it was, below 6 Hz, where process noise is what is left.
+//! Why not output error: its input, the logged commands, is noisy, and it inflates the inertia two- to threefold. What is maximised is the
+//! likelihood of what Kalman filters do not foresee, with process noise, where the filters' model explains a flight; where it does not, as
+//! on real crafts, the balance of torques and of forces along the flight as it was, below 6 Hz, is what is fitted.
 
 #![allow(
     clippy::needless_range_loop,

@@ -314,9 +314,6 @@ fn habits(learned: &[Flight], fit: &Fit) -> Habits {
             }
         }
     }
-    if std::env::var("V").is_ok() {
-        eprintln!("{best:?}");
-    }
     best.1
 }
 

@@ -30,7 +30,7 @@ pub(super) fn lag_curve(sections: &[Prepared], base: &Base, delay_s: f64, powers
         .map(|lag_s| {
             let driven: Vec<_> = sections
                 .iter()
-                .map(|one| one.drive(&Drive { rise_s: lag_s, fall_s: lag_s, delay_s, powers }))
+                .map(|one| one.drive(&Drive { rise_s: lag_s, fall_s: lag_s, delay_s, jump_s: 0.0, powers }))
                 .collect();
             let mut point = LagPoint { lag_s, explained: [0.0; 2], inertia: [0.0; 2], moment: [0.0; 2] };
             for axis in 0..2 {

@@ -2,21 +2,31 @@
 //!
 //! ```text
 //! whole            all figures of some flights
-//!   refine         maximum a posteriori: thrust, torque balance, lag and delay together
+//!   posterior      which of two is believed, and draws of it
+//!   refine         maximum a posteriori by filters: thrust, torque balance, lag, delay and noise together
+//!     innovations  what a Kalman filter that knows the figures does not foresee
+//!       layout     the parameters: where they are, begin, and what is believed of them
+//!         steady   the steady Kalman filter of a model
+//!   balanced       the same by the balances of torques and thrust below the corner
 //!   drag, yaw      regressions by themselves
 //!   balance        torques along a stretch of flight, for pictures
 //!     lag_curve    how much of the torques a lag explains
-//!       problem    signals of the balance, low-passed; their residuals
+//!       problem    signals of the balances, as logged and low-passed
 //!         bootstrap, prior
 //! ```
 
 mod balance;
+mod balanced;
 mod bootstrap;
 mod drag;
+mod innovations;
 mod lag_curve;
+mod layout;
+mod posterior;
 mod prior;
 mod problem;
 mod refine;
+mod steady;
 mod whole;
 mod yaw;
 

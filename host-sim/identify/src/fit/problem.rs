@@ -7,10 +7,14 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::prior::Base;
 use super::{CORNER_HZ, MARGIN_S};
-use crate::filter::{LowPass, derivative, lagged, mean, shifted};
+use crate::filter::{LowPass, derivative, lagged, mean, median, shifted, shifted_smoothly};
 use crate::flight::{Flight, RATE_HZ, STEP_S, Section};
 use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::{ROTOR_SIDES, ROTOR_TORQUE_SIGNS};
+
+/// A jump is so many times as large as the median change beyond the changes around, and no less than this share of full commands.
+const JUMP_SPREADS: f64 = 8.0;
+const JUMP_LEAST: f64 = 0.05;
 
 /// What the motors' command becomes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +22,8 @@ pub(crate) struct Drive {
     pub(crate) rise_s: f64,
     pub(crate) fall_s: f64,
     pub(crate) delay_s: f64,
+    /// How much later than in the middle between two samples a jump happens, s.
+    pub(crate) jump_s: f64,
     /// Of command and voltage.
     pub(crate) powers: [f64; 2],
 }
@@ -27,6 +33,8 @@ pub(super) struct Prepared {
     pub(super) flight: usize,
     pub(super) start_s: f64,
     commands: [Vec<f64>; 4],
+    /// Points before which the commands jump, as they do where a setpoint does.
+    jumps: Vec<usize>,
     /// Over the reference.
     voltage: Vec<f64>,
     /// Low-passed: angular acceleration, body velocity, body rates, specific force.
@@ -44,6 +52,25 @@ pub(super) struct Prepared {
     pub(super) gyro_bias: Vector3<f64>,
     /// Points that count.
     pub(super) inner: std::ops::Range<usize>,
+    /// As logged: body rates, velocity in the body frame, specific force without its bias.
+    pub(super) logged: Logged,
+}
+
+/// Signals as they were logged, by axis.
+pub(super) struct Logged {
+    pub(super) rates: [Vec<f64>; 3],
+    pub(super) velocity: [Vec<f64>; 3],
+    pub(super) force: [Vec<f64>; 3],
+}
+
+/// Lagged thrusts of [`Drive`] as they are, without a low-pass.
+pub(super) struct Thrusts {
+    /// Mixtures about x and y at each point.
+    pub(super) mixture: [Vec<f64>; 2],
+    /// The same, averaged from each point to the next.
+    pub(super) between: [Vec<f64>; 2],
+    /// Mean of the four.
+    pub(super) mean: Vec<f64>,
 }
 
 /// Lagged and low-passed, of thrusts `u^p (V/V_0)^q`: mixtures about x, y and z, and the mean.
@@ -70,15 +97,17 @@ impl Prepared {
         Self {
             flight,
             start_s: section.start_s,
+            jumps: jumps(&section.commands),
             commands: section.commands.clone(),
             voltage,
             angular: [0, 1, 2].map(|k| low.both_ways(&derivative(&gyro[k], STEP_S))),
             products: [product(1, 2), product(2, 0)],
             across: low.both_ways(&across),
-            velocity: smooth(body),
+            velocity: smooth(body.clone()),
             force: smooth(axes(&force)),
             gyro_bias: gyro_bias(section),
-            rates: smooth(gyro),
+            rates: smooth(gyro.clone()),
+            logged: Logged { rates: gyro, velocity: body, force: axes(&force) },
             force_bias,
             inner: margin..count.saturating_sub(margin),
         }
@@ -100,15 +129,77 @@ impl Prepared {
     }
 
     fn thrusts(&self, drive: &Drive) -> [Vec<f64>; 4] {
+        self.asked(drive)
+            .map(|asked| lagged(&shifted(&asked, -drive.delay_s / STEP_S), drive.rise_s, drive.fall_s, STEP_S))
+    }
+
+    /// What is asked of each motor at each point of the log.
+    fn asked(&self, drive: &Drive) -> [Vec<f64>; 4] {
         let [p, q] = drive.powers;
         self.commands.each_ref().map(|command| {
-            let asked: Vec<f64> = if self.voltage.is_empty() {
+            if self.voltage.is_empty() {
                 command.iter().map(|u| u.powf(p)).collect()
             } else {
                 command.iter().zip(&self.voltage).map(|(u, v)| u.powf(p) * v.powf(q)).collect()
-            };
-            lagged(&shifted(&asked, -drive.delay_s / STEP_S), drive.rise_s, drive.fall_s, STEP_S)
+            }
         })
+    }
+
+    /// The part of a signal that jumps, beyond what it changes by around.
+    fn stairs(&self, asked: &[f64]) -> Vec<f64> {
+        let mut stairs = vec![0.0; asked.len()];
+        for &k in &self.jumps {
+            stairs[k] = change_beyond(asked, k);
+        }
+        let mut sum = 0.0;
+        stairs.iter_mut().for_each(|stair| {
+            sum += *stair;
+            *stair = sum;
+        });
+        stairs
+    }
+
+    /// Thrusts without a low-pass. A command is a smooth curve through its samples: what it does between them is not in the log.
+    pub(super) fn thrusts_between(&self, drive: &Drive) -> Thrusts {
+        let count = self.commands[0].len();
+        let steps = -drive.delay_s / STEP_S;
+        let asked = self.asked(drive).map(|asked| {
+            let stairs = self.stairs(&asked);
+            let smooth: Vec<f64> = asked.iter().zip(&stairs).map(|(asked, stair)| asked - stair).collect();
+            let stairs = shifted(&stairs, steps - drive.jump_s / STEP_S);
+            shifted_smoothly(&smooth, steps)
+                .into_iter()
+                .zip(stairs)
+                .map(|(smooth, stair)| smooth + stair)
+                .collect::<Vec<f64>>()
+        });
+        let thrusts = asked.each_ref().map(|asked| lagged(asked, drive.rise_s, drive.fall_s, STEP_S));
+        let rates: [Vec<f64>; 4] = std::array::from_fn(|m| {
+            asked[m]
+                .iter()
+                .zip(&thrusts[m])
+                .map(|(asked, f)| (asked - f) / if asked > f { drive.rise_s } else { drive.fall_s })
+                .collect()
+        });
+        // Euler and Maclaurin: the trapezium, less the change of the slopes.
+        let between: [Vec<f64>; 4] = std::array::from_fn(|m| {
+            let (f, g) = (&thrusts[m], &rates[m]);
+            (0..count)
+                .map(|i| {
+                    let next = (i + 1).min(count - 1);
+                    0.5 * (f[i] + f[next]) - STEP_S / 12.0 * (g[next] - g[i])
+                })
+                .collect()
+        });
+        let mixed = |all: &[Vec<f64>; 4], weights: [f64; 4]| -> Vec<f64> {
+            (0..count).map(|i| (0..4).map(|m| weights[m] * all[m][i]).sum()).collect()
+        };
+        let weights = [ROTOR_SIDES.map(|[_, y]| y), ROTOR_SIDES.map(|[x, _]| -x)];
+        Thrusts {
+            mixture: weights.map(|weights| mixed(&thrusts, weights)),
+            between: weights.map(|weights| mixed(&between, weights)),
+            mean: mixed(&thrusts, [0.25; 4]),
+        }
     }
 
     /// The points that count, with their mean taken off.
@@ -117,6 +208,27 @@ impl Prepared {
         let offset = mean(inner);
         inner.iter().map(|value| value - offset).collect()
     }
+}
+
+/// By how much a signal changes up to a point beyond the median of the changes around.
+fn change_beyond(signal: &[f64], k: usize) -> f64 {
+    let change = |i: usize| signal[i] - signal[i - 1];
+    change(k) - median(&[change(k - 2), change(k - 1), change(k + 1), change(k + 2)])
+}
+
+/// Where all commands together change by far more than they do around, and than is usual.
+fn jumps(commands: &[Vec<f64>; 4]) -> Vec<usize> {
+    let count = commands[0].len();
+    let sizes: Vec<f64> = (0..count)
+        .map(|k| {
+            let inside = k >= 3 && k + 3 < count;
+            if inside { commands.iter().map(|u| change_beyond(u, k).powi(2)).sum::<f64>().sqrt() } else { 0.0 }
+        })
+        .collect();
+    let least = (JUMP_SPREADS * median(&sizes)).max(JUMP_LEAST);
+    (1..count.saturating_sub(1))
+        .filter(|k| sizes[*k] > least && sizes[*k] >= sizes[k - 1] && sizes[*k] > sizes[k + 1])
+        .collect()
 }
 
 /// Whatever the accelerometer shows on average beyond gravity and the change of the velocity: in the world frame the mean of the

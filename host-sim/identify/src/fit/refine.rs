@@ -1,50 +1,39 @@
-//! Maximum a posteriori: thrust by command and voltage, the torque balance, lag and delay together, from a start near by.
+//! Maximum a posteriori: figures and noise together, by the innovations of Kalman filters, from where regressions begin.
 //!
-//! What the balances leave over is process noise: its power, and how long it remembers, are had from the flights themselves, and
-//! weigh the data against the priors. The balance of torques is taken relative to the torque that is commanded, since a long lag
-//! would make both small.
+//! Disturbances, moving air and noise of the commands are process noise, whose power and memory are parameters. So a controller that
+//! answers a disturbance does not bias the figures, as it does where a balance is fitted by least squares; nor does noise of the
+//! commands inflate the inertia, as it does where the output's error is.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix2};
 
 use super::BLOCK_S;
-use super::bootstrap::Block;
+use super::bootstrap::{Block, Dice};
+use super::innovations::{Balances, Innovations, KINDS};
+use super::layout::{
+    DAMPING, DRAG, FORCE_SHIFT, INERTIA, JUMP, LEVER, LIFT, MOMENT, NOISE, NOISE_COUNT, NOISE_Z, POSE_SHIFT, SHARED,
+    VOLTAGE_POWER, units,
+};
 use super::prior::{Base, Prior};
-use super::problem::{Drive, Driven, Prepared};
+use super::problem::{Prepared, Thrusts};
+use crate::filter::{mean, median};
 use crate::flight::RATE_HZ;
 
-/// Parameters before those of each flight.
-pub(super) const SHARED: usize = 13;
-pub(super) const LAG: usize = 0;
-/// Logarithm of rise over fall.
-pub(super) const ASYMMETRY: usize = 1;
-pub(super) const DELAY: usize = 2;
-pub(super) const COMMAND_POWER: usize = 3;
-pub(super) const VOLTAGE_POWER: usize = 4;
-pub(super) const DRAG_Z: usize = 5;
-pub(super) const LIFT: usize = 6;
-/// Logarithm of the inertia, moment, damping, about x and about y.
-pub(super) const INERTIA: [usize; 2] = [7, 10];
-pub(super) const MOMENT: [usize; 2] = [8, 11];
-pub(super) const DAMPING: [usize; 2] = [9, 12];
-
-/// Every third point: 33 Hz still holds all that lies below the corner.
-const STRIDE: usize = 3;
-/// Torque about x, about y, thrust.
-const KINDS: usize = 3;
-
-/// By how much less the balances weigh than their noise alone would let them: a power of command and voltage is not all that a
-/// battery and a motor do.
-const MISTRUST: [f64; KINDS] = [1.0, 1.0, 2.0];
+/// Share of a parameter's unit by which it is moved for a difference.
+const DIFFERENCE: f64 = 0.02;
+const ROUNDS: usize = 40;
+/// Gain of the logarithm at which it is enough: a parameter that is off by a tenth of its deviation costs 0.005.
+const ENOUGH: f64 = 0.03;
 
 /// The estimate with what intervals are made of.
 pub(super) struct Refined {
+    /// The shared ones, then the logarithm of each flight's thrust per mass.
     pub(super) values: DVector<f64>,
     pub(super) priors: Vec<Prior>,
     pub(super) units: Vec<f64>,
-    /// In units of the parameters.
+    /// In units of the shared parameters.
     pub(super) blocks: Vec<Block>,
-    /// Share of the mixtures about x and y, and of the thrust, that is left over.
-    pub(super) left_over: [f64; KINDS],
+    /// By how much each flight's thrust goes with the shared parameters, a unit each.
+    full_slopes: DMatrix<f64>,
 }
 
 /// Where the parameters begin and what is believed of them.
@@ -55,229 +44,219 @@ pub(super) struct Start {
     pub(super) fixed: Vec<usize>,
 }
 
-struct Residuals {
-    /// By section; rows of one kind after those of another.
-    rows: Vec<[Vec<f64>; KINDS]>,
+struct State {
+    thrusts: Vec<Thrusts>,
+    full: Vec<f64>,
+    kinds: Vec<Innovations>,
 }
 
-struct Problem<'a> {
-    sections: &'a [Prepared],
-    base: &'a Base,
-    /// Of the torque balance, with the mean taken off: angular acceleration, velocity across, rates, product of rates.
-    regressors: Vec<[[Vec<f64>; 4]; 2]>,
+fn state(balances: &Balances<'_>, values: &DVector<f64>) -> Option<State> {
+    let thrusts = balances.thrusts(values);
+    let full = balances.full(values, &thrusts);
+    let kinds = (0..KINDS).map(|kind| balances.innovations(kind, values, &thrusts, &full)).collect::<Option<_>>()?;
+    Some(State { thrusts, full, kinds })
 }
 
-pub(super) fn drive_of(values: &DVector<f64>) -> Drive {
-    let (lag_s, half) = (values[LAG].exp(), 0.5 * values[ASYMMETRY]);
-    Drive {
-        rise_s: lag_s * half.exp(),
-        fall_s: lag_s * (-half).exp(),
-        delay_s: values[DELAY],
-        powers: [values[COMMAND_POWER], values[VOLTAGE_POWER]],
+/// Whether a balance depends on a parameter. By way of the thrust that carries the craft all depend on the drag along z.
+fn depends(kind: usize, j: usize) -> bool {
+    let own = |axis: usize| {
+        [MOMENT[axis], DAMPING[axis], DRAG[axis], LEVER[axis]].contains(&j)
+            || (NOISE[axis]..NOISE[axis] + NOISE_COUNT).contains(&j)
+    };
+    match j {
+        _ if j <= LIFT || j == JUMP => true,
+        _ if INERTIA.contains(&j) => kind < 2,
+        POSE_SHIFT => kind < 2,
+        FORCE_SHIFT => kind == 2,
+        _ if j >= NOISE_Z => kind == 2,
+        _ => kind < 2 && own(kind),
     }
-}
-
-impl<'a> Problem<'a> {
-    fn new(sections: &'a [Prepared], base: &'a Base) -> Self {
-        let thinned =
-            |one: &Prepared, signal: &[f64]| -> Vec<f64> { one.centred(signal).into_iter().step_by(STRIDE).collect() };
-        let regressors = sections
-            .iter()
-            .map(|one| {
-                [0, 1].map(|axis| {
-                    [&one.angular[axis], &one.velocity[1 - axis], &one.rates[axis], &one.products[axis]]
-                        .map(|signal| thinned(one, signal))
-                })
-            })
-            .collect();
-        Self { sections, base, regressors }
-    }
-
-    fn driven(&self, values: &DVector<f64>) -> Vec<Driven> {
-        let drive = drive_of(values);
-        self.sections.iter().map(|one| one.drive(&drive)).collect()
-    }
-
-    fn residuals(&self, values: &DVector<f64>, driven: &[Driven]) -> Residuals {
-        let mut rows: Vec<[Vec<f64>; KINDS]> = Vec::with_capacity(self.sections.len());
-        let (mut square, mut count) = ([0.0; 2], 0);
-        let inertia = [values[INERTIA[0]].exp(), values[INERTIA[1]].exp(), self.base.inertia_kg_m2[2]];
-        for ((one, driven), regressors) in self.sections.iter().zip(driven).zip(&self.regressors) {
-            let full = values[SHARED + one.flight].exp();
-            let arm_n_m = 0.25 * self.base.mass_kg * full * self.base.half_arm_m;
-            let torque = |axis: usize| -> (Vec<f64>, f64) {
-                let mixture: Vec<f64> = one.centred(&driven.mixture[axis]).into_iter().step_by(STRIDE).collect();
-                let [angular, across, rates, product] = &regressors[axis];
-                let moment = if axis == 0 { -values[MOMENT[0]] } else { values[MOMENT[1]] };
-                let gyroscopic = if axis == 0 { inertia[2] - inertia[1] } else { inertia[0] - inertia[2] };
-                let rest = (0..mixture.len())
-                    .map(|i| {
-                        arm_n_m * mixture[i]
-                            - inertia[axis] * angular[i]
-                            - moment * across[i]
-                            - values[DAMPING[axis]] * rates[i]
-                            - gyroscopic * product[i]
-                    })
-                    .collect();
-                (rest, mixture.iter().map(|m| (arm_n_m * m).powi(2)).sum())
-            };
-            let ((x, x_square), (y, y_square)) = (torque(0), torque(1));
-            square[0] += x_square;
-            square[1] += y_square;
-            count += x.len();
-            let thrust = one
-                .inner
-                .clone()
-                .step_by(STRIDE)
-                .map(|i| {
-                    one.force[2][i] - full * driven.mean[i] + values[DRAG_Z] * one.velocity[2][i]
-                        - values[LIFT] * one.across[i]
-                })
-                .collect();
-            rows.push([x, y, thrust]);
-        }
-        let scale = square.map(|square| (square / count.max(1) as f64).sqrt().max(1e-300));
-        for rows in &mut rows {
-            for axis in 0..2 {
-                rows[axis].iter_mut().for_each(|r| *r /= scale[axis]);
-            }
-        }
-        Residuals { rows }
-    }
-}
-
-/// Steps of a difference, and what parameters are measured in.
-fn units(base: &Base, flights: usize) -> Vec<f64> {
-    let damping = 0.1 * base.damping_scale();
-    let mut units = vec![0.1, 0.1, 1e-3, 0.05, 0.05, 0.1, 0.02];
-    units.extend([0.05, 3e-3 * base.half_arm_m.max(0.01), damping, 0.05, 3e-3 * base.half_arm_m.max(0.01), damping]);
-    units.extend(std::iter::repeat_n(0.01, flights));
-    units
 }
 
 /// From a start to where the posterior is highest.
-pub(super) fn refine(sections: &[Prepared], base: &Base, start: Start) -> Refined {
-    let problem = Problem::new(sections, base);
+pub(super) fn refine(sections: &[Prepared], base: &Base, flights: usize, start: Start) -> Option<Refined> {
+    let balances = Balances::new(sections, base, flights);
     let Start { mut values, priors, fixed } = start;
-    let units = units(base, values.len() - SHARED);
-    let mut driven = problem.driven(&values);
-    let mut residuals = problem.residuals(&values, &driven);
-    // How many points remember each other.
-    let mut memory = [5.0; KINDS];
-    let mut blocks = Vec::new();
-    for round in 0..4 {
-        for _ in 0..if round == 0 { 12 } else { 6 } {
-            let variance = variances(&residuals);
-            let weights: [f64; KINDS] = std::array::from_fn(|k| 1.0 / (variance[k] * memory[k]));
-            let (matrix, slope) = total(&problem, &values, &driven, &residuals, &units, &fixed, &weights).0;
-            let step = step(&matrix, &slope, &values, &priors, &units, &fixed);
-            let cost = |values: &DVector<f64>, residuals: &Residuals| cost(values, residuals, &priors, &memory);
-            let before = cost(&values, &residuals);
-            let mut scale = 1.0;
-            let mut moved = false;
-            while scale > 1e-3 {
-                let trial = &values + &step * scale;
-                let trial_driven = problem.driven(&trial);
-                let trial_residuals = problem.residuals(&trial, &trial_driven);
-                if cost(&trial, &trial_residuals) < before {
-                    moved = before - cost(&trial, &trial_residuals) > 1e-3;
-                    (values, driven, residuals) = (trial, trial_driven, trial_residuals);
-                    break;
-                }
-                scale *= 0.4;
-            }
-            if !moved {
+    let units = units(base);
+    let mut now = state(&balances, &values)?;
+    let cost = |values: &DVector<f64>, state: &State, weights: &[f64; KINDS]| -> f64 {
+        state.kinds.iter().zip(weights).map(|(kind, weight)| weight * kind.cost()).sum::<f64>()
+            + priors.iter().zip(values.iter()).map(|(prior, value)| prior.cost(*value)).sum::<f64>()
+    };
+    let mut weights = [1.0; KINDS];
+    let mut least = cost(&values, &now, &weights);
+    let mut damping = 1e-3;
+    let mut weighed = false;
+    for _ in 0..ROUNDS {
+        let (blocks, _) = blocks(&balances, &values, &now, &units, &fixed, &weights);
+        let (matrix, slope) = total(&blocks);
+        let mut better = None;
+        while damping < 1e6 {
+            let step = step(&matrix, &slope, &values, &priors, &units, &fixed, damping);
+            let trial = &values + step;
+            let there = state(&balances, &trial);
+            let there = there.map(|there| (cost(&trial, &there, &weights), there)).filter(|(cost, _)| *cost < least);
+            if let Some((cost, there)) = there {
+                better = Some((trial, cost, there));
+                damping = (damping * 0.2).max(1e-6);
                 break;
             }
+            damping *= 5.0;
         }
-        let variance = variances(&residuals);
-        let weights: [f64; KINDS] = std::array::from_fn(|k| 1.0 / variance[k]);
-        let (_, by_kind) = total(&problem, &values, &driven, &residuals, &units, &fixed, &weights);
-        memory = std::array::from_fn(|k| MISTRUST[k] * remembered(&by_kind[k]));
-        blocks = merged(by_kind, &memory);
+        let gained = better.as_ref().map_or(0.0, |(_, cost, _)| least - cost);
+        if let Some((trial, cost, there)) = better {
+            (values, least, now) = (trial, cost, there);
+        }
+        if gained < ENOUGH {
+            if weighed {
+                break;
+            }
+            // What the filter does not foresee should be news at every point; as far as it is not, it counts for less.
+            let (_, memory) = self::blocks(&balances, &values, &now, &units, &fixed, &[1.0; KINDS]);
+            weights = memory.map(|memory| 1.0 / memory);
+            least = cost(&values, &now, &weights);
+            (weighed, damping) = (true, 1e-3);
+        }
     }
-    Refined { left_over: variances(&residuals), values, priors, units, blocks }
+    let (blocks, _) = blocks(&balances, &values, &now, &units, &fixed, &weights);
+    let mut full_slopes = DMatrix::zeros(flights, SHARED);
+    for j in (0..=LIFT).chain([JUMP]) {
+        let mut there = values.clone();
+        there[j] += DIFFERENCE * units[j];
+        for (flight, full) in balances.full(&there, &balances.thrusts(&there)).into_iter().enumerate() {
+            full_slopes[(flight, j)] = (full - now.full[flight]) / DIFFERENCE;
+        }
+    }
+    let values = DVector::from_iterator(SHARED + flights, values.iter().copied().chain(now.full.iter().copied()));
+    Some(Refined { values, priors, units, blocks, full_slopes })
 }
 
-fn variances(residuals: &Residuals) -> [f64; KINDS] {
-    std::array::from_fn(|k| {
-        let (sum, count) = residuals.rows.iter().fold((0.0, 0), |(sum, count), rows| {
-            (sum + rows[k].iter().map(|r| r * r).sum::<f64>(), count + rows[k].len())
-        });
-        (sum / f64::from(count.max(1) as u32)).max(1e-12)
-    })
-}
-
-/// Minus the logarithm of the posterior, the powers of the noises being what fits best.
-fn cost(values: &DVector<f64>, residuals: &Residuals, priors: &[Prior], memory: &[f64; KINDS]) -> f64 {
-    let variance = variances(residuals);
-    let count: usize = residuals.rows.iter().map(|rows| rows[0].len()).sum();
-    let data: f64 = (0..KINDS).map(|k| 0.5 * count as f64 / memory[k] * variance[k].ln()).sum();
-    data + priors.iter().zip(values.iter()).map(|(prior, value)| prior.cost(*value)).sum::<f64>()
-}
-
-type Normal = (DMatrix<f64>, DVector<f64>);
-
-/// Normal equations in units of the parameters, of all, and by kind and block.
-fn total(
-    problem: &Problem<'_>,
+/// Shares of normal equations in units of the parameters: Fisher's matrix and the slope of the likelihood, by stretches of time; and by
+/// how much more the slopes of each balance vary from stretch to stretch than Fisher's matrix has it.
+fn blocks(
+    balances: &Balances<'_>,
     values: &DVector<f64>,
-    driven: &[Driven],
-    residuals: &Residuals,
+    now: &State,
     units: &[f64],
     fixed: &[usize],
     weights: &[f64; KINDS],
-) -> (Normal, [Vec<Block>; KINDS]) {
-    let count = values.len();
-    let changed: Vec<Option<Residuals>> = (0..count)
-        .map(|j| {
-            if fixed.contains(&j) {
-                return None;
-            }
-            let mut there = values.clone();
-            there[j] += 0.02 * units[j];
-            let redriven = (j <= VOLTAGE_POWER).then(|| problem.driven(&there));
-            Some(problem.residuals(&there, redriven.as_deref().unwrap_or(driven)))
-        })
-        .collect();
-    let (mut matrix, mut slope) = (DMatrix::zeros(count, count), DVector::zeros(count));
-    let mut by_kind: [Vec<Block>; KINDS] = std::array::from_fn(|_| Vec::new());
-    let span = ((BLOCK_S * RATE_HZ) as usize / STRIDE).max(1);
-    for (s, one) in problem.sections.iter().enumerate() {
-        for k in 0..KINDS {
-            let rows = &residuals.rows[s][k];
-            let active: Vec<usize> =
-                (0..count).filter(|j| changed[*j].as_ref().is_some_and(|there| there.rows[s][k] != *rows)).collect();
-            let mut from = 0;
-            while from < rows.len() {
-                // The last block takes what is too short for one of its own.
-                let to = if from + 2 * span > rows.len() { rows.len() } else { from + span };
-                let mut own =
-                    Block { flight: one.flight, matrix: DMatrix::zeros(count, count), score: DVector::zeros(count) };
-                let mut line = vec![0.0; active.len()];
-                for (i, row) in rows.iter().enumerate().take(to).skip(from) {
-                    for (line, j) in line.iter_mut().zip(&active) {
-                        *line = changed[*j].as_ref().map_or(0.0, |there| (there.rows[s][k][i] - row) / 0.02);
+) -> (Vec<Block>, [f64; KINDS]) {
+    let mut memory = [1.0; KINDS];
+    let span = (BLOCK_S * RATE_HZ) as usize;
+    let mut blocks = Vec::new();
+    let mut starts = Vec::new();
+    for (s, one) in balances.sections.iter().enumerate() {
+        let rows = now.kinds[0].sections[s].len();
+        starts.push(blocks.len());
+        for _ in 0..(rows / span).max(1) {
+            let (matrix, score) = (DMatrix::zeros(SHARED, SHARED), DVector::zeros(SHARED));
+            blocks.push(Block { flight: one.flight, matrix, score });
+        }
+    }
+    let moved = moved(balances, values, now, units, fixed);
+    for kind in 0..KINDS {
+        let here = &now.kinds[kind];
+        let Some(factor) = here.covariance.cholesky() else { continue };
+        let whiten = factor.l().try_inverse().unwrap_or_else(Matrix2::identity);
+        let active: Vec<(usize, &Innovations)> = moved
+            .iter()
+            .enumerate()
+            .filter_map(|(j, kinds)| kinds.as_ref()?[kind].as_ref().map(|there| (j, there)))
+            .collect();
+        // Of the covariance, white.
+        let spread: Vec<Matrix2<f64>> = active
+            .iter()
+            .map(|(_, there)| whiten * (there.covariance - here.covariance) * whiten.transpose() / DIFFERENCE)
+            .collect();
+        let of_spread = DMatrix::from_fn(active.len(), active.len(), |a, b| 0.5 * (spread[a] * spread[b]).trace());
+        let mut lines = vec![[0.0; 2]; active.len()];
+        let (mut slopes, mut fisher) = (vec![Vec::new(); active.len()], vec![0.0; active.len()]);
+        for (s, rows) in here.sections.iter().enumerate() {
+            let count = (rows.len() / span).max(1);
+            let mut own = vec![(DMatrix::<f64>::zeros(active.len(), active.len()), vec![0.0; active.len()]); count];
+            for (i, row) in rows.iter().enumerate() {
+                let (matrix, score) = &mut own[(i / span).min(count - 1)];
+                let white = |[a, b]: [f64; 2]| [whiten[(0, 0)] * a, whiten[(1, 0)] * a + whiten[(1, 1)] * b];
+                let e = white(*row);
+                for (a, (_, there)) in active.iter().enumerate() {
+                    let away = there.sections[s][i];
+                    let line = white([(away[0] - row[0]) / DIFFERENCE, (away[1] - row[1]) / DIFFERENCE]);
+                    lines[a] = line;
+                    let d = &spread[a];
+                    let squared = d[(0, 0)] * e[0] * e[0] + 2.0 * d[(0, 1)] * e[0] * e[1] + d[(1, 1)] * e[1] * e[1];
+                    score[a] += 0.5 * (squared - d.trace()) - line[0] * e[0] - line[1] * e[1];
+                    for b in 0..=a {
+                        matrix[(a, b)] += line[0] * lines[b][0] + line[1] * lines[b][1];
                     }
-                    for (a, j) in active.iter().enumerate() {
-                        own.score[*j] -= weights[k] * line[a] * row;
-                        for (b, l) in active.iter().enumerate().take(a + 1) {
-                            own.matrix[(*j, *l)] += weights[k] * line[a] * line[b];
+                }
+                *matrix += &of_spread;
+            }
+            for (k, (matrix, score)) in own.into_iter().enumerate() {
+                let block = &mut blocks[starts[s] + k];
+                for (a, (j, _)) in active.iter().enumerate() {
+                    slopes[a].push(score[a]);
+                    fisher[a] += matrix[(a, a)];
+                    block.score[*j] += weights[kind] * score[a];
+                    for (b, (l, _)) in active.iter().enumerate().take(a + 1) {
+                        block.matrix[(*j, *l)] += weights[kind] * matrix[(a, b)];
+                        if a != b {
+                            block.matrix[(*l, *j)] += weights[kind] * matrix[(a, b)];
                         }
                     }
                 }
-                own.matrix.fill_upper_triangle_with_lower_triangle();
-                matrix += &own.matrix;
-                slope += &own.score;
-                by_kind[k].push(own);
-                from = to;
             }
         }
+        let ratios: Vec<f64> = active
+            .iter()
+            .enumerate()
+            .filter(|(a, (j, _))| *j < NOISE[0] && fisher[*a] > 0.0)
+            .map(|(a, _)| {
+                let middle = mean(&slopes[a]);
+                slopes[a].iter().map(|slope| (slope - middle).powi(2)).sum::<f64>() / fisher[a]
+            })
+            .collect();
+        memory[kind] = median(&ratios).max(1.0);
     }
-    ((matrix, slope), by_kind)
+    (blocks, memory)
 }
 
-/// Gauss's step with the priors, in the parameters' own measure.
+type Moved = Option<[Option<Innovations>; KINDS]>;
+
+/// Innovations with each parameter moved by a difference, on two threads.
+fn moved(balances: &Balances<'_>, values: &DVector<f64>, now: &State, units: &[f64], fixed: &[usize]) -> Vec<Moved> {
+    let one = |j: usize| -> Moved {
+        if fixed.contains(&j) {
+            return None;
+        }
+        let mut there = values.clone();
+        there[j] += DIFFERENCE * units[j];
+        let driven = (j <= VOLTAGE_POWER || j == JUMP).then(|| balances.thrusts(&there));
+        let thrusts = driven.as_ref().unwrap_or(&now.thrusts);
+        let full = if j <= LIFT || j == JUMP { balances.full(&there, thrusts) } else { now.full.clone() };
+        Some(std::array::from_fn(|kind| {
+            depends(kind, j).then(|| balances.innovations(kind, &there, thrusts, &full)).flatten()
+        }))
+    };
+    let mut all: Vec<Moved> = (0..SHARED).map(|_| None).collect();
+    std::thread::scope(|scope| {
+        let mut odd = Vec::new();
+        let mut even = Vec::new();
+        for (j, place) in all.iter_mut().enumerate() {
+            if j % 2 == 0 { even.push((j, place)) } else { odd.push((j, place)) }
+        }
+        scope.spawn(move || odd.into_iter().for_each(|(j, place)| *place = one(j)));
+        even.into_iter().for_each(|(j, place)| *place = one(j));
+    });
+    all
+}
+
+fn total(blocks: &[Block]) -> (DMatrix<f64>, DVector<f64>) {
+    blocks.iter().fold((DMatrix::zeros(SHARED, SHARED), DVector::zeros(SHARED)), |(matrix, slope), block| {
+        (matrix + &block.matrix, slope + &block.score)
+    })
+}
+
+/// Marquardt's step with the priors, in the parameters' own measure.
 fn step(
     matrix: &DMatrix<f64>,
     slope: &DVector<f64>,
@@ -285,82 +264,45 @@ fn step(
     priors: &[Prior],
     units: &[f64],
     fixed: &[usize],
+    damping: f64,
 ) -> DVector<f64> {
     let (mut matrix, mut slope) = (matrix.clone(), slope.clone());
-    for j in 0..values.len() {
+    for j in 0..SHARED {
         let precision = priors[j].precision(values[j]) * units[j] * units[j];
-        matrix[(j, j)] += precision + if fixed.contains(&j) { 1e12 } else { 0.0 };
+        matrix[(j, j)] += precision;
         slope[j] -= precision * (values[j] - priors[j].centre) / units[j];
+        matrix[(j, j)] *= 1.0 + damping;
+        if fixed.contains(&j) {
+            (matrix[(j, j)], slope[j]) = (1e12, 0.0);
+        }
     }
-    for j in fixed {
-        slope[*j] = 0.0;
-    }
-    let step = matrix.cholesky().map_or_else(|| DVector::zeros(values.len()), |factor| factor.solve(&slope));
-    // No further than ten units at once: the balance is not linear in lag and delay.
+    let step = matrix.cholesky().map_or_else(|| DVector::zeros(SHARED), |factor| factor.solve(&slope));
+    // No further than ten units at once: the innovations are not linear in lag and delay.
     let longest = step.amax();
     let step = if longest > 10.0 { step * (10.0 / longest) } else { step };
-    DVector::from_fn(values.len(), |j, _| step[j] * units[j])
-}
-
-/// How much more the blocks' slopes vary than they would if every point were news.
-fn remembered(blocks: &[Block]) -> f64 {
-    let count = blocks.first().map_or(0, |block| block.score.len());
-    let mut ratios = Vec::new();
-    for j in 0..count {
-        let matrix: f64 = blocks.iter().map(|block| block.matrix[(j, j)]).sum();
-        let mean = blocks.iter().map(|block| block.score[j]).sum::<f64>() / blocks.len().max(1) as f64;
-        let varies: f64 = blocks.iter().map(|block| (block.score[j] - mean).powi(2)).sum();
-        if matrix > 0.0 {
-            ratios.push(varies / matrix);
-        }
-    }
-    crate::filter::mean(&ratios).max(1.5)
-}
-
-fn merged(by_kind: [Vec<Block>; KINDS], memory: &[f64; KINDS]) -> Vec<Block> {
-    let mut merged: Vec<Block> = Vec::new();
-    for (k, blocks) in by_kind.into_iter().enumerate() {
-        for (b, mut block) in blocks.into_iter().enumerate() {
-            block.matrix /= memory[k];
-            block.score /= memory[k];
-            match merged.get_mut(b) {
-                Some(sum) if k > 0 => {
-                    sum.matrix += &block.matrix;
-                    sum.score += &block.score;
-                }
-                _ => merged.push(block),
-            }
-        }
-    }
-    merged
+    DVector::from_fn(SHARED, |j, _| step[j] * units[j])
 }
 
 impl Refined {
     /// Estimates again, from blocks that are drawn and priors whose centres are: one a draw.
-    pub(super) fn drawn(&self, fixed: &[usize], dice: &mut super::bootstrap::Dice, weights: &[f64]) -> DVector<f64> {
-        let count = self.values.len();
-        let (mut matrix, mut slope) = (DMatrix::zeros(count, count), DVector::zeros(count));
+    pub(super) fn drawn(&self, fixed: &[usize], dice: &mut Dice, weights: &[f64]) -> DVector<f64> {
+        let (mut matrix, mut slope) = (DMatrix::zeros(SHARED, SHARED), DVector::zeros(SHARED));
         for (block, weight) in self.blocks.iter().zip(weights) {
             if *weight > 0.0 {
                 matrix += &block.matrix * *weight;
                 slope += &block.score * *weight;
             }
         }
-        for j in 0..count {
+        for j in 0..SHARED {
             let precision = self.priors[j].precision(self.values[j]) * self.units[j] * self.units[j];
             let away = (self.values[j] - self.priors[j].centre) / self.units[j];
             matrix[(j, j)] += precision + if fixed.contains(&j) { 1e12 } else { 0.0 };
             slope[j] += if fixed.contains(&j) { 0.0 } else { precision.sqrt() * dice.normal() - precision * away };
         }
-        let mut moved = matrix.cholesky().map_or_else(|| DVector::zeros(count), |factor| factor.solve(&slope));
-        // The thrust of a flight that was not drawn goes with that of those that were.
-        let flights =
-            self.blocks.iter().zip(weights).filter(|(_, weight)| **weight > 0.0).map(|(block, _)| block.flight);
-        let seen: std::collections::BTreeSet<usize> = flights.collect();
-        let middle = seen.iter().map(|flight| moved[SHARED + flight]).sum::<f64>() / seen.len().max(1) as f64;
-        for flight in (0..count - SHARED).filter(|flight| !seen.contains(flight)) {
-            moved[SHARED + flight] = middle;
-        }
-        DVector::from_fn(count, |j, _| self.values[j] + moved[j] * self.units[j])
+        let moved = matrix.cholesky().map_or_else(|| DVector::zeros(SHARED), |factor| factor.solve(&slope));
+        let full = &self.full_slopes * &moved;
+        DVector::from_fn(self.values.len(), |j, _| {
+            self.values[j] + if j < SHARED { moved[j] * self.units[j] } else { full[j - SHARED] }
+        })
     }
 }

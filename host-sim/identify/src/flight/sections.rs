@@ -1,6 +1,7 @@
 //! Where a craft flies: a log and a map in; a flight cut into parts without a gap out.
 
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
+use quatrack_design::model::GRAVITY_M_S2;
 
 use super::align::{moved, pose_shift_s, turned};
 use super::check::{channel, check};
@@ -23,6 +24,10 @@ const SHORTEST_S: f64 = 4.0;
 const VELOCITY_HZ: f64 = 8.0;
 /// The same where the log has a velocity of its own.
 const CORRECTED_HZ: f64 = 3.0;
+/// Below this, Hz, the accelerometer and the position know the tilt better than an estimator does.
+const TILT_HZ: f64 = 1.5;
+/// A tilt that is off by more, rad, is not the estimator's.
+const TILT_MOST: f64 = 0.35;
 
 /// A flight out of a log.
 ///
@@ -42,6 +47,7 @@ pub fn prepare(log: &RawLog, map: &ColumnMap) -> Result<Flight, IdentifyError> {
     } else {
         grid.position = moved(&grid.position, shift_s);
     }
+    tilt(&mut grid);
     let sections = cut(&grid, &flying);
     if sections.is_empty() {
         let reason = format!(
@@ -75,6 +81,28 @@ fn velocity(grid: &mut Grid) {
         let off: Vec<f64> = slope.iter().zip(&grid.velocity).map(|(slope, v)| slope - v[axis]).collect();
         for (v, off) in grid.velocity.iter_mut().zip(low.both_ways(&off)) {
             v[axis] += off;
+        }
+    }
+}
+
+/// Turns the attitude so that the accelerometer, low-passed, shows in the world frame what the velocity changes by, and gravity. An
+/// estimator that does not know of drag is off by as much as the drag is of g: 7 degrees at 2 m/s.
+fn tilt(grid: &mut Grid) {
+    let low = LowPass::new(TILT_HZ, RATE_HZ);
+    let felt: Vec<Vector3<f64>> = grid.attitude.iter().zip(&grid.specific_force).map(|(q, f)| q * f).collect();
+    let [felt, due] = [0, 1].map(|k| {
+        [0, 1, 2].map(|axis| {
+            let signal = if k == 0 { channel(&felt, axis) } else { derivative(&channel(&grid.velocity, axis), STEP_S) };
+            low.both_ways(&signal)
+        })
+    });
+    for i in 0..grid.len() {
+        let felt = Vector3::new(felt[0][i], felt[1][i], felt[2][i]);
+        let due = Vector3::new(due[0][i], due[1][i], due[2][i] + GRAVITY_M_S2);
+        let turn = felt.cross(&due) / (felt.norm() * due.norm()).max(1e-6);
+        // At rest on the floor or in a fall there is nothing to turn by.
+        if turn.norm() < TILT_MOST {
+            grid.attitude[i] = UnitQuaternion::from_scaled_axis(turn) * grid.attitude[i];
         }
     }
 }
