@@ -42,14 +42,14 @@ fn connect(image: &Path, equipment: Equipment<'_>) -> Result<Client, PilError> {
 }
 
 /// Uploads a blob; the answer to its last message.
-fn upload(client: &mut Client, blob: &[u8], last: ToBoard) -> FromBoard {
+fn upload(client: &mut Client, blob: &[u8], last: &ToBoard) -> FromBoard {
     let begin = UploadBegin::of(BlobKind::GainTable, 1, blob).unwrap();
     let mut answer = client.ask(&ToBoard::UploadBegin(begin)).unwrap();
     while let FromBoard::Upload(progress) = answer {
         let Some(chunk) = progress.next_chunk(blob) else { break };
         answer = client.ask(&ToBoard::UploadChunk(chunk)).unwrap();
     }
-    client.ask(&last).unwrap()
+    client.ask(last).unwrap()
 }
 
 fn is_ack(answer: &FromBoard) -> bool {
@@ -119,16 +119,16 @@ fn a_table_that_is_kept_is_there_when_the_power_is_back() {
     let loaded = ToBoard::SelectLaw(LawChoice::new(Table::Loaded(0)));
     let mut client = started();
     assert!(client.request(&loaded).is_err(), "nothing was kept yet");
-    assert!(is_ack(&upload(&mut client, TABLE, ToBoard::UploadCommit { id: 1 })));
+    assert!(is_ack(&upload(&mut client, TABLE, &ToBoard::UploadCommit { id: 1 })));
     drop(client);
     let mut client = started();
     assert!(client.request(&loaded).is_err(), "committed, but not kept");
-    assert!(is_ack(&upload(&mut client, TABLE, ToBoard::UploadKeep { id: 1 })));
+    assert!(is_ack(&upload(&mut client, TABLE, &ToBoard::UploadKeep { id: 1 })));
     drop(client);
     let mut client = started();
     client.request(&loaded).unwrap();
     let mut without = connect(&pipes_image(), Equipment::default()).unwrap();
-    let answer = upload(&mut without, TABLE, ToBoard::UploadKeep { id: 1 });
+    let answer = upload(&mut without, TABLE, &ToBoard::UploadKeep { id: 1 });
     assert!(matches!(answer, FromBoard::Nack { reason: Refusal::NotKept, .. }), "{answer:?}");
 }
 
@@ -151,9 +151,9 @@ fn an_image_that_takes_signed_tables_alone_refuses_any_other() {
     assert!(client.identity().signed_tables);
     let blob = |owner: &str| fs::read(folder.join(format!("by-{owner}/lqr-e.signed.bin"))).unwrap();
     for blob in [TABLE, &blob("theirs")] {
-        let answer = upload(&mut client, blob, ToBoard::UploadCommit { id: 1 });
+        let answer = upload(&mut client, blob, &ToBoard::UploadCommit { id: 1 });
         assert!(matches!(answer, FromBoard::Nack { reason: Refusal::Blob(BlobError::Unsigned), .. }), "{answer:?}");
     }
-    let answer = upload(&mut client, &blob("ours"), ToBoard::UploadCommit { id: 1 });
+    let answer = upload(&mut client, &blob("ours"), &ToBoard::UploadCommit { id: 1 });
     assert!(is_ack(&answer), "{answer:?}");
 }
