@@ -56,7 +56,7 @@ pub extern "C" fn controllerOutOfTree(
             quatrack.log.cycles.store(cycles::since(begun), Relaxed);
             return;
         }
-        match controller.between(setpoint, sensors, state, step) {
+        match controller.between(setpoint, sensors, step) {
             None => {}
             Some(Work::LogErrors) => service::log_errors(&quatrack, controller, state),
             Some(Work::LogCounters) => service::log_counters(&quatrack, controller),

@@ -29,7 +29,7 @@
 //!                                      ├─ Request ─▶ Flight::Stream ───────────┘                 ▲
 //!                                      │             Flight::Guided ─▶ shaping ─▶ sample ────────┤
 //!                                      │             Flight::Rates ──────────────▶ body-rate loop, firmware's mixer
-//!                                      ├─ Bad ─────▶ Flight::Guided: to rest, slowly down
+//!                                      ├─ Bad ─────▶ the core's supervisor: to rest, slowly down
 //!                                      └─ Off ─────▶ Flight::Off
 //! ```
 //!

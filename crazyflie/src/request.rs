@@ -24,8 +24,6 @@ pub enum Horizontal {
         /// Whether it is given in the heading frame, not the world's.
         in_heading_frame: bool,
     },
-    /// To rest.
-    Brake,
     /// At a tilt: the direction of the thrust in the heading frame, of norm 1.
     Tilt(Vector3<f32>),
     /// Turning about body x and y, rad/s.
@@ -39,8 +37,6 @@ pub enum Vertical {
     Position,
     /// With the motion's velocity.
     Velocity,
-    /// Slowly down.
-    Descent,
     /// With this share of the most thrust.
     Thrust(f32),
 }
@@ -55,14 +51,6 @@ pub enum Turn {
 }
 
 impl Request {
-    /// Slowly down, to rest over the ground: what is flown instead of a setpoint that makes no sense.
-    pub const BRAKE_AND_DESCEND: Self =
-        Self { horizontal: Horizontal::Brake, vertical: Vertical::Descent, turn: Turn::Rate(0.0) };
-
-    /// Slowly down and level: the same for a craft that was flown by tilt or rates, of whose place maybe nobody knows.
-    pub const LEVEL_AND_DESCEND: Self =
-        Self { horizontal: Horizontal::Tilt(Vector3::new(0.0, 0.0, 1.0)), ..Self::BRAKE_AND_DESCEND };
-
     /// Whether it goes along the motion in all directions, at a heading: what a trajectory asks for.
     pub fn is_along(&self) -> bool {
         matches!(self, Self { horizontal: Horizontal::Position, vertical: Vertical::Position, turn: Turn::Heading })

@@ -219,6 +219,7 @@ pub fn log_counters(shared: &Shared, controller: &Controller) {
     log.limited.store(outcome.limited.bits(), Relaxed);
     log.mode.store(controller.mode() as u8, Relaxed);
     let counters = controller.counters();
+    log.reason.store(controller.why() as u16, Relaxed);
     log.bad_states.store(counters.bad_states, Relaxed);
     log.bad_setpoints.store(counters.bad_setpoints, Relaxed);
     log.limited_steps.store(counters.limited_steps, Relaxed);

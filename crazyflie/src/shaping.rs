@@ -13,6 +13,7 @@ use quatrack::{FifthOrderSample, Heading, Leash, State};
 use crate::heading::HeadingStream;
 use crate::request::{Horizontal, Request, Turn, Vertical};
 use crate::stream::Stream;
+use crate::units;
 
 /// How fast and how far.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,9 +29,6 @@ pub struct Bounds {
 /// How fast a velocity setpoint is taken up, 1/s.
 const VELOCITY_BANDWIDTH_1_S: f32 = 6.0;
 
-/// How fast a craft goes down whose setpoint makes no sense, m/s.
-const DESCENT_M_S: f32 = 0.3;
-
 /// How far the position of a velocity setpoint may run ahead of the craft along each axis, m.
 const LEAD_MAX_M: f32 = 0.25;
 
@@ -41,6 +39,8 @@ pub struct Shaping {
     velocity_m_s: Vector3<f32>,
     heading_rad: f32,
     period_s: f32,
+    /// It begins where the craft is at the next step.
+    is_new: bool,
 }
 
 /// What a step shapes, and from what.
@@ -61,17 +61,23 @@ pub struct Shaped<'a> {
 }
 
 impl Shaping {
-    /// At the origin; to be put somewhere by [`Self::begin`].
+    /// To begin where the craft is.
     pub const fn new(period_s: f32) -> Self {
         let zero = Vector3::new(0.0, 0.0, 0.0);
-        Self { position_m: zero, velocity_m_s: zero, heading_rad: 0.0, period_s }
+        Self { position_m: zero, velocity_m_s: zero, heading_rad: 0.0, period_s, is_new: true }
     }
 
-    /// Starts a flight of another kind from the measured state at a heading.
-    pub fn begin(&mut self, state: &State, heading_rad: f32) {
-        self.position_m = state.position_m;
-        self.velocity_m_s = state.velocity_m_s;
-        self.heading_rad = heading_rad;
+    /// Starts a flight of another kind from where the craft is at the next step.
+    pub fn begin(&mut self) {
+        self.is_new = true;
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn begin_at(&mut self, state: &State) {
+        let heading_rad = units::heading_rad(&state.attitude);
+        let (position_m, velocity_m_s) = (state.position_m, state.velocity_m_s);
+        *self = Self { position_m, velocity_m_s, heading_rad, is_new: false, ..*self };
     }
 
     /// What to follow at this step: the motion into `sample`, whose angle of heading is not used, and the heading. Not for
@@ -84,6 +90,9 @@ impl Shaping {
         bounds: &Bounds,
         sample: &mut FifthOrderSample,
     ) -> Heading {
+        if self.is_new {
+            self.begin_at(state);
+        }
         let request = shaped.request;
         shaped.stream.at(shaped.now_ms, shaped.beyond_jerk, sample);
         let heading = match request.turn {
@@ -129,14 +138,12 @@ impl Shaping {
         let a = &mut sample.flat.acceleration_m_s2;
         match request.horizontal {
             Horizontal::Position => {}
-            Horizontal::Velocity { .. } | Horizontal::Brake => {
+            Horizontal::Velocity { in_heading_frame } => {
                 let (cos, sin) = heading.cos_sin();
-                let (vx, vy) = match request.horizontal {
-                    Horizontal::Velocity { in_heading_frame: true } => {
-                        (cos * asked.x - sin * asked.y, sin * asked.x + cos * asked.y)
-                    }
-                    Horizontal::Velocity { .. } => (asked.x, asked.y),
-                    _ => (0.0, 0.0),
+                let (vx, vy) = if in_heading_frame {
+                    (cos * asked.x - sin * asked.y, sin * asked.x + cos * asked.y)
+                } else {
+                    (asked.x, asked.y)
                 };
                 let speed = sqrt(vx * vx + vy * vy);
                 let share = if speed > bounds.speed_m_s { bounds.speed_m_s / speed } else { 1.0 };
@@ -157,10 +164,9 @@ impl Shaping {
         }
         match request.vertical {
             Vertical::Position => {}
-            Vertical::Velocity | Vertical::Descent => {
+            Vertical::Velocity => {
                 let (limit, v) = (bounds.speed_m_s, self.velocity_m_s.z);
-                let climb = if request.vertical == Vertical::Descent { -DESCENT_M_S } else { asked.z };
-                let acceleration = VELOCITY_BANDWIDTH_1_S * (within(climb, -limit, limit) - v);
+                let acceleration = VELOCITY_BANDWIDTH_1_S * (within(asked.z, -limit, limit) - v);
                 a.z = within(acceleration, -bounds.acceleration_m_s2, bounds.acceleration_m_s2);
                 self.velocity_m_s.z = v + a.z * self.period_s;
                 let (next, z) = (self.position_m.z + self.velocity_m_s.z * self.period_s, state.position_m.z);

@@ -128,13 +128,13 @@ pub struct Log {
     pub limited: AtomicU16,
     /// Processor cycles of the last step.
     pub cycles: AtomicU16,
-    /// How the last setpoint is flown.
+    /// What is done with the last setpoint.
     pub mode: AtomicU8,
     /// The table in use.
     pub table: AtomicU8,
-    /// Steps on estimates or gyroscope readings that nothing can be flown on: motors off.
+    /// Steps on estimates or gyroscope readings that had to be bridged.
     pub bad_states: AtomicU16,
-    /// Setpoints that make no sense: level and slowly down.
+    /// Setpoints that make no sense: to rest, or level, and slowly down.
     pub bad_setpoints: AtomicU16,
     /// Steps on which something was given up.
     pub limited_steps: AtomicU16,
@@ -148,6 +148,8 @@ pub struct Log {
     pub put_back: AtomicU16,
     /// Which of them was the last, counted from 1 in the order of [`Parameters`].
     pub parameter: AtomicU16,
+    /// Why the newest flight was last left, see `quatrack.h`.
+    pub reason: AtomicU16,
 }
 
 /// What the cascade flies with, as the flight has shown it.
@@ -182,7 +184,7 @@ pub struct Gains {
 /// Entries of [`Gains`].
 pub const GAINS: usize = 19;
 
-const _: () = assert!(size_of::<Parameters>() == 64 && size_of::<Log>() == 42);
+const _: () = assert!(size_of::<Parameters>() == 64 && size_of::<Log>() == 44);
 const _: () = assert!(core::mem::offset_of!(Log, bad_states) == 26, "one log packet");
 
 impl Shared {
@@ -225,6 +227,7 @@ impl Shared {
                 refusal: AtomicU16::new(0),
                 put_back: AtomicU16::new(0),
                 parameter: AtomicU16::new(0),
+                reason: AtomicU16::new(0),
             },
             learned: Learned {
                 drag_per_s: AtomicF32::new(0.0),

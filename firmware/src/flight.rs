@@ -15,8 +15,8 @@ use quatrack::link::{
 };
 use quatrack::mixer::MotorLimited;
 use quatrack::supervisor::{
-    ArmError, Circumstances, Config, Fault, Guard, Mode, MonitorConfig, Order, Preflight, Reason, ReferenceReport,
-    Rescue, Sample,
+    ArmError, Asked, Circumstances, Config, Fault, Guard, Mode, MonitorConfig, Order, Preflight, Reason,
+    ReferenceReport, Sample,
 };
 use quatrack::{Command, Limits, MotorForces, Output, Rate, RigidState, State, Tick};
 
@@ -380,6 +380,7 @@ impl Flight {
         let body_rates = self.motors.body_rates(rates, is_fresh);
         let around = Circumstances {
             link_silence_ticks: age(self.heard_at, now),
+            asked: Asked::Places,
             reference: if self.playback.is_there() { self.reference } else { ReferenceReport::Missing },
             limited: self.limited,
             levels: body_rates.is_some() && self.motors.can_level(),
@@ -401,7 +402,7 @@ impl Flight {
             // What is to be followed is looked at meanwhile: once it is sound again the flight goes on.
             Order::Brake(looked, sample, heading) => {
                 *reference = looked_at(playback, tick);
-                return laws.brake(&looked, &sample, heading).map_err(NoCommand::Step);
+                return laws.brake(&looked, sample, heading).map_err(NoCommand::Step);
             }
             Order::Level(levelled) => {
                 *reference = looked_at(playback, tick);
@@ -411,16 +412,15 @@ impl Flight {
         };
         let stepped = motors.step(laws, playback, tick, &looked, body_rates.is_some());
         let Err(failure) = stepped else { return stepped };
-        let rescue = Rescue::of(&looked);
-        let levels = around.levels;
         let instead = match failure {
             NoCommand::Reference(_) => {
                 *reference = ReferenceReport::Bad;
-                let brake = guard.reference_failed(tick, &rescue, MONITOR.tick_s, levels);
-                brake.and_then(|(sample, heading)| laws.brake_from(&rescue, &sample, heading))
+                let brake = guard.reference_failed(tick, MONITOR.tick_s, &around);
+                brake.and_then(|(looked, sample, heading)| laws.brake(&looked, sample, heading).ok())
             }
             _ => {
-                guard.step_failed(tick, &rescue, MONITOR.tick_s, levels).and_then(|levelled| laws.level(&levelled).ok())
+                let levelled = guard.step_failed(tick, MONITOR.tick_s, &around);
+                levelled.and_then(|levelled| laws.level(&levelled).ok())
             }
         };
         instead.ok_or(failure)

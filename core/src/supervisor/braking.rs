@@ -22,18 +22,22 @@ const BELOW_MAX_M: f32 = 0.3;
 /// The way from a course to a standstill, at the heading that the craft had.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Braking {
-    from: State,
+    position_m: Vector3<f32>,
+    velocity_m_s: Vector3<f32>,
     heading: Heading,
     begun: Tick,
     /// Since when it goes down.
     descending: Option<Tick>,
+    /// What is followed; here, so that no caller's stack has to hold it.
+    sample: FifthOrderSample,
 }
 
 impl Braking {
     /// From where a craft is.
     pub fn begin(looked: &Looked<'_>, now: Tick) -> Self {
-        let from = *looked.state;
-        Self { from, heading: heading_of(from.attitude), begun: now, descending: None }
+        let State { position_m, attitude, velocity_m_s } = *looked.state;
+        let sample = FifthOrderSample::at_rest(position_m, 0.0);
+        Self { position_m, velocity_m_s, heading: heading_of(attitude), begun: now, descending: None, sample }
     }
 
     /// Goes down from here on.
@@ -43,14 +47,13 @@ impl Braking {
 
     /// What is to be followed at a tick of a length (s), by a craft at a height (m): it is never far ahead of one that has come to
     /// the ground.
-    pub fn at(&mut self, now: Tick, tick_s: f32, height_m: f32) -> FifthOrderSample {
+    pub fn at(&mut self, now: Tick, tick_s: f32, height_m: f32) -> &FifthOrderSample {
         let t = now.wrapping_sub(self.begun) as f32 * tick_s;
-        let State { position_m: p, velocity_m_s: v, .. } = self.from;
+        let (p, v) = (self.position_m, self.velocity_m_s);
         let over_ground = Vector3::new(v.x, v.y, 0.0);
         let across = braked(sqrt(v.x * v.x + v.y * v.y), BRAKE_M_S2, t);
         let up = braked(v.z, BRAKE_UP_M_S2, t);
-        let mut sample = FifthOrderSample::at_rest(p, 0.0);
-        let flat = &mut sample.flat;
+        let flat = &mut self.sample.flat;
         flat.position_m = p + over_ground * across.way + Vector3::new(0.0, 0.0, v.z * up.way);
         flat.velocity_m_s = over_ground * across.speed + Vector3::new(0.0, 0.0, v.z * up.speed);
         flat.acceleration_m_s2 = over_ground * across.change + Vector3::new(0.0, 0.0, v.z * up.change);
@@ -70,7 +73,7 @@ impl Braking {
                 flat.position_m.z = least_m;
             }
         }
-        sample
+        &self.sample
     }
 
     /// For how long it has been going down, ticks, if it does.

@@ -7,18 +7,15 @@
 //!                                        └──────────────────▶  the product's law, or Cascade::level
 //! ```
 
-use nalgebra::Vector3;
-
-use super::braking::Braking;
-use super::descent;
-use super::machine::{Conditions, Config, ReferenceReport, Supervisor};
+use super::machine::{Conditions, Config, ReferenceReport, Supervisor, UPRIGHT_LEAST, is_at_rest, within};
 use super::mode::{Action, Fault, Mode, Reason};
-use super::monitor::{Looked, Monitor, MonitorConfig, Sample, Soundness};
+use super::monitor::{Looked, Monitor, MonitorConfig, Sample};
+use super::way::{Asked, Levelled, Order, Way};
 use crate::clock::Tick;
 use crate::flatness::GRAVITY_M_S2;
 use crate::mixer::MotorLimited;
 use crate::motor_reference::FifthOrderSample;
-use crate::quaternion::{Heading, Quaternion};
+use crate::quaternion::Heading;
 use crate::state::State;
 
 /// What a step has beside its sample.
@@ -26,6 +23,8 @@ use crate::state::State;
 pub struct Circumstances {
     /// Ticks since the last accepted frame; none if there never was one. 0 without a link.
     pub link_silence_ticks: Option<Tick>,
+    /// How it is asked to fly.
+    pub asked: Asked,
     /// What there is to be followed.
     pub reference: ReferenceReport,
     /// What the last step cut.
@@ -42,54 +41,27 @@ pub struct Circumstances {
     pub fault: Option<Fault>,
 }
 
-/// What is to be done in a step.
-#[derive(Clone, Copy, Debug)]
-pub enum Order<'a> {
-    /// Zero forces.
-    Off,
-    /// Fly the law towards its own reference, on this state, which may be bridged.
-    Fly(Looked<'a>),
-    /// Fly the law towards this one.
-    Brake(Looked<'a>, FifthOrderSample, Heading),
-    /// Fly an attitude of norm 1 and body rates (rad/s) with an acceleration beside gravity (m/s^2): [`crate::Cascade::level`].
-    Level(Levelled),
-}
-
-/// What levelling takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Levelled {
-    /// The attitude, of norm 1.
-    pub attitude: Quaternion,
-    /// Body rates, rad/s.
-    pub body_rates_rad_s: Vector3<f32>,
-    /// Acceleration to be made beside gravity, m/s^2.
-    pub acceleration_m_s2: Vector3<f32>,
-}
-
 /// Monitor, state machine, and the way down.
 #[derive(Clone, Copy, Debug)]
 pub struct Guard {
     monitor: Monitor,
     supervisor: Supervisor,
-    braking: Option<Braking>,
-    /// Since when a descent has not moved.
-    grounded: Option<Tick>,
-    /// It has met the ground.
-    hit: bool,
+    way: Way,
 }
 
 /// Thrust over mass from which on motors lift a craft, m/s^2: what is cut below is no climb.
 const CLIMB_LEAST_M_S2: f32 = 1.05 * GRAVITY_M_S2;
 
-/// For how long a craft that is told to go down has not to move until it has landed, ticks.
-const GROUNDED_TICKS: Tick = 500;
-/// Speed below which it does not move, m/s.
-const GROUNDED_M_S: f32 = 0.1;
-
 impl Guard {
     /// On the ground, nothing seen.
     pub const fn new() -> Self {
-        Self { monitor: Monitor::new(), supervisor: Supervisor::new(), braking: None, grounded: None, hit: false }
+        Self { monitor: Monitor::new(), supervisor: Supervisor::new(), way: Way::NONE }
+    }
+
+    /// Of a product that takes over a craft in the air, nothing seen: it flies from the first sound state on, and stops where the
+    /// first is none.
+    pub const fn flying(now: Tick) -> Self {
+        Self { supervisor: Supervisor::flying(now), ..Self::new() }
     }
 
     /// Of a board that has started again because of a fault.
@@ -123,29 +95,75 @@ impl Guard {
 
     /// What is to be done in a step.
     #[inline(always)]
-    pub fn order<'a>(
-        &'a mut self,
-        (config, monitor): (&Config, &MonitorConfig),
-        sample: &Sample<'a>,
+    pub fn order(
+        &mut self,
+        configs: (&Config, &MonitorConfig),
+        sample: &Sample<'_>,
         around: &Circumstances,
-    ) -> Order<'a> {
-        let Self { monitor: seen, supervisor, braking, grounded, hit } = self;
-        let looked = seen.look(monitor, sample);
-        let q = looked.state.attitude;
+    ) -> Order<'_> {
+        if self.goes_on(configs, sample, around) {
+            return Order::Fly(self.looked());
+        }
+        // Copies: on the way above nothing of it has to be in memory.
+        let (sample, around) = (*sample, *around);
+        self.order_closely(configs, &sample, &around)
+    }
+
+    /// Whether all is well and the flight goes on as asked, on [`Self::looked`]: the first half of [`Self::order`], for a product that
+    /// fetches what only the second half looks at, [`Self::order_closely`], where it has to. The sample's specific force and thrust are
+    /// not looked at.
+    #[inline(always)]
+    pub fn goes_on(
+        &mut self,
+        (config, monitor): (&Config, &MonitorConfig),
+        sample: &Sample<'_>,
+        around: &Circumstances,
+    ) -> bool {
+        let (limited, supervisor) = (around.limited, &mut self.supervisor);
+        supervisor.is_calm()
+            && around.reference == ReferenceReport::Sound
+            && !around.overrun
+            && around.fault.is_none()
+            && within(around.link_silence_ticks, config.link_silence_max_ticks)
+            && config.geofence.is_none()
+            && around.battery_v.is_none_or(|volts| volts >= config.battery_least_v)
+            && supervisor.is_in_range(limited.any(), sample.now, config)
+            && sample.state.is_some_and(|state| tilted(state) <= TILTED_MOST)
+            && (!cuts_thrust(limited) || sample.state.is_some_and(|state| !is_at_rest(&state.velocity_m_s)))
+            && self.monitor.keeps(monitor, sample)
+    }
+
+    /// What the last step was to be flown on.
+    #[inline(always)]
+    pub fn looked(&self) -> Looked<'_> {
+        self.monitor.looked()
+    }
+
+    /// What is to be done in a step that does not simply go on.
+    #[cold]
+    #[inline(never)]
+    pub fn order_closely(
+        &mut self,
+        (config, monitor): (&Config, &MonitorConfig),
+        sample: &Sample<'_>,
+        around: &Circumstances,
+    ) -> Order<'_> {
+        let Self { monitor: seen, supervisor, way } = self;
+        let looked = seen.look_closely(monitor, sample);
+        let turns_over = around.asked == Asked::Rates && supervisor.mode() == Mode::Flying;
         let conditions = Conditions {
             now: sample.now,
             link_silence_ticks: around.link_silence_ticks,
             soundness: looked.soundness,
-            upright: 1.0 - 2.0 * (q.x * q.x + q.y * q.y),
+            upright: if turns_over { 1.0 } else { 1.0 - 2.0 * tilted(looked.state) },
             position_m: looked.state.position_m,
             velocity_m_s: looked.state.velocity_m_s,
             reference: around.reference,
             limited: around.limited.any(),
-            limited_thrust: (around.limited.thrust() || around.limited.command().thrust())
-                && sample.thrust_m_s2 > CLIMB_LEAST_M_S2,
+            limited_thrust: cuts_thrust(around.limited) && sample.thrust_m_s2 > CLIMB_LEAST_M_S2,
             levels: around.levels,
             starts_near: around.starts_near,
-            landed: grounded.is_some_and(|since| sample.now.wrapping_sub(since) > GROUNDED_TICKS) || *hit,
+            landed: way.has_landed(sample.now),
             battery_v: around.battery_v,
             overrun: around.overrun,
             fault: around.fault,
@@ -155,18 +173,25 @@ impl Guard {
             Action::Fly => Order::Fly(looked),
             // A product that never levels links nothing of what follows.
             _ if !around.levels => {
-                (*braking, *grounded, *hit) = (None, None, false);
+                *way = Way::NONE;
                 Order::Off
             }
-            action => instead(action, verdict.mode, looked, (monitor, sample), (braking, grounded, hit)),
+            _ => {
+                let felt = sample.specific_force_m_s2;
+                way.instead(verdict, looked, (sample.now, monitor.tick_s, felt), around.asked)
+            }
         }
     }
 
-    /// The law has given nothing: what is to be done instead in this very step.
+    /// The law has given nothing: what is to be done instead in this very step, at ticks of a length (s).
     #[cold]
-    pub fn step_failed(&mut self, now: Tick, rescue: &Rescue, tick_s: f32, levels: bool) -> Option<Levelled> {
-        let verdict = self.supervisor.step_failed(now, levels);
-        (levels && verdict.action == Action::Level).then(|| rescue.level(tick_s))
+    pub fn step_failed(&mut self, now: Tick, tick_s: f32, around: &Circumstances) -> Option<Levelled> {
+        let verdict = self.supervisor.step_failed(now, around.levels);
+        if verdict.left {
+            self.way = Way::NONE;
+        }
+        let looked = self.monitor.looked();
+        (around.levels && verdict.action == Action::Level).then(|| Levelled::of(&looked, tick_s).asked(around.asked))
     }
 
     /// What is to be followed turns out not to be flyable: what is to be followed instead in this very step.
@@ -174,15 +199,15 @@ impl Guard {
     pub fn reference_failed(
         &mut self,
         now: Tick,
-        rescue: &Rescue,
         tick_s: f32,
-        levels: bool,
-    ) -> Option<(FifthOrderSample, Heading)> {
-        if self.supervisor.reference_failed(now, levels).action != Action::Brake || !levels {
+        around: &Circumstances,
+    ) -> Option<(Looked<'_>, &FifthOrderSample, Heading)> {
+        if self.supervisor.reference_failed(now, around.levels).action != Action::Brake || !around.levels {
             return None;
         }
-        let braking = self.braking.insert(Braking::begin(&rescue.looked(), now));
-        Some((braking.at(now, tick_s, rescue.state.position_m.z), braking.heading()))
+        let looked = self.monitor.looked();
+        let (sample, heading) = self.way.brake_anew(&looked, now, tick_s);
+        Some((looked, sample, heading))
     }
 
     /// Stops where no step comes any more that could level the craft; whether that ended a flight.
@@ -192,93 +217,26 @@ impl Guard {
     }
 }
 
+/// Half of what the vertical component of the thrust axis is less than 1.
+#[inline(always)]
+fn tilted(state: &State) -> f32 {
+    let q = state.attitude;
+    q.x * q.x + q.y * q.y
+}
+
+/// The same where a craft begins to tumble.
+const TILTED_MOST: f32 = 0.5 * (1.0 - UPRIGHT_LEAST);
+
+#[inline(always)]
+fn cuts_thrust(limited: MotorLimited) -> bool {
+    limited.thrust() || limited.command().thrust()
+}
+
 impl Default for Guard {
     fn default() -> Self {
         Self::new()
     }
 }
 
-/// What a step that fails is rescued by: the state that it was to be flown on.
-#[derive(Clone, Copy, Debug)]
-pub struct Rescue {
-    state: State,
-    body_rates_rad_s: Vector3<f32>,
-    velocity_bridged_ticks: Option<Tick>,
-}
-
-impl Rescue {
-    /// Of what a step was given.
-    pub const fn of(looked: &Looked<'_>) -> Self {
-        let Looked { state, body_rates_rad_s, velocity_bridged_ticks, .. } = *looked;
-        Self { state: *state, body_rates_rad_s: *body_rates_rad_s, velocity_bridged_ticks }
-    }
-
-    /// What is flown by attitude alone from here, at ticks of a length (s).
-    pub fn level(&self, tick_s: f32) -> Levelled {
-        levelled(&self.looked(), tick_s)
-    }
-
-    /// The state as a step takes it.
-    pub const fn looked(&self) -> Looked<'_> {
-        Looked {
-            soundness: Soundness::Bridged,
-            state: &self.state,
-            body_rates_rad_s: &self.body_rates_rad_s,
-            velocity_bridged_ticks: self.velocity_bridged_ticks,
-        }
-    }
-}
-
-fn levelled(looked: &Looked<'_>, tick_s: f32) -> Levelled {
-    Levelled {
-        attitude: unit(looked.state.attitude),
-        body_rates_rad_s: *looked.body_rates_rad_s,
-        acceleration_m_s2: descent::acceleration(looked, tick_s),
-    }
-}
-
-fn unit(q: Quaternion) -> Quaternion {
-    q.scaled(1.0 / crate::math::sqrt(q.dot(q)))
-}
-
-/// What is done instead of what was asked.
-#[cold]
-#[inline(never)]
-fn instead<'a>(
-    action: Action,
-    mode: Mode,
-    looked: Looked<'a>,
-    (config, sample): (&MonitorConfig, &Sample<'_>),
-    (braking, grounded, hit): (&mut Option<Braking>, &mut Option<Tick>, &mut bool),
-) -> Order<'a> {
-    let now = sample.now;
-    let is_down = matches!(mode, Mode::LevelAndDown(_));
-    let is_still =
-        is_down && looked.velocity_bridged_ticks.is_none() && looked.state.velocity_m_s.z.abs() < GROUNDED_M_S;
-    let feels_ground = is_down && sample.specific_force_m_s2.is_some_and(descent::is_impact);
-    match action {
-        Action::Off | Action::Fly => {
-            (*braking, *grounded, *hit) = (None, None, false);
-            Order::Off
-        }
-        Action::Brake => {
-            let braking = braking.get_or_insert_with(|| Braking::begin(&looked, now));
-            if is_down {
-                braking.descend(now);
-            }
-            let begun = braking.is_descending_since(now);
-            let is_still = is_still && begun.is_some_and(|ticks| ticks > GROUNDED_TICKS);
-            *grounded = if is_still { Some(grounded.unwrap_or(now)) } else { None };
-            let reference = braking.at(now, config.tick_s, looked.state.position_m.z);
-            let heading = braking.heading();
-            Order::Brake(looked, reference, heading)
-        }
-        Action::Level => {
-            // A place that comes back is a new one.
-            *braking = None;
-            *hit |= feels_ground;
-            *grounded = if is_still { Some(grounded.unwrap_or(now)) } else { None };
-            Order::Level(levelled(&looked, config.tick_s))
-        }
-    }
-}
+#[cfg(test)]
+mod tests;

@@ -132,10 +132,12 @@ pub struct Verdict {
     pub action: Action,
     /// Whether this step ended a flight or the readiness for one.
     pub stopped: bool,
+    /// Whether it is the first that does not fly as asked, after one that did.
+    pub left: bool,
 }
 
 /// Cosine of the tilt beyond which a craft is tumbling, if it stays there: 60 degrees.
-const UPRIGHT_LEAST: f32 = 0.5;
+pub(super) const UPRIGHT_LEAST: f32 = 0.5;
 /// Squared speed below which a craft does not move, m^2/s^2.
 const AT_REST_M2_S2: f32 = 0.15 * 0.15;
 
@@ -148,9 +150,10 @@ pub struct Supervisor {
     overruns_in_a_row: u32,
     /// Since when motors have been at their limits, which is nothing wrong for a while.
     saturated: Option<Tick>,
-    /// Since when each has been so; all none while nothing is wrong, which is what [`Self::is_watching`] says.
+    /// Since when each has been so; all none while nothing is wrong.
     watched: Watched,
-    is_watching: bool,
+    /// It flies as asked, and nothing is watched.
+    is_calm: bool,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -167,14 +170,12 @@ const NOTHING: Watched = Watched { tilted: None, upside_down: None, stuck: None,
 impl Supervisor {
     /// On the ground.
     pub const fn new() -> Self {
-        Self {
-            mode: Mode::OnGround,
-            since: 0,
-            overruns_in_a_row: 0,
-            saturated: None,
-            watched: NOTHING,
-            is_watching: false,
-        }
+        Self { mode: Mode::OnGround, since: 0, overruns_in_a_row: 0, saturated: None, watched: NOTHING, is_calm: false }
+    }
+
+    /// Of a product that takes over in the air: it flies.
+    pub const fn flying(now: Tick) -> Self {
+        Self { mode: Mode::Flying, since: now, is_calm: true, ..Self::new() }
     }
 
     /// The mode after the last call.
@@ -238,38 +239,34 @@ impl Supervisor {
         self.enter(next, now)
     }
 
-    /// Takes what a step sees, before it is taken.
-    ///
-    /// Of several reasons the first in the order of [`Reason`] is named.
+    /// Whether it flies as asked and watches nothing.
     #[inline(always)]
-    pub fn step(&mut self, config: &Config, seen: &Conditions) -> Verdict {
-        if self.mode == Mode::Flying
-            && !self.is_watching
-            && !seen.overrun
-            && seen.fault.is_none()
-            && seen.soundness == Soundness::Sound
-            && seen.reference == ReferenceReport::Sound
-            && !seen.limited_thrust
-            && self.is_limited_briefly(seen, config)
-            && seen.upright >= UPRIGHT_LEAST
-            && within(seen.link_silence_ticks, config.link_silence_max_ticks)
-            && config.geofence.is_none()
-            && seen.battery_v.is_none_or(|volts| volts >= config.battery_least_v)
-        {
-            return Verdict { mode: Mode::Flying, action: Action::Fly, stopped: false };
+    pub(super) const fn is_calm(&self) -> bool {
+        self.is_calm
+    }
+
+    /// The same for motors that mostly are not.
+    #[inline(always)]
+    pub(super) fn is_in_range(&mut self, is_limited: bool, now: Tick, config: &Config) -> bool {
+        if is_limited {
+            return self.is_limited_briefly(true, now, config);
         }
-        self.look_closely(config, seen)
+        self.saturated = None;
+        true
     }
 
     /// Notes since when motors have been at their limits; whether that is not too long yet.
     #[inline(always)]
-    fn is_limited_briefly(&mut self, seen: &Conditions, config: &Config) -> bool {
-        !has_lasted(&mut self.saturated, seen.limited, seen.now, config.saturation_max_ticks)
+    pub(super) fn is_limited_briefly(&mut self, is_limited: bool, now: Tick, config: &Config) -> bool {
+        !has_lasted(&mut self.saturated, is_limited, now, config.saturation_max_ticks)
     }
 
+    /// Takes what a step sees, before it is taken.
+    ///
+    /// Of several reasons the first in the order of [`Reason`] is named.
     #[cold]
     #[inline(never)]
-    fn look_closely(&mut self, config: &Config, seen: &Conditions) -> Verdict {
+    pub fn step(&mut self, config: &Config, seen: &Conditions) -> Verdict {
         self.overruns_in_a_row = if seen.overrun { self.overruns_in_a_row.saturating_add(1) } else { 0 };
         let next = match (self.mode, seen.fault) {
             (_, Some(fault)) => Mode::Stopped(Reason::Fault(fault)),
@@ -295,13 +292,18 @@ impl Supervisor {
                 (self.watched, self.saturated) = (NOTHING, None);
             }
         }
-        self.is_watching = self.watched != NOTHING || self.overruns_in_a_row > 0;
+        self.is_calm = next == Mode::Flying && self.watched == NOTHING && self.overruns_in_a_row == 0;
         let action = match next {
             Mode::OnGround | Mode::Armed | Mode::Stopped(_) | Mode::Tumbled(_) => Action::Off,
             Mode::Flying => Action::Fly,
             Mode::Holding(_) | Mode::LevelAndDown(_) => Action::Brake,
         };
-        Verdict { mode: next, action, stopped: before.motors_allowed() && !next.motors_allowed() }
+        Verdict {
+            mode: next,
+            action,
+            stopped: before.motors_allowed() && !next.motors_allowed(),
+            left: before == Mode::Flying && next != before,
+        }
     }
 
     fn is_overrun(&self, config: &Config) -> bool {
@@ -368,7 +370,7 @@ impl Supervisor {
         let now = seen.now;
         let is_low = seen.battery_v.is_some_and(|volts| volts < config.battery_least_v);
         let is_empty = lasted(&mut self.watched.battery_low, is_low, now, config.battery_low_ticks);
-        let is_saturated = !self.is_limited_briefly(seen, config);
+        let is_saturated = !self.is_limited_briefly(seen.limited, now, config);
         let is_outside = config.geofence.is_some_and(|fence| !fence.holds(&seen.position_m));
         if seen.soundness == Soundness::AttitudeOnly {
             Some(Reason::StateLost)
@@ -389,8 +391,8 @@ impl Supervisor {
 
     /// Whether it flies no more.
     fn tumbled(&mut self, config: &Config, seen: &Conditions) -> Option<Tumble> {
-        let (now, v) = (seen.now, &seen.velocity_m_s);
-        let is_at_rest = v.dot(v) < AT_REST_M2_S2 && seen.soundness == Soundness::Sound;
+        let now = seen.now;
+        let is_at_rest = is_at_rest(&seen.velocity_m_s) && seen.soundness == Soundness::Sound;
         let watched = &mut self.watched;
         let is_tilted = lasted(&mut watched.tilted, seen.upright < UPRIGHT_LEAST, now, config.tilt_max_ticks);
         let is_down = lasted(&mut watched.upside_down, seen.upright < 0.0, now, config.upside_down_max_ticks);
@@ -428,7 +430,12 @@ fn has_lasted(since: &mut Option<Tick>, is_so: bool, now: Tick, most: Tick) -> b
     since.is_some_and(|since| now.wrapping_sub(since) > most)
 }
 
-fn within(age_ticks: Option<Tick>, max_ticks: Tick) -> bool {
+/// Whether a craft with a velocity (m/s) does not move.
+pub(super) fn is_at_rest(v: &Vector3<f32>) -> bool {
+    v.dot(v) < AT_REST_M2_S2
+}
+
+pub(super) fn within(age_ticks: Option<Tick>, max_ticks: Tick) -> bool {
     age_ticks.is_some_and(|age| age <= max_ticks)
 }
 

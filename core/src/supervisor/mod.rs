@@ -38,11 +38,13 @@ mod machine;
 mod mode;
 mod monitor;
 mod preflight;
+mod way;
 
 pub use braking::Braking;
 pub use descent::acceleration as descent_acceleration;
-pub use guard::{Circumstances, Guard, Levelled, Order, Rescue};
+pub use guard::{Circumstances, Guard};
 pub use machine::{Conditions, Config, Geofence, ReferenceReport, Supervisor, Verdict};
 pub use mode::{Action, Fault, Mode, Reason, Tumble};
 pub use monitor::{Looked, Monitor, MonitorConfig, Sample, Soundness};
 pub use preflight::{ArmError, Certified, Coverage, Preflight};
+pub use way::{Asked, Levelled, Order};

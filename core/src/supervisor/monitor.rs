@@ -116,6 +116,10 @@ pub struct Monitor {
     at: Tick,
     /// A sound estimate has come.
     is_known: bool,
+    /// One has, and nothing has been bridged since.
+    is_well: bool,
+    /// The last step is flown on what is bridged.
+    is_bridged: bool,
     /// Something is not sound, or stands still.
     bridge: Option<Bridge>,
 }
@@ -158,36 +162,66 @@ impl Monitor {
     /// Nothing seen.
     pub const fn new() -> Self {
         let given = State { position_m: ZERO, attitude: Quaternion::IDENTITY, velocity_m_s: ZERO };
-        Self { given, rates: ZERO, at: 0, is_known: false, bridge: None }
+        Self { given, rates: ZERO, at: 0, is_known: false, is_well: false, is_bridged: false, bridge: None }
     }
 
     /// Looks at what a step is given.
     #[inline(always)]
-    pub fn look<'a>(&'a mut self, config: &MonitorConfig, sample: &Sample<'a>) -> Looked<'a> {
+    pub fn look(&mut self, config: &MonitorConfig, sample: &Sample<'_>) -> Looked<'_> {
+        if self.keeps(config, sample) { self.looked() } else { self.look_closely(config, sample) }
+    }
+
+    /// Keeps what a step is given where all of it is sound and nothing has been bridged, which is seen by a few comparisons; whether
+    /// it is.
+    #[inline(always)]
+    pub(super) fn keeps(&mut self, config: &MonitorConfig, sample: &Sample<'_>) -> bool {
         let rates = sample.body_rates_rad_s.unwrap_or(&NO_RATES);
-        if let Some(state) = sample.state
-            && self.bridge.is_none()
-            && self.is_known
+        let Some(state) = sample.state else { return false };
+        let is_sound = self.is_well
             && is_attitude(state.attitude, NORM_SQUARED_NEAR)
             && is_place(state, config)
-            && (sample.body_rates_rad_s.is_none() || is_turning(rates, config) && *rates != self.rates)
-        {
-            // An estimate that comes more rarely than steps is the same in between.
-            if !is_same(state, &self.given) || sample.body_rates_rad_s.is_none() {
-                (self.given, self.at) = (*state, sample.now);
-            } else if sample.now.wrapping_sub(self.at) > QUIET_TICKS {
-                return self.look_closely(config, sample);
-            }
-            self.rates = *rates;
-            let soundness = Soundness::Sound;
-            return Looked { soundness, state, body_rates_rad_s: rates, velocity_bridged_ticks: None };
+            && (sample.body_rates_rad_s.is_none() || is_turning(rates, config) && is_moving(rates, &self.rates));
+        if !is_sound {
+            return false;
         }
-        self.look_closely(config, sample)
+        // An estimate that comes more rarely than steps is the same in between.
+        let is_held = sample.body_rates_rad_s.is_some() && is_same(state, &self.given);
+        if is_held && sample.now.wrapping_sub(self.at) > QUIET_TICKS {
+            return false;
+        }
+        if !is_held {
+            self.at = sample.now;
+        }
+        (self.given, self.rates) = (*state, *rates);
+        true
+    }
+
+    /// What the last step is flown on.
+    #[inline(always)]
+    pub(super) fn looked(&self) -> Looked<'_> {
+        if self.is_bridged { self.bridged() } else { self.sound() }
+    }
+
+    #[inline(always)]
+    const fn sound(&self) -> Looked<'_> {
+        Looked {
+            soundness: Soundness::Sound,
+            state: &self.given,
+            body_rates_rad_s: &self.rates,
+            velocity_bridged_ticks: None,
+        }
+    }
+
+    #[cold]
+    fn bridged(&self) -> Looked<'_> {
+        let Some(Bridge { state, rates, place, .. }) = &self.bridge else { return self.sound() };
+        let velocity_bridged_ticks = place.map(|from| self.at.wrapping_sub(from));
+        Looked { soundness: Soundness::Bridged, state, body_rates_rad_s: rates, velocity_bridged_ticks }
     }
 
     #[cold]
     #[inline(never)]
-    fn look_closely(&mut self, config: &MonitorConfig, sample: &Sample<'_>) -> Looked<'_> {
+    pub(super) fn look_closely(&mut self, config: &MonitorConfig, sample: &Sample<'_>) -> Looked<'_> {
         let now = sample.now;
         let step_s = shorter(now.wrapping_sub(self.at) as f32 * config.tick_s, STEP_MAX_S);
         let mut bridge = self.bridge.unwrap_or_else(|| Bridge {
@@ -240,12 +274,10 @@ impl Monitor {
             && bridge.still_gyroscope.is_none()
             && is_attitude(self.given.attitude, NORM_SQUARED_NEAR);
         self.bridge = (!is_over).then_some(bridge);
+        self.is_well = is_over;
         let is_given = soundness == Soundness::Sound && is_attitude(self.given.attitude, NORM_SQUARED_NEAR);
-        let (state, body_rates_rad_s) = match &self.bridge {
-            Some(bridge) => (if is_given { &self.given } else { &bridge.state }, &bridge.rates),
-            None => (&self.given, &self.rates),
-        };
-        Looked { soundness, state, body_rates_rad_s, velocity_bridged_ticks }
+        self.is_bridged = !(is_over || is_given);
+        Looked { soundness, velocity_bridged_ticks, ..self.looked() }
     }
 
     /// Since when the estimate has been standing still while the gyroscope moves, where that is too long.
@@ -361,9 +393,20 @@ fn is_turning(w: &Vector3<f32>, config: &MonitorConfig) -> bool {
     w.x * w.x + w.y * w.y + w.z * w.z < most * most
 }
 
-/// Whether two estimates have the same bits; what is no number is the same as itself.
+/// Whether body rates are other ones than those before.
+#[inline(always)]
+fn is_moving(rates: &Vector3<f32>, before: &Vector3<f32>) -> bool {
+    rates.x != before.x || rates.y != before.y || rates.z != before.z
+}
+
+/// Whether two estimates have the same bits; what is no number is the same as itself. Most differ in the first that is looked at.
 #[inline(always)]
 fn is_same(a: &State, b: &State) -> bool {
+    a.velocity_m_s.x.to_bits() == b.velocity_m_s.x.to_bits() && is_all_the_same(a, b)
+}
+
+#[inline(always)]
+fn is_all_the_same(a: &State, b: &State) -> bool {
     let differ = |a: f32, b: f32| a.to_bits() ^ b.to_bits();
     let (p, q, v) = (&a.position_m, &a.attitude, &a.velocity_m_s);
     let (o, r, u) = (&b.position_m, &b.attitude, &b.velocity_m_s);

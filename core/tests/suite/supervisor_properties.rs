@@ -7,7 +7,7 @@ use quatrack::gains::cascade::BRUSHLESS_50_MS;
 use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{
-    Circumstances, Config, Fault, Guard, Mode, MonitorConfig, Order, Reason, ReferenceReport, Rescue, Sample, Tumble,
+    Asked, Circumstances, Config, Fault, Guard, Mode, MonitorConfig, Order, Reason, ReferenceReport, Sample, Tumble,
 };
 use quatrack::{
     Airframe, Controller, FifthOrderSample, Heading, Limits, Measured, Memory, Quaternion, Rate, State, Target, Tick,
@@ -26,6 +26,7 @@ struct Seen {
     state: Option<State>,
     rates: Vector3<f32>,
     felt: Option<Vector3<f32>>,
+    asked: Asked,
     reference: ReferenceReport,
     goal: Vector3<f32>,
     link: Option<Tick>,
@@ -50,6 +51,7 @@ fn state() -> impl Strategy<Value = State> {
 }
 
 fn seen() -> impl Strategy<Value = Seen> {
+    let asked = prop_oneof![5 => Just(Asked::Places), 1 => Just(Asked::Tilts), 1 => Just(Asked::Rates)];
     let reference = prop_oneof![
         10 => Just(ReferenceReport::Sound),
         1 => Just(ReferenceReport::Bad),
@@ -61,15 +63,16 @@ fn seen() -> impl Strategy<Value = Seen> {
         prop::option::weighted(0.95, state()),
         vector(3.0),
         prop::option::of(vector(12.0)),
-        (reference, vector(5.0)),
+        (asked, reference, vector(5.0)),
         link,
         prop_oneof![20 => Just(3.8), 1 => number(5.0)],
         (chance(0.05), chance(0.004)),
     )
-        .prop_map(|(state, rates, felt, (reference, goal), link, battery_v, (overrun, fault))| Seen {
+        .prop_map(|(state, rates, felt, (asked, reference, goal), link, battery_v, (overrun, fault))| Seen {
             state,
             rates,
             felt,
+            asked,
             reference,
             goal,
             link,
@@ -114,6 +117,7 @@ impl Craft {
         };
         let around = Circumstances {
             link_silence_ticks: seen.link,
+            asked: seen.asked,
             reference: seen.reference,
             limited: self.limited,
             levels: true,
@@ -126,7 +130,7 @@ impl Craft {
         let configs = (&Config::STANDARD, &MonitorConfig::STANDARD);
         let (looked, target, heading) = match self.guard.order(configs, &sample, &around) {
             Order::Off => return None,
-            Order::Fly(looked) => (looked, FifthOrderSample::at_rest(seen.goal, 0.0), Heading::ZERO),
+            Order::Fly(looked) => (looked, &FifthOrderSample::at_rest(seen.goal, 0.0), Heading::ZERO),
             Order::Brake(looked, target, heading) => (looked, target, heading),
             Order::Level(levelled) => {
                 let (forces, limited) = self.memory.level(&self.cascade, &levelled)?;
@@ -134,15 +138,14 @@ impl Craft {
                 return Some(forces);
             }
         };
-        let rescue = Rescue::of(&looked);
         let measured = Measured::new(looked.state).with_body_rates(looked.body_rates_rad_s);
-        match controller.step_to_motors(&mut self.memory, measured, Target::with_sample(&target, heading)) {
+        match controller.step_to_motors(&mut self.memory, measured, Target::with_sample(target, heading)) {
             Ok(step) => {
                 self.limited = step.limited;
                 Some(step.forces_n)
             }
             Err(_) => {
-                let levelled = self.guard.step_failed(self.now, &rescue, 1e-3, true)?;
+                let levelled = self.guard.step_failed(self.now, 1e-3, &around)?;
                 self.memory.level(&self.cascade, &levelled).map(|(forces, _)| forces)
             }
         }
@@ -202,6 +205,7 @@ fn every_mode_is_reached_and_left() {
             }),
             rates: Vector3::new(wobble, 0.0, 0.0),
             felt: None,
+            asked: Asked::Places,
             reference: ReferenceReport::Sound,
             goal: Vector3::new(0.0, 0.0, height),
             link: Some(0),

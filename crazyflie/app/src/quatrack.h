@@ -49,9 +49,9 @@ typedef struct {
   uint16_t forces[4];       /* commanded, thousandths of a motor's largest; 0 under a law of thrust and torque */
   uint16_t limited;         /* bits 0-3 motors, 4-6 thrust, attitude, yaw, 8-11 thrust and body rates of the command */
   uint16_t cycles;          /* processor cycles of the last control step */
-  uint8_t mode;             /* 0 off, 1 flying, 2 descending, 3 blind, 4 no craft */
+  uint8_t mode;             /* 0 off, 1 as asked, 2 to rest and down, 3 stopped, 4 no craft */
   uint8_t table;            /* in use */
-  uint16_t badStates;       /* steps on estimates that nothing can be flown on: motors off */
+  uint16_t badStates;       /* steps on estimates that had to be bridged */
   uint16_t badSetpoints;    /* setpoints that make no sense: to rest and slowly down */
   uint16_t limitedSteps;    /* steps that gave something up */
   uint16_t jumps;           /* setpoints that were not where the ones before led */
@@ -59,6 +59,9 @@ typedef struct {
   uint16_t refusal;         /* why: 1 no such table, 2 none sent, 3 motor lag, 4 unsound, 5 vehicle or rate, 6 law */
   uint16_t putBack;         /* parameters that were no numbers and got their defaults back */
   uint16_t parameter;       /* which was the last, counted from 1 as they are above */
+  uint16_t reason;          /* why the newest flight was left: 0 it was not, 1 bad setpoint, 2 no position or velocity,
+                               3 no attitude, 4 no body rates, 5 no output of the law, 6 motors at their limits, 7 landed,
+                               8 no ground found, 9 tilted, 10 upside down, 11 no climb under thrust */
 } quatrackLog_t;
 
 /* What the cascade flies with, as the flight has shown it. */

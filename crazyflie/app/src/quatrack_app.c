@@ -149,6 +149,7 @@ LOG_ADD(LOG_UINT16, refused, &quatrack.log.refusedTables)
 LOG_ADD(LOG_UINT16, refusal, &quatrack.log.refusal)
 LOG_ADD(LOG_UINT16, putBack, &quatrack.log.putBack)
 LOG_ADD(LOG_UINT16, parameter, &quatrack.log.parameter)
+LOG_ADD(LOG_UINT16, reason, &quatrack.log.reason)
 LOG_GROUP_STOP(quatrackN)
 
 /* What the flight has shown of the air, the motors and what pushes the craft. */

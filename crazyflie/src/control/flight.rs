@@ -2,8 +2,8 @@
 
 use quatrack::Followed;
 use quatrack::nalgebra::Vector3;
+use quatrack::supervisor::Asked;
 
-use super::outcome::Mode;
 use crate::craft::Craft;
 use crate::request::{Horizontal, Request, Turn, Vertical};
 
@@ -14,6 +14,8 @@ pub(super) enum Flight {
     NoCraft,
     /// Motors off.
     Off,
+    /// In the air, with nothing that could be followed yet.
+    Unknown,
     /// Along the motion of its setpoints, at their heading.
     Stream,
     /// As setpoint shaping has it.
@@ -40,14 +42,14 @@ impl Flight {
         Self::Rates { body_rates_rad_s: Vector3::new(p, q, r), thrust_m_s2 }
     }
 
-    /// What flies instead of a setpoint that makes no sense.
-    pub(super) fn of_bad_setpoint(before: &Self) -> Self {
-        let is_by_hand = match before {
-            Self::Guided(request) => matches!(request.horizontal, Horizontal::Tilt(_)),
-            Self::Rates { .. } => true,
-            _ => false,
-        };
-        Self::Guided(if is_by_hand { Request::LEVEL_AND_DESCEND } else { Request::BRAKE_AND_DESCEND })
+    /// How the supervisor has it.
+    #[inline(always)]
+    pub(super) const fn asked(&self) -> Asked {
+        match self {
+            Self::Rates { .. } => Asked::Rates,
+            Self::Guided(Request { horizontal: Horizontal::Tilt(_), .. }) => Asked::Tilts,
+            _ => Asked::Places,
+        }
     }
 
     /// Whether one goes on as the other, but for its figures.
@@ -72,16 +74,6 @@ impl Flight {
                 height: !matches!(request.vertical, Vertical::Thrust(_)),
             },
             _ => Followed::ALL,
-        }
-    }
-
-    /// For the log.
-    pub(super) fn mode(&self) -> Mode {
-        match self {
-            Self::NoCraft => Mode::NoCraft,
-            Self::Off => Mode::Off,
-            Self::Guided(Request { vertical: Vertical::Descent, .. }) => Mode::Descending,
-            _ => Mode::Flying,
         }
     }
 }

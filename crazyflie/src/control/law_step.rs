@@ -1,8 +1,9 @@
 //! One step of one table's controller: sample or reference, and state in; the output, into the outcome.
 
+use quatrack::supervisor::Looked;
 use quatrack::{
     FifthOrderSample, Followed, Handover, Heading, Measured, Memory, Output as LawOutput, Quaternion, Reference,
-    ReferenceError, RigidState, StepError, Target,
+    ReferenceError, StepError, Target,
 };
 
 use super::outcome::{Outcome, Settings};
@@ -41,7 +42,7 @@ pub(super) struct LawStep<'a> {
     pub(super) sample: &'a FifthOrderSample,
     pub(super) heading: Heading,
     pub(super) followed: Followed,
-    pub(super) state: &'a RigidState,
+    pub(super) looked: &'a Looked<'a>,
 }
 
 impl LawStep<'_> {
@@ -136,18 +137,17 @@ impl LawStep<'_> {
 
     #[inline(always)]
     fn measured(&self) -> Measured<'_> {
-        Measured::from(self.state)
+        Measured::new(self.looked.state).with_body_rates(self.looked.body_rates_rad_s)
     }
 
     /// An output as the firmware takes it: a command goes through the body-rate loop to its mixer.
     #[inline(always)]
     fn put(&self, output: &LawOutput, target: Quaternion, outcome: &mut Outcome) -> Result<(), Unflown> {
-        outcome.target = target;
-        outcome.limited = output.limited();
+        (outcome.target, outcome.limited, outcome.has_stepped) = (target, output.limited(), true);
         outcome.output = match output {
             LawOutput::Forces(step) => Output::Forces(step.forces_n),
             LawOutput::Command(step) => {
-                Output::Wrench(self.craft.actuation.wrench(&step.command, &self.state.body_rates_rad_s)?)
+                Output::Wrench(self.craft.actuation.wrench(&step.command, self.looked.body_rates_rad_s)?)
             }
         };
         Ok(())

@@ -3,12 +3,13 @@
 
 use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
+use quatrack::supervisor::{self, Reason, Tumble};
 use quatrack::{FeedForward, Limits, Quaternion};
 
 use crate::output::Output;
 use crate::shaping::Bounds;
 
-/// How the last setpoint is flown, for the log.
+/// What is done with the last setpoint, for the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Mode {
@@ -16,12 +17,66 @@ pub enum Mode {
     Off = 0,
     /// As asked.
     Flying = 1,
-    /// To rest and slowly down: the setpoint makes no sense.
+    /// Not as asked: to rest, or level, and slowly down.
     Descending = 2,
-    /// Motors off: the estimate or the gyroscope is not to be flown on.
-    Blind = 3,
+    /// Motors off until a new flight, or until the first sound estimate of this one.
+    Stopped = 3,
     /// Motors off: the app has not said which craft this is, or there is no table for it.
     NoCraft = 4,
+}
+
+/// Why a flight was left, for the log.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u16)]
+pub enum Why {
+    /// It was not.
+    Nothing = 0,
+    /// The setpoint makes no sense.
+    BadSetpoint = 1,
+    /// No position or velocity for longer than they are bridged.
+    StateLost = 2,
+    /// No attitude.
+    AttitudeLost = 3,
+    /// No body rates.
+    BodyRatesLost = 4,
+    /// The law gave no output on a sound state.
+    StepFailed = 5,
+    /// The motors have been at their limits for longer than allowed.
+    Saturated = 6,
+    /// It has come down.
+    Landed = 7,
+    /// It has been going down for longer than allowed.
+    NoGround = 8,
+    /// Tilted beyond 60 degrees for longer than allowed.
+    Tilted = 9,
+    /// Upside down for longer than allowed.
+    UpsideDown = 10,
+    /// At rest while its motors give all that they have.
+    NoClimb = 11,
+}
+
+impl Why {
+    /// Of what the supervisor does.
+    pub(super) const fn of(mode: supervisor::Mode) -> Option<Self> {
+        let reason = match mode {
+            supervisor::Mode::Tumbled(Tumble::Tilted) => return Some(Self::Tilted),
+            supervisor::Mode::Tumbled(Tumble::UpsideDown) => return Some(Self::UpsideDown),
+            supervisor::Mode::Tumbled(Tumble::NoClimb) => return Some(Self::NoClimb),
+            other => other.reason(),
+        };
+        match reason {
+            Some(Reason::BadReference) => Some(Self::BadSetpoint),
+            Some(Reason::StateLost) => Some(Self::StateLost),
+            Some(Reason::AttitudeLost) => Some(Self::AttitudeLost),
+            Some(Reason::BodyRatesLost) => Some(Self::BodyRatesLost),
+            Some(Reason::StepFailed) => Some(Self::StepFailed),
+            Some(Reason::Saturated) => Some(Self::Saturated),
+            Some(Reason::Landed) => Some(Self::Landed),
+            Some(Reason::NoGround) => Some(Self::NoGround),
+            // Of what the object does not feed: link, geofence, battery, overruns.
+            _ => None,
+        }
+    }
 }
 
 /// What the owner may change beside the table, as the steps take it.
@@ -38,7 +93,7 @@ pub struct Settings {
 /// What the steps have seen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Steps on an estimate or gyroscope that is not to be flown on.
+    /// Steps on an estimate or gyroscope that had to be bridged.
     pub bad_states: u16,
     /// Setpoints that make no sense.
     pub bad_setpoints: u16,
@@ -59,8 +114,8 @@ pub struct Outcome {
     pub target: Quaternion,
     /// Measured position less asked, world frame, m.
     pub error_m: Vector3<f32>,
-    /// Whether nothing could be flown on: motors off.
-    pub is_blind: bool,
+    /// Whether the law of the table has stepped: its observers may look at that.
+    pub has_stepped: bool,
 }
 
 impl Outcome {
@@ -70,6 +125,6 @@ impl Outcome {
         limited: MotorLimited::NOTHING,
         target: Quaternion::IDENTITY,
         error_m: Vector3::new(0.0, 0.0, 0.0),
-        is_blind: false,
+        has_stepped: false,
     };
 }

@@ -149,7 +149,7 @@ impl Inbox {
     /// Takes one more setpoint of a flight along a trajectory, of which only figures are new; whether it is one.
     #[inline(always)]
     fn goes_on(&mut self, setpoint: &abi::Setpoint) -> bool {
-        if comparison::is_another_kind(&self.kept, setpoint) || !parsing::has_sound_motion(setpoint) {
+        if comparison::is_another_kind(&self.kept, setpoint) || !parsing::has_sound_figures(setpoint) {
             return false;
         }
         let is_turned = setpoint.attitude.yaw.to_bits() != self.kept.attitude.yaw.to_bits()

@@ -52,7 +52,7 @@ pub(super) fn parse(setpoint: &abi::Setpoint) -> Parsed {
         Turn::Rate(rate) => rate,
         Turn::Heading => 0.0,
     };
-    if !(is_sound(counting + turning + motion_sum(setpoint)) && (turn != Turn::Heading || headed(setpoint).is_some())) {
+    if !(is_sound(counting + turning + sum(setpoint)) && (turn != Turn::Heading || headed(setpoint).is_some())) {
         return Parsed::Bad;
     }
     if matches!(vertical, Vertical::Thrust(_)) && setpoint.thrust < THRUST_OFF {
@@ -120,10 +120,10 @@ pub(super) fn is_by_yaw(setpoint: &abi::Setpoint) -> bool {
     setpoint.mode.yaw == Mode::ABSOLUTE
 }
 
-/// Whether the motion of a setpoint makes sense.
+/// Whether all figures of a setpoint are numbers that make sense, those too that it does not ask for.
 #[inline(always)]
-pub(super) fn has_sound_motion(setpoint: &abi::Setpoint) -> bool {
-    is_sound(motion_sum(setpoint))
+pub(super) fn has_sound_figures(setpoint: &abi::Setpoint) -> bool {
+    is_sound(sum(setpoint))
 }
 
 /// Whether figures that add up to this are finite.
@@ -132,13 +132,18 @@ fn is_sound(sum: f32) -> bool {
     sum.abs() <= SUM_MAX
 }
 
-/// Sum of the figures of a motion and of the thrust: finite only if all of them are.
+/// Sum of all figures: finite only if all of them are.
 #[inline(always)]
-fn motion_sum(setpoint: &abi::Setpoint) -> f32 {
-    let sum = |v: &abi::Vector| v.x + v.y + v.z;
+fn sum(setpoint: &abi::Setpoint) -> f32 {
+    let vector = |v: &abi::Vector| v.x + v.y + v.z;
+    let angles = |a: &abi::Attitude| a.roll + a.pitch + a.yaw;
+    let q = &setpoint.attitude_quaternion;
     setpoint.thrust
-        + sum(&setpoint.position)
-        + sum(&setpoint.velocity)
-        + sum(&setpoint.acceleration)
-        + sum(&setpoint.jerk)
+        + vector(&setpoint.position)
+        + vector(&setpoint.velocity)
+        + vector(&setpoint.acceleration)
+        + vector(&setpoint.jerk)
+        + angles(&setpoint.attitude)
+        + angles(&setpoint.attitude_rate)
+        + (q.x + q.y + q.z + q.w)
 }

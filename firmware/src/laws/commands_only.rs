@@ -2,7 +2,7 @@
 
 use quatrack::gains::table::{AcceptedTable, TableKind};
 use quatrack::link::{LawChoice, Table};
-use quatrack::supervisor::{Certified, Levelled, Looked, Rescue};
+use quatrack::supervisor::{Certified, Levelled, Looked};
 use quatrack::{
     Actuation, ActuatorAware, Controller, FifthOrderSample, Heading, Law, Limits, Measured, Memory, Output, Settings,
     StepError, Target,
@@ -65,11 +65,6 @@ impl Laws {
         _heading: Heading,
     ) -> Result<Output, StepError> {
         Err(StepError::NoActuation)
-    }
-
-    /// Not without motors.
-    pub(crate) fn brake_from(&mut self, _: &Rescue, _: &FifthOrderSample, _: Heading) -> Option<Output> {
-        None
     }
 
     /// Not without motors.

@@ -4,7 +4,7 @@ use quatrack::cascade::{Cascade, CascadeLimits};
 use quatrack::gains::cascade::CRAZYFLIE_2_1_DEFAULT;
 use quatrack::gains::table::CascadeTable;
 use quatrack::link::Table;
-use quatrack::supervisor::{Certified, Coverage, Levelled, Looked, Rescue};
+use quatrack::supervisor::{Certified, Coverage, Levelled, Looked};
 use quatrack::{Controller, FifthOrderSample, Heading, Limits, Measured, MotorStep, Output, StepError, Target};
 
 use super::Laws;
@@ -74,19 +74,8 @@ impl Laws {
         let controller = Controller::new(&CASCADE, Limits::NONE);
         match controller.step_to_motors(&mut self.memory, measured, target) {
             Ok(step) => Ok(Output::Forces(step)),
-            Err(error) => self.levelled(&Rescue::of(looked).level(1e-3)).ok_or(error),
+            Err(error) => self.levelled(&Levelled::of(looked, 1e-3)).ok_or(error),
         }
-    }
-
-    /// The same from a state that a step failed on.
-    #[cold]
-    pub(crate) fn brake_from(
-        &mut self,
-        rescue: &Rescue,
-        sample: &FifthOrderSample,
-        heading: Heading,
-    ) -> Option<Output> {
-        self.brake(&rescue.looked(), sample, heading).ok()
     }
 
     /// Flies an attitude alone.

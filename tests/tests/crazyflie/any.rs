@@ -4,9 +4,17 @@
 use std::sync::atomic::Ordering::Relaxed;
 
 use proptest::prelude::*;
+use quatrack::cascade::CascadeLimits;
+use quatrack::gains::Scales;
+use quatrack::{FeedForward, Leash, Limits};
 use quatrack_crazyflie::abi::{Attitude, Control, Mode, Modes, Quaternion, SensorData, Setpoint, State, Vector};
+use quatrack_crazyflie::control::{self, Controller, Settings, Why};
+use quatrack_crazyflie::craft::Craft;
 use quatrack_crazyflie::ffi;
-use quatrack_simulation::crazyflie::{Firmware, Sensors, Tune};
+use quatrack_crazyflie::output::Output;
+use quatrack_crazyflie::shaping::Bounds;
+use quatrack_crazyflie::tables::{Table, Tuning};
+use quatrack_simulation::crazyflie::{Firmware, Sensors, Tune, platform};
 use quatrack_simulation::vehicles;
 
 /// Numbers that make sense most of the time.
@@ -138,4 +146,53 @@ proptest! {
             }
         }
     }
+
+    #[test]
+    fn motors_stand_still_while_the_craft_is_stopped_and_until_a_new_flight(
+        flown in prop::collection::vec((setpoint(), state(), 1..20_u32), 1..60),
+        table in prop_oneof![4 => Just(0_u8), 1 => Just(2_u8)],
+    ) {
+        let mut controller = controller(table);
+        let (mut step, mut stopped) = (10, false);
+        for ((setpoint, hold), (state, sensors), times) in flown {
+            let setpoint = Setpoint { timestamp: setpoint.timestamp * step, ..setpoint };
+            let mut sensors = sensors;
+            for _ in 0..hold * times {
+                // A gyroscope that works is never quite still.
+                sensors.gyro[2] += if step % 4 < 2 { 0.1 } else { -0.1 };
+                let is_new = controller.step(&setpoint, &sensors, &state, step);
+                let mode = controller.mode();
+                if is_new {
+                    let output = &controller.outcome().output;
+                    let is_off = *output == Output::OFF;
+                    if matches!(mode, control::Mode::Off | control::Mode::Stopped) {
+                        prop_assert!(is_off, "{mode:?}: {output:?}");
+                    }
+                    if let Output::Forces(forces) = output {
+                        let most = controller.craft().airframe().figures().force_max_n;
+                        prop_assert!(forces.iter().all(|force| (0.0..=most).contains(force)), "{forces:?}");
+                    }
+                    stopped &= mode != control::Mode::Off;
+                    prop_assert!(!stopped || mode == control::Mode::Stopped, "{mode:?}");
+                    stopped |= mode == control::Mode::Stopped && controller.why() != Why::Nothing;
+                } else {
+                    controller.between(&setpoint, &sensors, step);
+                    stopped &= controller.mode() != control::Mode::Off;
+                }
+                step += 1;
+            }
+        }
+    }
+}
+
+/// Of a Crazyflie 2.1 whose motors' lag is told to be 20 ms.
+fn controller(table: u8) -> Controller {
+    let craft = Craft::of(&platform(&vehicles::by_name("crazyflie-2.1").unwrap())).unwrap().with_motor_lag(0.02);
+    let tuning = Tuning { scales: Scales::ONE, air: craft.air, limits: CascadeLimits::STANDARD };
+    let bounds = Bounds { leash: Leash { length_m: 1.0 }, speed_m_s: 1.5, acceleration_m_s2: 4.0 };
+    let limits = Limits::of(craft.airframe(), nalgebra::Vector3::new(20.0, 20.0, 10.0));
+    let settings = Settings { bounds, limits, feed_forward: FeedForward::With };
+    let mut controller = Controller::new(craft, Table::choose(table, &craft, &tuning, None).unwrap(), settings);
+    controller.change_craft(&craft);
+    controller
 }

@@ -243,7 +243,7 @@ fn what_makes_no_sense_goes_level_and_slowly_down() {
 }
 
 #[test]
-fn motors_are_off_without_a_setpoint_and_without_an_estimate() {
+fn motors_are_off_without_a_setpoint_and_turn_on_where_an_estimate_is_missing_for_a_moment() {
     let craft = vehicle("crazyflie-2.1");
     let mut firmware = Firmware::start(&craft, &DEFAULT, QUIET);
     let hovering = RigidState::at_rest(Vector3::z(), craft.hover_thrust_n());
@@ -259,9 +259,13 @@ fn motors_are_off_without_a_setpoint_and_without_an_estimate() {
         firmware.step(&hovering, Some(&setpoint));
     }
     assert!(firmware.control().payload.iter().all(|force| *force > 0.2), "{:?}", firmware.control());
+    let flown = *firmware.control();
     let lost = RigidState { velocity_m_s: Vector3::new(f64::NAN, 0.0, 0.0), ..hovering };
     for _ in 0..4 {
         firmware.step(&lost, Some(&setpoint));
     }
-    assert_eq!(*firmware.control(), off);
+    for (found, before) in firmware.control().payload.iter().zip(flown.payload) {
+        // Carried on for 4 ms by what is felt, it is where it was.
+        assert!((found - before).abs() < 0.01, "{:?}", firmware.control());
+    }
 }

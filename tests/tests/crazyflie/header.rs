@@ -91,7 +91,8 @@ fn every_field_of_the_header_lies_where_the_objects_does() {
             refused_tables,
             refusal,
             put_back,
-            parameter
+            parameter,
+            reason
         ]
     );
     assert_lies_as!(

@@ -1,6 +1,7 @@
 //! The Crazyflie controller through its C interface.
 
 mod any;
+mod faults;
 mod flights;
 mod header;
 mod in_air;

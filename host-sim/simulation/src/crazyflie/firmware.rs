@@ -228,6 +228,18 @@ impl Firmware {
         self.distribute()
     }
 
+    /// One step on an estimate and sensors as they are given, whatever they are.
+    pub fn step_given(
+        &mut self,
+        estimate: &abi::State,
+        sensors: &abi::SensorData,
+        setpoint: &abi::Setpoint,
+    ) -> Vector4<f64> {
+        ffi::controllerOutOfTree(&mut self.control, setpoint, sensors, estimate, self.step);
+        self.step += 1;
+        self.distribute()
+    }
+
     /// The owner asks for another table.
     pub fn ask_for(&mut self, table: u8) {
         ffi::quatrack.parameters.table.store(table, Relaxed);

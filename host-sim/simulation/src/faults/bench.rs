@@ -1,4 +1,4 @@
-//! One flight with a fault: the core's cascade under the core's supervisor, on a plant in air over a floor.
+//! One flight with a fault, on a plant in air over a floor.
 
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,16 +7,14 @@ use nalgebra::{Unit, Vector3, Vector4};
 use quatrack::cascade::{Cascade, CascadeLimits};
 use quatrack::gains::cascade::{BRUSHLESS_DEFAULT, CRAZYFLIE_2_1_DEFAULT, UPGRADE_KIT_DEFAULT};
 use quatrack::gains::table::BuiltInCascade;
-use quatrack::mixer::MotorLimited;
-use quatrack::supervisor::{Circumstances, Config, Guard, Mode, MonitorConfig, Order, ReferenceReport, Rescue, Sample};
-use quatrack::{
-    Airframe, Controller, FifthOrderSample, FlatSample, Heading, Limits, Measured, Memory, MotorForces, Quaternion,
-    Reference, State, Target, Tick,
-};
+use quatrack::supervisor::Mode;
+use quatrack::{Airframe, Quaternion, State};
 use quatrack_design::vehicle::Vehicle;
 use serde::Serialize;
 
-use super::kinds::{Fault, Signals};
+use super::kinds::{Fault, Flown, Signals};
+use super::object::Object;
+use super::under_guard::UnderGuard;
 use crate::flight::motor_loop::{PERIOD_S, RATE};
 use crate::plant::{
     Air, Environment, Ground, Load, Plant, PlantError, RigidState, Source, Stream, Truth, Wall, Wind, Wrench,
@@ -115,12 +113,24 @@ fn course(t: f64, speed: f64) -> [Vector3<f64>; 3] {
     [up + Vector3::x() * way, Vector3::x() * v, Vector3::x() * a]
 }
 
-/// Flies a fault on a craft.
+/// Flies a fault on a craft, by the core's cascade under its supervisor.
 ///
 /// # Errors
 /// [`PlantError`] for what no plant can be.
 pub fn fly(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
-    let Crafts { vehicle, cascade } = craft;
+    flown(fault, craft, &mut UnderGuard::armed(&craft.cascade))
+}
+
+/// The same by the Crazyflie object, through its C interface.
+///
+/// # Errors
+/// [`PlantError`] for what no plant can be.
+pub fn fly_object(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
+    flown(fault, craft, &mut Object::hovering(&craft.vehicle))
+}
+
+fn flown(fault: &Fault, craft: &Crafts, flight: &mut impl Flown) -> Result<Row, PlantError> {
+    let vehicle = &craft.vehicle;
     let off = &fault.craft;
     let mut truth = Truth::as_designed(vehicle);
     if let Some(motors) = &vehicle.flown().motors {
@@ -145,14 +155,6 @@ pub fn fly(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
     let start = RigidState::at_rest(course(0.0, 0.0)[0], vehicle.hover_thrust_n());
     let hand = Hand::default();
     let mut plant = Plant::new(vehicle, &environment, &truth, &start, 1)?.with_load(hand.clone());
-    let mut flight = Flight {
-        cascade,
-        guard: Guard::new(),
-        memory: Memory::hovering(cascade.airframe()),
-        limited: MotorLimited::NOTHING,
-        bridged: false,
-    };
-    flight.guard.arm(0);
     let noise = [Source::Position, Source::Velocity, Source::Gyroscope, Source::Accelerometer];
     let mut noise = noise.map(|source| Stream::new(1, source));
     let mut past: Vec<(State, Vector3<f32>)> = Vec::new();
@@ -198,11 +200,10 @@ pub fn fly(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
         }
         let since_ms = 2 * step.saturating_sub(first);
         if !signals.is_skipped {
-            let forces = flight.step(2 * step, &signals);
-            commands_n = forces.map_or(Vector4::zeros(), |forces| Vector4::from(forces.map(f64::from)));
+            commands_n = flight.step(2 * step, &signals).unwrap_or_default();
         }
-        let mode = flight.guard.mode();
-        if has_begun && row.detected_ms.is_none() && (mode != Mode::Flying || flight.bridged) {
+        let mode = flight.mode();
+        if has_begun && row.detected_ms.is_none() && (mode != Mode::Flying || flight.is_bridging()) {
             row.detected_ms = Some(since_ms);
         }
         if has_begun && row.motors_off_ms.is_none() && !mode.is_in_air() {
@@ -238,7 +239,7 @@ pub fn fly(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
         last_down = if is_down { 0.0 } else { -state.velocity_m_s.z };
     }
     row.crashed |= row.farthest_m > LOST_M;
-    row.end_state = EndState(flight.guard.mode());
+    row.end_state = EndState(flight.mode());
     Ok(row)
 }
 
@@ -274,84 +275,6 @@ impl Load for Hand {
     }
 }
 
-struct Flight<'a> {
-    cascade: &'a Cascade,
-    guard: Guard,
-    memory: Memory,
-    limited: MotorLimited,
-    /// The last step was flown on a bridged state.
-    bridged: bool,
-}
-
-impl Flight<'_> {
-    fn step(&mut self, now: Tick, signals: &Signals<'_>) -> Option<MotorForces> {
-        const CONFIGS: (&Config, &MonitorConfig) = (&Config::STANDARD, &MonitorConfig::STANDARD);
-        let [heading_rad, heading_rate_rad_s] = signals.heading;
-        let flat = signals.asked.map(|[position_m, velocity_m_s, acceleration_m_s2]| FlatSample {
-            position_m,
-            velocity_m_s,
-            acceleration_m_s2,
-            jerk_m_s3: Vector3::zeros(),
-            heading_rad,
-            heading_rate_rad_s,
-        });
-        let reference = match &flat {
-            None => ReferenceReport::Missing,
-            Some(flat) if Reference::from_flat(flat).is_ok() => ReferenceReport::Sound,
-            Some(_) => ReferenceReport::Bad,
-        };
-        let mass_kg = self.cascade.airframe().figures().mass_kg;
-        let sample = Sample {
-            now,
-            state: signals.state.as_ref(),
-            body_rates_rad_s: Some(&signals.body_rates),
-            specific_force_m_s2: signals.felt.as_ref(),
-            thrust_m_s2: self.memory.forces_n().iter().sum::<f32>() / mass_kg,
-        };
-        let around = Circumstances {
-            link_silence_ticks: Some(signals.silence),
-            reference,
-            limited: self.limited,
-            levels: true,
-            starts_near: true,
-            battery_v: Some(signals.battery_v),
-            overrun: signals.overrun,
-            fault: None,
-        };
-        let (looked, target, heading) = match self.guard.order(CONFIGS, &sample, &around) {
-            Order::Off => {
-                self.memory.run_down(0.9);
-                return None;
-            }
-            Order::Fly(looked) => (looked, FifthOrderSample::of_jerk(flat?), Heading::from_angle(heading_rad)),
-            Order::Brake(looked, target, heading) => (looked, target, heading),
-            Order::Level(levelled) => {
-                let (forces, limited) = self.memory.level(self.cascade, &levelled)?;
-                self.limited = limited;
-                return Some(forces);
-            }
-        };
-        self.bridged = looked.soundness != quatrack::supervisor::Soundness::Sound;
-        let rescue = Rescue::of(&looked);
-        let measured = Measured::new(looked.state).with_body_rates(looked.body_rates_rad_s);
-        let measured = match &signals.felt {
-            Some(felt) => measured.with_specific_force(felt),
-            None => measured,
-        };
-        let controller = Controller::new(self.cascade, Limits::NONE);
-        match controller.step_to_motors(&mut self.memory, measured, Target::with_sample(&target, heading)) {
-            Ok(step) => {
-                self.limited = step.limited;
-                Some(step.forces_n)
-            }
-            Err(_) => {
-                let levelled = self.guard.step_failed(now, &rescue, CONFIGS.1.tick_s, true)?;
-                self.memory.level(self.cascade, &levelled).map(|(forces, _)| forces)
-            }
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::kinds;
@@ -368,6 +291,17 @@ mod tests {
         names.sort_unstable();
         names.dedup();
         assert!(names.len() >= 65 && names.len() == kinds().len(), "{} of {}", names.len(), kinds().len());
+    }
+
+    #[test]
+    fn nothing_recoverable_is_lost_and_the_rest_ends_with_motors_off() {
+        for vehicle in super::super::VEHICLES {
+            let craft = Crafts::by_name(vehicle).unwrap();
+            for fault in kinds() {
+                let row = fly(&fault, &craft).unwrap();
+                assert!(row.is_as_promised(), "{row:?}");
+            }
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Every kind of fault: what it spoils and from when on, whether a craft has to survive it, and what PX4 and Bitcraze promise there.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3, Vector4};
+use quatrack::supervisor::Mode;
 use quatrack::{Quaternion, State, Tick};
 
 /// What a step is given, to be spoilt.
@@ -38,6 +39,18 @@ impl Signals<'_> {
     pub fn since_s(&self) -> f64 {
         f64::from(self.step) * 0.002
     }
+}
+
+/// What flies a craft through a fault.
+pub(super) trait Flown {
+    /// Motor forces of a step at a tick, N; nothing where the motors are off.
+    fn step(&mut self, now: Tick, signals: &Signals<'_>) -> Option<Vector4<f64>>;
+
+    /// What it does.
+    fn mode(&self) -> Mode;
+
+    /// Whether the last step was flown on a bridged state.
+    fn is_bridging(&self) -> bool;
 }
 
 /// What is wrong with the craft from the start.

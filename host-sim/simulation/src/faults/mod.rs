@@ -1,17 +1,20 @@
 //! Flights with something wrong: a kind of fault and a craft in; when it was noticed, how the flight ended and where, out.
 //!
-//! The core's cascade under the core's supervisor, at 500 Hz, on the plant in air with what is known of each craft; estimates with
-//! noise at every step, setpoints to the crackle. What happens in flight begins after two seconds of it.
+//! The core's cascade under the core's supervisor, or the Crazyflie object, at 500 Hz, on the plant in air with what is known of
+//! each craft; estimates with noise at every step. What happens in flight begins after two seconds of it.
 //!
 //! ```text
-//! bench        one flight under the supervisor
-//!   kinds      every kind of fault: what it spoils, and what others promise there
+//! bench                  one flight
+//!   under_guard, object  what flies it: the core's cascade under the core's supervisor; the Crazyflie object
+//!     kinds              every kind of fault: what it spoils, and what others promise there
 //! ```
 
 mod bench;
 mod kinds;
+mod object;
+mod under_guard;
 
-pub use self::bench::{Crafts, EndState, Row, fly};
+pub use self::bench::{Crafts, EndState, Row, fly, fly_object};
 pub use self::kinds::{Craft, Fault, Signals, kinds};
 
 /// The crafts that are flown.

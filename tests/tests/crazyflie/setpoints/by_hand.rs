@@ -129,11 +129,12 @@ fn a_pilot_takes_over_from_full_states() {
 }
 
 #[test]
-fn an_angle_beside_a_rate_goes_level_and_slowly_down() {
+fn an_angle_beside_a_rate_stops_and_goes_slowly_down() {
     let (mut flight, mut setpoint) = (Flight::hovering(), Setpoint::OFF);
     let flown = FlightMode { roll_rate: true, ..FlightMode::default() };
     rpyt(&mut setpoint, flown, [30.0, 0.0, 0.0], flight.hover_thrust() as u16);
-    flight.hold(&setpoint, 1500);
+    // It stays for a second and a half, and goes down at its speed half a second later.
+    flight.hold(&setpoint, 2100);
     assert_eq!(mode(), DESCENDING);
     assert_near(&[flight.state.velocity_m_s.z, flight.euler_deg()[0]], &[-0.3, 0.0], 0.05);
 }
