@@ -13,7 +13,7 @@ use quatrack_crazyflie::craft::Craft;
 use quatrack_crazyflie::ffi;
 use quatrack_crazyflie::output::Output;
 use quatrack_crazyflie::shaping::Bounds;
-use quatrack_crazyflie::tables::{Table, Tuning};
+use quatrack_crazyflie::tables::{Brought, Table, Tuning};
 use quatrack_simulation::crazyflie::{Firmware, Sensors, Tune, platform};
 use quatrack_simulation::vehicles;
 
@@ -192,7 +192,7 @@ fn controller(table: u8) -> Controller {
     let bounds = Bounds { leash: Leash { length_m: 1.0 }, speed_m_s: 1.5, acceleration_m_s2: 4.0 };
     let limits = Limits::of(craft.airframe(), nalgebra::Vector3::new(20.0, 20.0, 10.0));
     let settings = Settings { bounds, limits, feed_forward: FeedForward::With };
-    let mut controller = Controller::new(craft, Table::choose(table, &craft, &tuning, None).unwrap(), settings);
+    let mut controller = Controller::new(craft, Table::choose(table, &craft, &tuning, Brought::default()).unwrap(), settings);
     controller.change_craft(&craft);
     controller
 }
