@@ -7,7 +7,7 @@
 //!                                        └──────────────────▶  the product's law, or Cascade::level
 //! ```
 
-use super::machine::{Conditions, Config, ReferenceReport, Supervisor, UPRIGHT_LEAST, is_at_rest, within};
+use super::machine::{Conditions, Config, ReferenceReport, Supervisor, UPRIGHT_LEAST, Verdict, is_at_rest, within};
 use super::mode::{Action, Fault, Mode, Reason};
 use super::monitor::{Looked, Monitor, MonitorConfig, Sample};
 use super::way::{Asked, Levelled, Order, Way};
@@ -106,12 +106,19 @@ impl Guard {
         }
         // Copies: on the way above nothing of it has to be in memory.
         let (sample, around) = (*sample, *around);
-        self.order_closely(configs, &sample, &around)
+        if around.levels {
+            return self.order_closely(configs, &sample, &around);
+        }
+        // A product that never levels links nothing of the ways down.
+        let Self { monitor, supervisor, way } = self;
+        let (verdict, looked) = judge(monitor, supervisor, false, configs, &sample, &around);
+        *way = Way::NONE;
+        if verdict.action == Action::Fly { Order::Fly(looked) } else { Order::Off }
     }
 
     /// Whether all is well and the flight goes on as asked, on [`Self::looked`]: the first half of [`Self::order`], for a product that
-    /// fetches what only the second half looks at, [`Self::order_closely`], where it has to. The sample's specific force and thrust are
-    /// not looked at.
+    /// fetches what only the second half looks at, [`Self::order_closely`], where it has to. The sample's specific force is not looked at;
+    /// a thrust of infinity is one that nobody has looked up yet.
     #[inline(always)]
     pub fn goes_on(
         &mut self,
@@ -129,7 +136,9 @@ impl Guard {
             && around.battery_v.is_none_or(|volts| volts >= config.battery_least_v)
             && supervisor.is_in_range(limited.any(), sample.now, config)
             && sample.state.is_some_and(|state| tilted(state) <= TILTED_MOST)
-            && (!cuts_thrust(limited) || sample.state.is_some_and(|state| !is_at_rest(&state.velocity_m_s)))
+            && (!cuts_thrust(limited)
+                || sample.thrust_m_s2 <= CLIMB_LEAST_M_S2
+                || sample.state.is_some_and(|state| !is_at_rest(&state.velocity_m_s)))
             && self.monitor.keeps(monitor, sample)
     }
 
@@ -144,41 +153,21 @@ impl Guard {
     #[inline(never)]
     pub fn order_closely(
         &mut self,
-        (config, monitor): (&Config, &MonitorConfig),
+        configs: (&Config, &MonitorConfig),
         sample: &Sample<'_>,
         around: &Circumstances,
     ) -> Order<'_> {
-        let Self { monitor: seen, supervisor, way } = self;
-        let looked = seen.look_closely(monitor, sample);
-        let turns_over = around.asked == Asked::Rates && supervisor.mode() == Mode::Flying;
-        let conditions = Conditions {
-            now: sample.now,
-            link_silence_ticks: around.link_silence_ticks,
-            soundness: looked.soundness,
-            upright: if turns_over { 1.0 } else { 1.0 - 2.0 * tilted(looked.state) },
-            position_m: looked.state.position_m,
-            velocity_m_s: looked.state.velocity_m_s,
-            reference: around.reference,
-            limited: around.limited.any(),
-            limited_thrust: cuts_thrust(around.limited) && sample.thrust_m_s2 > CLIMB_LEAST_M_S2,
-            levels: around.levels,
-            starts_near: around.starts_near,
-            landed: way.has_landed(sample.now),
-            battery_v: around.battery_v,
-            overrun: around.overrun,
-            fault: around.fault,
-        };
-        let verdict = supervisor.step(config, &conditions);
+        let Self { monitor, supervisor, way } = self;
+        let (verdict, looked) = judge(monitor, supervisor, way.has_landed(sample.now), configs, sample, around);
         match verdict.action {
             Action::Fly => Order::Fly(looked),
-            // A product that never levels links nothing of what follows.
             _ if !around.levels => {
                 *way = Way::NONE;
                 Order::Off
             }
             _ => {
                 let felt = sample.specific_force_m_s2;
-                way.instead(verdict, looked, (sample.now, monitor.tick_s, felt), around.asked)
+                way.instead(verdict, looked, (sample.now, configs.1.tick_s, felt), around.asked)
             }
         }
     }
@@ -215,6 +204,39 @@ impl Guard {
     pub fn stop(&mut self, reason: Reason, now: Tick) -> bool {
         self.supervisor.stop(reason, now).stopped
     }
+}
+
+/// What the monitor makes of a sample, and what the supervisor says to it.
+#[cold]
+#[inline(never)]
+fn judge<'m>(
+    monitor: &'m mut Monitor,
+    supervisor: &mut Supervisor,
+    landed: bool,
+    (config, monitor_config): (&Config, &MonitorConfig),
+    sample: &Sample<'_>,
+    around: &Circumstances,
+) -> (Verdict, Looked<'m>) {
+    let looked = monitor.look_closely(monitor_config, sample);
+    let turns_over = around.asked == Asked::Rates && supervisor.mode() == Mode::Flying;
+    let conditions = Conditions {
+        now: sample.now,
+        link_silence_ticks: around.link_silence_ticks,
+        soundness: looked.soundness,
+        upright: if turns_over { 1.0 } else { 1.0 - 2.0 * tilted(looked.state) },
+        position_m: looked.state.position_m,
+        velocity_m_s: looked.state.velocity_m_s,
+        reference: around.reference,
+        limited: around.limited.any(),
+        limited_thrust: cuts_thrust(around.limited) && sample.thrust_m_s2 > CLIMB_LEAST_M_S2,
+        levels: around.levels,
+        starts_near: around.starts_near,
+        landed,
+        battery_v: around.battery_v,
+        overrun: around.overrun,
+        fault: around.fault,
+    };
+    (supervisor.step(config, &conditions), looked)
 }
 
 /// Half of what the vertical component of the thrust axis is less than 1.

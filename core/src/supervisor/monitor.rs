@@ -55,7 +55,7 @@ const NORM_SQUARED_NEAR: [f32; 2] = [0.98, 1.02];
 const FORCE_MAX_M_S2: f32 = 157.0;
 /// Change of a body rate from which on the gyroscope moves, rad/s: one step of its output at 2000 degrees a second.
 const MOVED_RAD_S: f32 = 1e-3;
-/// How long an estimate may stay the same before anybody looks whether it stands still, ticks: three periods of 100 Hz.
+/// How long an estimate or body rates may stay the same before anybody looks whether they stand still, ticks: three periods of 100 Hz.
 const QUIET_TICKS: Tick = 30;
 /// Drag over mass that bridges a velocity where there is no accelerometer, 1/s.
 const DRAG_PER_S: f32 = 0.4;
@@ -114,6 +114,8 @@ pub struct Monitor {
     given: State,
     rates: Vector3<f32>,
     at: Tick,
+    /// When the body rates were others the last time.
+    turned_at: Tick,
     /// A sound estimate has come.
     is_known: bool,
     /// One has, and nothing has been bridged since.
@@ -162,7 +164,16 @@ impl Monitor {
     /// Nothing seen.
     pub const fn new() -> Self {
         let given = State { position_m: ZERO, attitude: Quaternion::IDENTITY, velocity_m_s: ZERO };
-        Self { given, rates: ZERO, at: 0, is_known: false, is_well: false, is_bridged: false, bridge: None }
+        Self {
+            given,
+            rates: ZERO,
+            at: 0,
+            turned_at: 0,
+            is_known: false,
+            is_well: false,
+            is_bridged: false,
+            bridge: None,
+        }
     }
 
     /// Looks at what a step is given.
@@ -180,17 +191,22 @@ impl Monitor {
         let is_sound = self.is_well
             && is_attitude(state.attitude, NORM_SQUARED_NEAR)
             && is_place(state, config)
-            && (sample.body_rates_rad_s.is_none() || is_turning(rates, config) && is_moving(rates, &self.rates));
+            && (sample.body_rates_rad_s.is_none() || is_turning(rates, config));
         if !is_sound {
             return false;
         }
-        // An estimate that comes more rarely than steps is the same in between.
+        // An estimate that comes more rarely than steps is the same in between; body rates may be, too.
         let is_held = sample.body_rates_rad_s.is_some() && is_same(state, &self.given);
-        if is_held && sample.now.wrapping_sub(self.at) > QUIET_TICKS {
+        let turns = sample.body_rates_rad_s.is_none() || is_moving(rates, &self.rates);
+        let quiet = |since: Tick| sample.now.wrapping_sub(since) > QUIET_TICKS;
+        if is_held && quiet(self.at) || !turns && quiet(self.turned_at) {
             return false;
         }
         if !is_held {
             self.at = sample.now;
+        }
+        if turns {
+            self.turned_at = sample.now;
         }
         (self.given, self.rates) = (*state, *rates);
         true
@@ -265,6 +281,9 @@ impl Monitor {
         if let Some(state) = sample.state {
             self.given = *state;
         }
+        if given_rates.is_none_or(|rates| rates != self.rates) {
+            self.turned_at = now;
+        }
         (self.rates, self.at) = (given_rates.unwrap_or(ZERO), now);
 
         let soundness = bridge.soundness(self.is_known, config, now);
@@ -300,7 +319,7 @@ impl Monitor {
             bridge.still_gyroscope = None;
             return false;
         }
-        let still = bridge.still_gyroscope.get_or_insert(Still::new(self.at, state.attitude));
+        let still = bridge.still_gyroscope.get_or_insert(Still::new(self.turned_at, state.attitude));
         still.has_moved |= state.attitude != still.other;
         still.has_moved && sample.now.wrapping_sub(still.from) >= config.frozen_ticks
     }

@@ -389,7 +389,7 @@ fn goes_on(
         state: Some(&state),
         body_rates_rad_s: Some(&rates),
         specific_force_m_s2: None,
-        thrust_m_s2: 0.0,
+        thrust_m_s2: f32::INFINITY,
     };
     guard.goes_on(CONFIGS, &sample, &Circumstances { limited, ..WELL })
 }
