@@ -52,7 +52,7 @@ impl Source<'_> {
 fn fly(bytes: &[u8]) -> Option<()> {
     let mut source = Source(bytes);
     let names = ["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"];
-    let vehicle = vehicles::by_name(names[usize::from(source.byte()? % 3)])?;
+    let vehicle = vehicles::by_name(names[usize::from(source.byte()? % 3)]).ok()?;
     let _alone = Firmware::start(&vehicle, &Tune::new(0, 0.0), Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 });
     let most_n = 4.0 * vehicle.motors().thrust_max_n as f32 * 1.000_1;
     let (mut control, mut step) = (Control::default(), 10_u32);
@@ -77,7 +77,8 @@ fn fly(bytes: &[u8]) -> Option<()> {
             attitude_quaternion: source.quaternion(any)?,
             ..State::default()
         };
-        let sensors = SensorData { gyro: source.vector(any)?, ..SensorData::default() };
+        let gyro = [source.number(any)?, source.number(any)?, source.number(any)?];
+        let sensors = SensorData { gyro, ..SensorData::default() };
         ffi::quatrack.parameters.table.store(source.byte()? % 8, Relaxed);
         ffi::quatrackService();
         for _ in 0..=what >> 3 {
