@@ -20,9 +20,10 @@ const SLOPE_MAX_M_S3: f32 = 15.0;
 /// What is left of the slope after a step with the disturbance on its bound.
 const SLOPE_DECAY: f32 = 0.95;
 
-/// Velocity jump along an axis, between a step and what was expected of it, that no air makes, m/s: that of 15 m/s^2 while an
-/// estimate is held for 10 ms. A wall stops a craft faster.
-const JUMP_M_S: f32 = 0.15;
+/// Velocity jump along an axis, between a step and what was expected of it, that no air makes, m/s: that of 25 m/s^2 while an
+/// estimate is held for 10 ms, and what a disturbance of 11 m/s^2 that is not learned yet leaves at every step. A wall stops a craft
+/// faster.
+const JUMP_M_S: f32 = 0.25;
 /// Jump beyond which it is another estimate, or the first one, m/s.
 const ANOTHER_M_S: f32 = 3.0;
 

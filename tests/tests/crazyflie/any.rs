@@ -192,7 +192,8 @@ fn controller(table: u8) -> Controller {
     let bounds = Bounds { leash: Leash { length_m: 1.0 }, speed_m_s: 1.5, acceleration_m_s2: 4.0 };
     let limits = Limits::of(craft.airframe(), nalgebra::Vector3::new(20.0, 20.0, 10.0));
     let settings = Settings { bounds, limits, feed_forward: FeedForward::With };
-    let mut controller = Controller::new(craft, Table::choose(table, &craft, &tuning, Brought::default()).unwrap(), settings);
+    let mut controller =
+        Controller::new(craft, Table::choose(table, &craft, &tuning, Brought::default()).unwrap(), settings);
     controller.change_craft(&craft);
     controller
 }
