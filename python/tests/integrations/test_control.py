@@ -41,7 +41,7 @@ def test_a_vehicles_model_reaches_to_its_motors():
     system = ours.hover("crazyflie-2.1-brushless")
     assert system.A.shape == (16, 16) and system.B.shape == (16, 4)
     # Four lags.
-    assert sum(np.isclose(system.poles(), -1.0 / 0.066)) == 4
+    assert sum(np.isclose(system.poles(), -1.0 / 0.05)) == 4
 
 
 def test_gains_along_a_trajectory_are_no_system():
