@@ -41,6 +41,21 @@ pub struct Circumstances {
     pub fault: Option<Fault>,
 }
 
+impl Circumstances {
+    /// Nothing is wrong, in flight, on a product without link, cell voltage or fence that levels.
+    pub const WELL: Self = Self {
+        link_silence_ticks: Some(0),
+        asked: Asked::Places,
+        reference: ReferenceReport::Sound,
+        limited: MotorLimited::NOTHING,
+        levels: true,
+        starts_near: true,
+        battery_v: None,
+        overrun: false,
+        fault: None,
+    };
+}
+
 /// Monitor, state machine, and the way down.
 #[derive(Clone, Copy, Debug)]
 pub struct Guard {

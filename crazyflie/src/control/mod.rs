@@ -48,19 +48,6 @@ const ABSENT_MS: u32 = 25;
 /// What the supervisor holds a flight to: ticks are the firmware's steps of 1 ms.
 const CONFIGS: (&Config, &MonitorConfig) = (&Config::STANDARD, &MonitorConfig::STANDARD);
 
-/// A step of which nothing is wrong.
-const WELL: Circumstances = Circumstances {
-    link_silence_ticks: Some(0),
-    asked: Asked::Places,
-    reference: ReferenceReport::Sound,
-    limited: MotorLimited::NOTHING,
-    levels: true,
-    starts_near: true,
-    battery_v: None,
-    overrun: false,
-    fault: None,
-};
-
 /// The controller of a craft.
 ///
 /// In this order: a load of a float reaches a kilobyte from where the controller is, and what every step looks at is to be
@@ -141,7 +128,7 @@ impl Controller {
     /// What the supervisor looks at beside what is measured; link, battery and arming are the firmware's.
     fn circumstances(&self) -> Circumstances {
         let reference = if self.is_bad { ReferenceReport::Bad } else { ReferenceReport::Sound };
-        Circumstances { asked: self.flyer.flight.asked(), reference, limited: self.flyer.cut(), ..WELL }
+        Circumstances { asked: self.flyer.flight.asked(), reference, limited: self.flyer.cut(), ..Circumstances::WELL }
     }
 
     /// Not all is well: does what the supervisor orders, but for flying as asked, which is left to the caller.
@@ -391,5 +378,5 @@ fn goes_on(
         specific_force_m_s2: None,
         thrust_m_s2: f32::INFINITY,
     };
-    guard.goes_on(CONFIGS, &sample, &Circumstances { limited, ..WELL })
+    guard.goes_on(CONFIGS, &sample, &Circumstances { limited, ..Circumstances::WELL })
 }

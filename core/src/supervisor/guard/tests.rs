@@ -7,17 +7,7 @@ use crate::state::State;
 
 const CONFIGS: (&Config, &MonitorConfig) = (&Config::STANDARD, &MonitorConfig::STANDARD);
 const NAN: Vector3<f32> = Vector3::new(f32::NAN, f32::NAN, f32::NAN);
-const WELL: Circumstances = Circumstances {
-    link_silence_ticks: Some(0),
-    asked: Asked::Places,
-    reference: ReferenceReport::Sound,
-    limited: MotorLimited::NOTHING,
-    levels: true,
-    starts_near: true,
-    battery_v: None,
-    overrun: false,
-    fault: None,
-};
+const WELL: Circumstances = Circumstances::WELL;
 const BAD: Circumstances = Circumstances { reference: ReferenceReport::Bad, ..WELL };
 
 /// A craft whose sensors are never quite the same.
