@@ -24,7 +24,7 @@ mod power_on;
 use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{
-    self, Asked, Circumstances, Config, Guard, MonitorConfig, Order, ReferenceReport, Sample, Soundness,
+    self, Circumstances, Config, Guard, MonitorConfig, Order, ReferenceReport, Sample, Soundness,
 };
 use quatrack::{CascadeMemory, Quaternion};
 
