@@ -5,13 +5,16 @@
 //! weigh the data against the priors. The balance of torques is taken relative to the torque that is commanded, since a long lag
 //! would make both small.
 
+use std::collections::BTreeSet;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::BLOCK_S;
-use super::bootstrap::Block;
+use super::bootstrap::{Block, Dice};
 use super::drag::Regression;
-use super::lag_curve::LagPoint;
+use super::lag_curve::{LagPoint, most_explained};
 use super::layout::{ASYMMETRY, COMMAND_POWER, DAMPING, DELAY, DRAG_Z, INERTIA, LAG, LIFT, MOMENT, VOLTAGE_POWER};
+use super::normal_equations::Believed;
 use super::prior::{Base, Prior};
 use super::problem::{Drive, Driven, Prepared};
 use crate::filter::mean;
@@ -55,11 +58,7 @@ pub(super) fn start(
     drags: &[Regression; 2],
     fixed: Vec<usize>,
 ) -> Start {
-    let best = curve
-        .iter()
-        .max_by(|a, b| a.explained.iter().sum::<f64>().total_cmp(&b.explained.iter().sum()))
-        .copied()
-        .unwrap_or_else(|| curve[0]);
+    let best = most_explained(curve);
     let lag_s = best.lag_s.min(0.12);
     let drive = Drive { rise_s: lag_s, fall_s: lag_s, delay_s: base.delay_s, jump_s: 0.0, powers: base.powers };
     let full: Vec<f64> = (0..flights)
@@ -220,7 +219,8 @@ pub(super) fn refine(sections: &[Prepared], base: &Base, start: Start) -> Refine
             let variance = variances(&residuals);
             let weights: [f64; KINDS] = std::array::from_fn(|k| 1.0 / (variance[k] * memory[k]));
             let (matrix, slope) = total(&problem, &values, &driven, &residuals, &units, &fixed, &weights).0;
-            let step = step(&matrix, &slope, &values, &priors, &units, &fixed);
+            let believed = Believed { values: &values, priors: &priors, units: &units, fixed: &fixed };
+            let step = believed.step(&matrix, &slope, 0.0);
             let cost = |values: &DVector<f64>, residuals: &Residuals| cost(values, residuals, &priors, &memory);
             let before = cost(&values, &residuals);
             let mut scale = 1.0;
@@ -327,31 +327,6 @@ fn total(
     ((matrix, slope), by_kind)
 }
 
-/// Gauss's step with the priors, in the parameters' own measure.
-fn step(
-    matrix: &DMatrix<f64>,
-    slope: &DVector<f64>,
-    values: &DVector<f64>,
-    priors: &[Prior],
-    units: &[f64],
-    fixed: &[usize],
-) -> DVector<f64> {
-    let (mut matrix, mut slope) = (matrix.clone(), slope.clone());
-    for j in 0..values.len() {
-        let precision = priors[j].precision(values[j]) * units[j] * units[j];
-        matrix[(j, j)] += precision + if fixed.contains(&j) { 1e12 } else { 0.0 };
-        slope[j] -= precision * (values[j] - priors[j].centre) / units[j];
-    }
-    for j in fixed {
-        slope[*j] = 0.0;
-    }
-    let step = matrix.cholesky().map_or_else(|| DVector::zeros(values.len()), |factor| factor.solve(&slope));
-    // No further than ten units at once: the balance is not linear in lag and delay.
-    let longest = step.amax();
-    let step = if longest > 10.0 { step * (10.0 / longest) } else { step };
-    DVector::from_fn(values.len(), |j, _| step[j] * units[j])
-}
-
 /// How much more the blocks' slopes vary than they would if every point were news.
 fn remembered(blocks: &[Block]) -> f64 {
     let count = blocks.first().map_or(0, |block| block.score.len());
@@ -387,26 +362,14 @@ fn merged(by_kind: [Vec<Block>; KINDS], memory: &[f64; KINDS]) -> Vec<Block> {
 
 impl Refined {
     /// Estimates again, from blocks that are drawn and priors whose centres are: one a draw.
-    pub(super) fn drawn(&self, fixed: &[usize], dice: &mut super::bootstrap::Dice, weights: &[f64]) -> DVector<f64> {
-        let count = self.values.len();
-        let (mut matrix, mut slope) = (DMatrix::zeros(count, count), DVector::zeros(count));
-        for (block, weight) in self.blocks.iter().zip(weights) {
-            if *weight > 0.0 {
-                matrix += &block.matrix * *weight;
-                slope += &block.score * *weight;
-            }
-        }
-        for j in 0..count {
-            let precision = self.priors[j].precision(self.values[j]) * self.units[j] * self.units[j];
-            let away = (self.values[j] - self.priors[j].centre) / self.units[j];
-            matrix[(j, j)] += precision + if fixed.contains(&j) { 1e12 } else { 0.0 };
-            slope[j] += if fixed.contains(&j) { 0.0 } else { precision.sqrt() * dice.normal() - precision * away };
-        }
-        let mut moved = matrix.cholesky().map_or_else(|| DVector::zeros(count), |factor| factor.solve(&slope));
+    pub(super) fn drawn(&self, fixed: &[usize], dice: &mut Dice, weights: &[f64]) -> DVector<f64> {
+        let believed = Believed { values: &self.values, priors: &self.priors, units: &self.units, fixed };
+        let mut moved = believed.drawn(&self.blocks, weights, dice);
+        let count = moved.len();
         // The thrust of a flight that was not drawn goes with that of those that were.
         let flights =
             self.blocks.iter().zip(weights).filter(|(_, weight)| **weight > 0.0).map(|(block, _)| block.flight);
-        let seen: std::collections::BTreeSet<usize> = flights.collect();
+        let seen: BTreeSet<usize> = flights.collect();
         let middle = seen.iter().map(|flight| moved[SHARED + flight]).sum::<f64>() / seen.len().max(1) as f64;
         for flight in (0..count - SHARED).filter(|flight| !seen.contains(flight)) {
             moved[SHARED + flight] = middle;

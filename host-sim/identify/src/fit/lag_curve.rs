@@ -22,6 +22,12 @@ pub(super) fn lags() -> impl Iterator<Item = f64> {
     (3..=40).map(|k| 0.005 * f64::from(k))
 }
 
+/// The point that explains most, of a curve that has one.
+pub(super) fn most_explained(curve: &[LagPoint]) -> LagPoint {
+    let explained = |point: &LagPoint| point.explained.iter().sum::<f64>();
+    curve.iter().copied().max_by(|a, b| explained(a).total_cmp(&explained(b))).unwrap_or(curve[0])
+}
+
 /// The curve at a delay and the base's powers, of mixtures in units of a full command.
 pub(super) fn lag_curve(sections: &[Prepared], base: &Base, delay_s: f64, powers: [f64; 2]) -> Vec<LagPoint> {
     // Damping of rates as far as physics has it; else it takes the place of the lag.

@@ -12,6 +12,7 @@
 //!   balance        torques along a stretch of flight, for pictures
 //!     lag_curve    how much of the torques a lag explains
 //!       problem    signals of the balances, as logged and low-passed
+//!       normal_equations  steps and draws with what is believed beforehand
 //!         bootstrap, prior
 //! ```
 
@@ -22,6 +23,7 @@ mod drag;
 mod innovations;
 mod lag_curve;
 mod layout;
+mod normal_equations;
 mod posterior;
 mod prior;
 mod problem;

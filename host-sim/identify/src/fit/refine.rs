@@ -13,6 +13,7 @@ use super::layout::{
     DAMPING, DRAG, FORCE_SHIFT, INERTIA, JUMP, LEVER, LIFT, MOMENT, NOISE, NOISE_COUNT, NOISE_Z, POSE_SHIFT, SHARED,
     VOLTAGE_POWER, units,
 };
+use super::normal_equations::Believed;
 use super::prior::{Base, Prior};
 use super::problem::{Prepared, Thrusts};
 use crate::filter::{mean, median};
@@ -92,7 +93,8 @@ pub(super) fn refine(sections: &[Prepared], base: &Base, flights: usize, start: 
         let (matrix, slope) = total(&blocks);
         let mut better = None;
         while damping < 1e6 {
-            let step = step(&matrix, &slope, &values, &priors, &units, &fixed, damping);
+            let believed = Believed { values: &values, priors: &priors, units: &units, fixed: &fixed };
+            let step = believed.step(&matrix, &slope, damping);
             let trial = &values + step;
             let there = state(&balances, &trial);
             let there = there.map(|there| (cost(&trial, &there, &weights), there)).filter(|(cost, _)| *cost < least);
@@ -256,50 +258,11 @@ fn total(blocks: &[Block]) -> (DMatrix<f64>, DVector<f64>) {
     })
 }
 
-/// Marquardt's step with the priors, in the parameters' own measure.
-fn step(
-    matrix: &DMatrix<f64>,
-    slope: &DVector<f64>,
-    values: &DVector<f64>,
-    priors: &[Prior],
-    units: &[f64],
-    fixed: &[usize],
-    damping: f64,
-) -> DVector<f64> {
-    let (mut matrix, mut slope) = (matrix.clone(), slope.clone());
-    for j in 0..SHARED {
-        let precision = priors[j].precision(values[j]) * units[j] * units[j];
-        matrix[(j, j)] += precision;
-        slope[j] -= precision * (values[j] - priors[j].centre) / units[j];
-        matrix[(j, j)] *= 1.0 + damping;
-        if fixed.contains(&j) {
-            (matrix[(j, j)], slope[j]) = (1e12, 0.0);
-        }
-    }
-    let step = matrix.cholesky().map_or_else(|| DVector::zeros(SHARED), |factor| factor.solve(&slope));
-    // No further than ten units at once: the innovations are not linear in lag and delay.
-    let longest = step.amax();
-    let step = if longest > 10.0 { step * (10.0 / longest) } else { step };
-    DVector::from_fn(SHARED, |j, _| step[j] * units[j])
-}
-
 impl Refined {
     /// Estimates again, from blocks that are drawn and priors whose centres are: one a draw.
     pub(super) fn drawn(&self, fixed: &[usize], dice: &mut Dice, weights: &[f64]) -> DVector<f64> {
-        let (mut matrix, mut slope) = (DMatrix::zeros(SHARED, SHARED), DVector::zeros(SHARED));
-        for (block, weight) in self.blocks.iter().zip(weights) {
-            if *weight > 0.0 {
-                matrix += &block.matrix * *weight;
-                slope += &block.score * *weight;
-            }
-        }
-        for j in 0..SHARED {
-            let precision = self.priors[j].precision(self.values[j]) * self.units[j] * self.units[j];
-            let away = (self.values[j] - self.priors[j].centre) / self.units[j];
-            matrix[(j, j)] += precision + if fixed.contains(&j) { 1e12 } else { 0.0 };
-            slope[j] += if fixed.contains(&j) { 0.0 } else { precision.sqrt() * dice.normal() - precision * away };
-        }
-        let moved = matrix.cholesky().map_or_else(|| DVector::zeros(SHARED), |factor| factor.solve(&slope));
+        let believed = Believed { values: &self.values, priors: &self.priors, units: &self.units, fixed };
+        let moved = believed.drawn(&self.blocks, weights, dice);
         let full = &self.full_slopes * &moved;
         DVector::from_fn(self.values.len(), |j, _| {
             self.values[j] + if j < SHARED { moved[j] * self.units[j] } else { full[j - SHARED] }

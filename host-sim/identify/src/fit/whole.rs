@@ -8,7 +8,7 @@ use super::balance::{Balance, balance};
 use super::balanced;
 use super::bootstrap::{Dice, few_units};
 use super::drag::{Regression, drag};
-use super::lag_curve::{LagPoint, lag_curve};
+use super::lag_curve::{LagPoint, lag_curve, most_explained};
 use super::layout::{
     ASYMMETRY, COMMAND_POWER, DAMPING, DELAY, DRAG_Z, Found, INERTIA, LAG, LIFT, MOMENT, SHARED, VOLTAGE_POWER,
     drive_of, start,
@@ -180,11 +180,7 @@ fn summary(sections: &[Prepared], base: &Base, values: &DVector<f64>, drags: &[R
 
 /// From the best lag of the curve, the vehicle's own powers, and the thrust that carries the craft.
 fn found(sections: &[Prepared], base: &Base, curve: &[LagPoint], drags: &[Regression; 2]) -> Found {
-    let best = curve
-        .iter()
-        .max_by(|a, b| a.explained.iter().sum::<f64>().total_cmp(&b.explained.iter().sum()))
-        .copied()
-        .unwrap_or_else(|| curve[0]);
+    let best = most_explained(curve);
     let lag_s = best.lag_s.min(0.12);
     let drive = Drive { rise_s: lag_s, fall_s: lag_s, delay_s: base.delay_s, jump_s: 0.0, powers: base.powers };
     let (mut felt, mut given) = (0.0, 0.0);
