@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
-/// What computes commands, seen from the workspace's root.
+/// The sources that compute commands, seen from the workspace's root.
 const CONTROL_PATH: [&str; 11] = [
     "core/src",
     "plans",

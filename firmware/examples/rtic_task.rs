@@ -1,8 +1,8 @@
-//! The core in an RTIC application of one's own: a control task of 500 Hz beside whatever else the board does.
+//! The core in an RTIC application of one's own: a control task of 500 Hz beside the board's other tasks.
 //!
 //! `cargo build --package quatrack-firmware --example rtic_task --target thumbv7em-none-eabihf --profile firmware`
 //!
-//! The estimate comes from a task that is not shown here; what the step gives goes to motors that are not shown either. The
+//! The estimate comes from a task that is not shown here; the step's forces go to motors that are not shown either. The
 //! panic handler is that of this package: the image links only if nothing in it can panic.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -1,4 +1,4 @@
-// The running image: interrupts in, priorities out. Included by each bin that flies, which says what its line is.
+// The running image: interrupts in, priorities out. Included by each bin that flies, which names its line.
 //
 // Priorities, highest first:
 // 3  USART2    a byte is lost 10 us after it came; some 30 instructions

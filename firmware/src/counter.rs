@@ -14,7 +14,7 @@ pub struct Counter {
 
 impl Counter {
     /// Starts the timer over the whole range of 32 bits, without prescaler. Nobody gets at it afterwards.
-    #[allow(clippy::needless_pass_by_value, reason = "the timer is taken away from whoever had it")]
+    #[allow(clippy::needless_pass_by_value, reason = "the timer is moved in, so that nothing else can set it")]
     pub fn start(timer: TIM5, rcc: &RCC) -> Self {
         rcc.apb1enr().modify(|_, w| w.tim5en().enabled());
         timer.arr().write(|w| w.set(u32::MAX));

@@ -1,4 +1,4 @@
-//! What a flight has of its craft: body rates in, motor forces out. Either the gyroscope and the motors of a board, or
+//! The craft's side of a flight: body rates in, motor forces out. Either the gyroscope and the motors of a board, or
 //! nothing.
 
 use embedded_hal::i2c::I2c;
@@ -63,7 +63,7 @@ impl<I: I2c, P: SetDutyCycle> Craft for BoardCraft<I, P> {
     }
 
     fn drive(&mut self, forces_n: &MotorForces, battery: CellVoltage) {
-        // Whatever goes wrong has turned the motors off; the forces have been checked before.
+        // After an error the motors are off already; the forces have been checked before.
         let _ = self.motors.drive(forces_n, battery);
     }
 }

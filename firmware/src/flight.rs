@@ -1,4 +1,5 @@
-//! The flight: states, orders and ticks in; gated commands, motor forces and answers out. What the control interrupt owns.
+//! The flight: states, orders and ticks in; gated commands, motor forces and answers out. The control interrupt owns all
+//! of it.
 
 #[cfg(not(feature = "motors"))]
 #[path = "flight/commands_only.rs"]
@@ -33,7 +34,8 @@ pub use crate::rates::{DECIMATION, LOCK_STEP, TICK_RATE, TICK_RATE_HZ};
 /// Bounds of a flight unless they are set otherwise: 50 ms without a state, half a second without a frame.
 pub const CONFIG: Config = Config::STANDARD;
 
-/// What is flown on. After the link is lost the gyroscope carries the attitude on for as long as a descent from a few metres takes.
+/// The monitor's limits. After the link is lost the gyroscope carries the attitude on for as long as a descent from a few
+/// metres takes.
 pub const MONITOR: MonitorConfig = MonitorConfig { attitude_ticks: 15_000, ..MonitorConfig::STANDARD };
 
 /// The newest state and when it came.
@@ -50,7 +52,7 @@ struct Answer {
     result: Result<Output, NoCommand>,
 }
 
-/// What is uploaded, too large for the stack on which everything begins; all zeros, so that a static costs no flash.
+/// Memory for uploads, too large for the stack at start-up; all zeros, so that a static costs no flash.
 pub struct Store {
     trajectories: playback::Store,
     gains: GainStore,
@@ -74,15 +76,15 @@ pub struct Flight {
     laws: Laws,
     arrived: Option<Arrived>,
     heard_at: Option<Tick>,
-    /// What is followed.
+    /// The reference's source.
     pub playback: Playback,
     /// The bounds of a flight.
     pub config: Config,
-    /// What is known of the motors.
+    /// Battery, body rates and forces of the motors.
     pub motors: ToMotors,
     guard: Guard,
     decimation: u32,
-    /// What the last look at the reference found.
+    /// The result of the last check of the reference.
     reference: ReferenceReport,
     limited: MotorLimited,
     fault: Option<Fault>,
@@ -208,7 +210,7 @@ impl Flight {
     /// Sets it.
     ///
     /// # Errors
-    /// As [`quatrack::BodyRateLoop::new`]; what was set stays.
+    /// As [`quatrack::BodyRateLoop::new`]; the old setting stays.
     #[cfg(feature = "motors")]
     pub fn set_bandwidth(&mut self, bandwidth_rad_s: [f32; 3]) -> Result<(), BandwidthError> {
         self.laws.actuations.set_bandwidth(bandwidth_rad_s)
@@ -349,7 +351,8 @@ impl Flight {
         self.stop();
     }
 
-    /// One control step at a tick of the board: supervise, do what that orders, and answer the state if it is new.
+    /// One control step at a tick of the board: supervise, do as the supervisor orders, and answer the state if it is
+    /// new.
     #[inline]
     pub fn step(&mut self, now: Tick, overrun: bool, rates: BodyRates) {
         self.steps = self.steps.wrapping_add(1);
@@ -371,7 +374,7 @@ impl Flight {
         }
     }
 
-    /// What passes in this step.
+    /// The output that passes in this step, or the reason why none does.
     #[inline]
     fn supervised(&mut self, now: Tick, tick: Tick, overrun: bool, rates: BodyRates) -> Result<Output, NoCommand> {
         let is_fresh = self.fresh_state(now).is_some();
@@ -399,7 +402,7 @@ impl Flight {
         let Self { guard, laws, playback, motors, reference, .. } = self;
         let looked = match guard.order((&self.config, &MONITOR), &sample, &around) {
             Order::Fly(looked) => looked,
-            // What is to be followed is looked at meanwhile: once it is sound again the flight goes on.
+            // The reference is checked meanwhile: once it is sound again the flight goes on.
             Order::Brake(looked, sample, heading) => {
                 *reference = looked_at(playback, tick);
                 return laws.brake(&looked, sample, heading).map_err(NoCommand::Step);
@@ -466,7 +469,7 @@ impl Flight {
     }
 }
 
-/// Whether what is to be followed can be flown.
+/// Whether the reference can be flown.
 #[cold]
 fn looked_at(playback: &mut Playback, tick: Tick) -> ReferenceReport {
     if playback.reference(tick).is_ok() { ReferenceReport::Sound } else { ReferenceReport::Bad }

@@ -1,4 +1,4 @@
-//! What is kept over a loss of power: a trajectory and a gain table, each in two slots of its own.
+//! The uploads that survive a loss of power: a trajectory and a gain table, each in two slots of its own.
 
 use embedded_storage::nor_flash::NorFlash;
 use quatrack::link::BlobKind;
@@ -10,7 +10,7 @@ pub trait Keep {
     /// Keeps a blob in the place of the one before; whether it did. Where it did not, the one before is as it was.
     fn keep(&mut self, kind: BlobKind, blob: &[u8]) -> bool;
 
-    /// Reads what is kept into the start of a buffer; its length, if there is any.
+    /// Reads the stored blob into the start of a buffer; its length, if there is any.
     fn kept(&mut self, kind: BlobKind, buffer: &mut [u8]) -> Option<usize>;
 }
 

@@ -2,8 +2,8 @@
 //! jump.
 //!
 //! A table in flash is stepped as it is. A loaded one lies in a store that the next upload changes, so that nothing can
-//! borrow it for longer than a step: its controller is made anew for each. What is loaded stays until the power goes, or the
-//! rate of the steps changes.
+//! borrow it for longer than a step: its controller is made anew for each. A loaded table stays until the power goes, or
+//! the rate of the steps changes.
 
 #[cfg(not(feature = "motors"))]
 #[path = "laws/commands_only.rs"]
@@ -40,7 +40,7 @@ pub enum Refused {
     Accept(AcceptError),
 }
 
-/// The law in force, the way to it from the one before, and what both remember.
+/// The law in force, the way to it from the one before, and the memory of both.
 pub struct Laws {
     choice: LawChoice,
     limits: Limits,
@@ -51,7 +51,7 @@ pub struct Laws {
     is_alone: bool,
     before: LawChoice,
     handover: Handover,
-    /// What carries commands to the motors.
+    /// Body-rate loop, mixer and motor model, which carry commands to the motors.
     pub actuations: Actuations,
     /// Somebody has chosen the law.
     is_chosen: bool,
@@ -60,7 +60,7 @@ pub struct Laws {
     store: &'static mut GainStore,
 }
 
-/// What a board flies that is told nothing and knows no body rates; where it does, the cascade.
+/// The law where nobody has chosen one and there are no body rates; where there are, it is the cascade.
 const DEFAULT: LawChoice = LawChoice::new(Table::LqrE);
 
 impl Laws {
@@ -93,8 +93,8 @@ impl Laws {
         self.store.board().map(|(_, rate)| *rate)
     }
 
-    /// Sets the rate of the steps. At another one nothing that was made for the one before is flown: what was loaded is
-    /// dropped.
+    /// Sets the rate of the steps. At another rate no table that was made for the one before is flown: the loaded ones
+    /// are dropped.
     #[cold]
     pub fn set_rate(&mut self, rate: Option<Rate>) {
         if rate == self.rate() {
@@ -253,7 +253,7 @@ impl Laws {
         }
     }
 
-    /// Motor forces for what a step gave.
+    /// Motor forces for the output of a step.
     ///
     /// # Errors
     /// As [`Controller::carry`].
@@ -269,7 +269,7 @@ impl Laws {
     #[inline(never)]
     fn otherwise(&mut self, measured: Measured<'_>, target: Target<'_>) -> Result<Output, StepError> {
         let (mut memory, mut handover) = (self.memory, self.handover);
-        // What is chosen is on board; were it not, there would be no command.
+        // The chosen table is on board; were it not, there would be no command.
         let Some(new) = self.controller_of(&self.choice) else { return Err(StepError::Singular) };
         let output = if handover.is_over() {
             step_apart(&new, &mut memory, measured, target)

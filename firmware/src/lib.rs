@@ -2,17 +2,17 @@
 //!
 //! ```text
 //! bin                           one image each: main (the line), pipes (the emulator's), measure, control_path
-//!   tick                        what the timer's interrupts run
+//!   tick                        the bodies of the timer's interrupts
 //!     board                     clocks, pins, timers of one board
 //!       transport               bytes over a USART, or over files of the emulating machine
 //!         semihosting           files and the exit of that machine (feature `semihosting`)
-//!       counter, stack, record  the free-running timer; the painted stack; what outlives a restart
+//!       counter, stack, record  the free-running timer; the painted stack; the fault that outlives a restart
 //!       log                     defmt's frames, in a ring that a debug probe reads
 //!       panic                   the handler that cannot link
 //!     session                   frames in, orders to the flight, frames out
 //!       flight                  states, orders, ticks in; gated commands and motor forces out
 //!         laws                  which law is flown: built in, or of a loaded table
-//!         playback, stored      what is followed; the trajectories in flash
+//!         playback, stored      the reference of a tick; the trajectories in flash
 //!           vehicle             the craft: its tables' name, its way to the motors
 //!             rates, timing     how often the loop ticks and steps; overruns, jitter, the longest step
 //!       craft                   a flight's gyroscope and motors

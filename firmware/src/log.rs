@@ -19,7 +19,7 @@ struct Channel {
     size: u32,
     write: AtomicU32,
     read: AtomicU32,
-    /// 0: what does not fit is dropped.
+    /// 0: a frame that does not fit is dropped.
     flags: u32,
 }
 
@@ -76,7 +76,7 @@ static FRAME: Shared = Shared(UnsafeCell::new(Frame {
 }));
 
 impl Frame {
-    /// Puts bytes into the ring behind what readers see.
+    /// Puts bytes into the ring, behind the part that readers see.
     fn put(at: &mut u32, fits: &mut bool, bytes: &[u8]) {
         let read = _SEGGER_RTT.channel.read.load(Relaxed);
         for byte in bytes {

@@ -1,4 +1,4 @@
-//! What is followed: orders from the link in, the flat output of a tick out.
+//! The reference of the flight: orders from the link in, the flat output of a tick out.
 
 mod motors;
 
@@ -53,7 +53,7 @@ impl Playback {
         }
     }
 
-    /// Follows what came with a state.
+    /// Follows the sample that came with a state.
     pub fn follow(&mut self, sample: FlatSample) {
         self.source = Source::Link(sample);
     }
@@ -125,7 +125,7 @@ impl Playback {
         !matches!(self.source, Source::Nothing)
     }
 
-    /// Where the next step would find what is followed, m, if there is anything.
+    /// Position of the reference at the next step, m, if there is one.
     #[cold]
     pub fn begins_at_m(&mut self) -> Option<Vector3<f32>> {
         let elapsed = self.elapsed;
@@ -159,7 +159,7 @@ impl Playback {
         self.is_trajectory().then_some(Progress { trajectory: self.checksum, tick: self.elapsed })
     }
 
-    /// The reference of everything but a moving trajectory in flash. What comes here is paused, uploaded, or the link's.
+    /// The reference of everything but a moving trajectory in flash. It is paused, uploaded, or the link's.
     #[cold]
     fn otherwise(&mut self, tick: Tick) -> Result<Reference, ReferenceError> {
         let sample = match &mut self.source {

@@ -6,10 +6,10 @@ use quatrack::link::{GivenKeys, Key, Protection};
 
 use crate::signature::Signatures;
 
-/// What a session is given.
+/// The keys that a session is given.
 #[derive(Clone, Debug)]
 pub struct Keys {
-    /// The link's key and what it protects; nothing on a cable.
+    /// The link's key and the messages that it protects; nothing on a cable.
     pub link: Option<(Key, Protection)>,
     /// Which gain tables are taken.
     pub signatures: Signatures,
@@ -39,7 +39,7 @@ static SLOT: [u8; KEY_SLOT_BYTES] = GivenKeys::NONE.write();
 
 /// As it is in the flash, which may have been written since the compiler saw it.
 #[cfg(target_os = "none")]
-#[allow(unsafe_code, reason = "reads a static that is not what the compiler knows of it")]
+#[allow(unsafe_code, reason = "reads a static whose bytes change after the build")]
 fn slot() -> [u8; KEY_SLOT_BYTES] {
     // SAFETY: the static is whole, aligned and never written while the image runs.
     unsafe { core::ptr::read_volatile(&raw const SLOT) }

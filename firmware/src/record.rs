@@ -1,4 +1,4 @@
-//! What outlives a restart: a fault in, before the processor is reset; the same fault out, after.
+//! The fault that outlives a restart: a fault in, before the processor is reset; the same fault out, after.
 
 use core::mem::MaybeUninit;
 use core::ptr;
@@ -9,7 +9,7 @@ use quatrack::Tick;
 use quatrack::link::FaultReport;
 use quatrack::supervisor::Fault;
 
-/// Marks a record that was written on purpose; what RAM holds after power-up is something else.
+/// Marks a record that was written on purpose; RAM holds other bytes after power-up.
 const MAGIC: u32 = 0x5174_4661;
 
 /// A record: [`MAGIC`], the program counter, and the exclusive or of both.

@@ -14,7 +14,7 @@ pub struct File {
     handle: usize,
 }
 
-/// What a file is opened for; the numbers are `fopen`'s modes in the semihosting specification.
+/// The access to a file; the numbers are `fopen`'s modes in the semihosting specification.
 #[derive(Clone, Copy)]
 pub enum Mode {
     /// `rb`.

@@ -20,7 +20,7 @@ use crate::provisioned::Keys;
 use crate::signature::Signatures;
 use crate::stored;
 
-/// Identifies what computes commands: a checksum of its sources, by the build script.
+/// Identifies the control path: a checksum of the sources that compute commands, by the build script.
 const CONTROL_IMAGE: u32 = include!(concat!(env!("OUT_DIR"), "/control_image.rs"));
 
 /// Access to the flight, which the control interrupt shares.
@@ -29,7 +29,7 @@ pub trait Shared {
     fn with<R>(&mut self, access: impl FnOnce(&mut Flight) -> R) -> R;
 }
 
-/// What the board knows of itself beside the flight, for telemetry.
+/// Telemetry of the board itself, beside the flight.
 pub trait Vitals {
     /// The tick of the loop.
     fn now(&self) -> Tick;
@@ -64,11 +64,11 @@ pub struct Session<K> {
     fault_told: bool,
 }
 
-/// What a frame is answered with: an identity may bring a fault with it.
+/// The answers to a frame: an identity may bring a fault with it.
 pub type Answers = Vec<FromBoard, 2>;
 
 impl<K: Keep> Session<K> {
-    /// Nobody connected; with the keys that the image was given, and what keeps uploads.
+    /// Nobody connected; with the keys that the image was given, and the store of uploads.
     pub fn new(uploads: &'static mut Uploads, keys: Keys, kept: K, fault: Option<FaultReport>) -> Self {
         let Keys { link, signatures } = keys;
         let decoder = link.as_ref().map_or_else(Decoder::new, |(key, protection)| Decoder::keyed(key, *protection));
@@ -259,7 +259,7 @@ impl From<Refused> for Refusal {
     }
 }
 
-/// Who is flown keeps who flies it, until that one has been silent for too long.
+/// An armed craft stays with its host until that host has been silent for too long.
 fn admission(flight: &Flight, now: Tick) -> Admission {
     if flight.is_link_silent(now) {
         Admission::Anybody

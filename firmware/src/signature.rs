@@ -2,7 +2,7 @@
 
 use quatrack::link::{Key, signed_with, unsigned};
 
-/// What tables are to be signed with.
+/// The key that tables are to be signed with, if any.
 #[derive(Clone, Debug)]
 pub struct Signatures {
     key: Option<Key>,

@@ -8,7 +8,7 @@ use core::ptr;
 
 use cortex_m_rt::STACK_PAINT_VALUE;
 
-/// Most stack that the image may use, bytes: about four times what it uses.
+/// Most stack that the image may use, bytes: about four times its use.
 pub const MAX_BYTES: usize = 8 * 1024;
 
 /// Words looked at at that depth.

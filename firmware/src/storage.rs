@@ -33,7 +33,7 @@ pub struct Layout {
     pub slot_bytes: u32,
 }
 
-/// Why a blob is not stored or read; what was stored before is as it was.
+/// Why a blob is not stored or read; the blob stored before is unchanged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StorageError<E> {
     /// It does not fit.
@@ -161,7 +161,7 @@ impl<F: NorFlash> Storage<F> {
         Ok(())
     }
 
-    /// So many bytes, or as many as fit, and what fills up the flash's read size.
+    /// So many bytes, or as many as fit, filled up to the flash's read size.
     fn chunk(&mut self, at: u32, bytes: usize) -> Result<[u8; CHUNK_BYTES], StorageError<F::Error>> {
         let mut chunk = [0; CHUNK_BYTES];
         let whole = bytes.next_multiple_of(F::READ_SIZE);

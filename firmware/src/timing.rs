@@ -1,4 +1,4 @@
-//! What the loop is watched with: counts of a free-running counter in; the tick, overruns, jitter and the longest step
+//! Timing of the loop: counts of a free-running counter in; the tick, overruns, jitter and the longest step
 //! out. Shared between interrupts without locks.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering::Relaxed};

@@ -6,7 +6,7 @@ use quatrack::{Actuation, Airframe, MotorForces, Rate};
 
 use crate::rates::{DECIMATION, TICK_RATE_HZ};
 
-/// Whose gain tables are flown.
+/// The vehicle whose gain tables are accepted.
 pub const VEHICLE: Vehicle = Vehicle { name: Name::literal("crazyflie-2.1"), id: 0x8983_3c06 };
 
 /// The craft.
@@ -15,7 +15,7 @@ pub const AIRFRAME: Airframe = Airframe::CRAZYFLIE_2_1;
 /// Largest body rates that its rate loop follows, rad/s.
 pub const BODY_RATES_MAX_RAD_S: Vector3<f32> = Vector3::new(20.0, 20.0, 10.0);
 
-/// Farthest that a flight begins from its reference, m: what the linear laws are good for.
+/// Farthest that a flight begins from its reference, m: the range in which the linear laws hold.
 pub const START_MAX_M: f32 = 1.0;
 
 /// Forces that stop the motors.

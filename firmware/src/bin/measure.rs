@@ -140,7 +140,7 @@ mod image {
         turning: Trajectory<'static>,
     }
 
-    /// What is measured, on what and what with.
+    /// The counter, the recorded flights and the controllers that are counted.
     pub(crate) struct Bench {
         pub(crate) counter: Counter,
         overhead: u32,
@@ -158,13 +158,13 @@ mod image {
         cortex_m::asm::delay(rounds);
     }
 
-    /// What a pair of readings costs by itself.
+    /// Counts that a pair of readings takes by itself.
     fn overhead(counter: Counter) -> u32 {
         let start = counter.now();
         counter.now().wrapping_sub(start)
     }
 
-    /// Counts of calls, and a hash of what came of them.
+    /// Counts of calls, and a hash of their results.
     #[derive(Clone, Copy)]
     pub(crate) struct Calls {
         pub(crate) least: u32,
@@ -327,12 +327,12 @@ mod image {
         }
     }
 
-    /// What costs most of a table, on a reference that does not turn.
+    /// The costliest choice of a table, on a reference that does not turn.
     fn worst(table: Table) -> LawChoice {
         LawChoice { feed_forward: FeedForward::With, ..LawChoice::new(table) }
     }
 
-    /// What the control interrupt runs.
+    /// The body of the control interrupt.
     #[inline(never)]
     fn control(flight: &mut Flight, timing: &Timing, counter: Counter) {
         tick::control(flight, timing, counter, &mut NoCraft);

@@ -1,11 +1,12 @@
 //! Counts the instructions of the Crazyflie controller's object, linked as it is shipped: recorded calls in, from a file
-//! of the host; counts and what the controller put out, to another.
+//! of the host; counts and the controller's outputs, to another.
 //!
 //! Both files are in the folder in which the emulator runs, all numbers little-endian. `calls.bin`: for each flight the
 //! platform (four floats), the table's number, the motors' lag (float) and the number of calls; then, for each call, the
-//! step, what is done before (bit 0: selected; from bit 8 on: the number of a table that is asked for, plus one), setpoint,
-//! sensors and state as they lie in memory. `counts.bin`: the cost of reading the counter, counts of two loops of known
-//! length; then, for each call, its count and the control; at the end the most stack that a call took, bytes.
+//! step, an action before it (bit 0: the controller is selected; from bit 8 on: the number of a table that is asked for,
+//! plus one), setpoint, sensors and state as they lie in memory. `counts.bin`: the cost of reading the counter, counts of
+//! two loops of known length; then, for each call, its count and the control; at the end the most stack that a call took,
+//! bytes.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

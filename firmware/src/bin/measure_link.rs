@@ -31,7 +31,7 @@ mod image {
         exit(run().is_some())
     }
 
-    /// Counts what is done between two looks at the counter.
+    /// Counts the instructions between two looks at the counter.
     struct Stopwatch {
         counter: Counter,
         overhead: u32,

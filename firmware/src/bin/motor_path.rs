@@ -1,9 +1,10 @@
-//! The control path down to the motors and nothing else, for its size: that of `quatrack-control-path`, and what carries
-//! the laws to motor forces, the actuator-aware one with its table included. It is linked, never run.
+//! The image of the control path down to the motors and nothing else, linked to measure its size:
+//! `quatrack-control-path`, and the code that carries the laws to motor forces, with the actuator-aware law and its
+//! table. It never runs.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-include!("../weighed.rs");
+include!("../every_order.rs");
 
 /// On a desk there is nothing to run: `quatrack measure` builds the image and looks at its size.
 #[cfg(not(target_os = "none"))]

@@ -37,7 +37,7 @@ const HSI_HZ: u32 = 16_000_000;
 /// Looks at a ready flag before it is given up: more than the 2 ms that the crystal may take to start.
 const READY_LOOKS: u32 = 20_000;
 
-/// What runs.
+/// The peripherals that run.
 #[derive(Clone, Copy, Debug)]
 pub struct Clocks {
     /// Of the processor and SysTick, Hz.
@@ -58,7 +58,7 @@ pub struct Board {
     pub motors: Motors<Channel>,
     /// The gyroscope, or why there is none.
     pub gyro: Result<Gyro<Bus>, GyroError<BusError>>,
-    /// What keeps uploads.
+    /// The flash that keeps uploads.
     pub sectors: Sectors,
     /// Random numbers.
     pub rng: Rng,
@@ -169,7 +169,7 @@ fn free_bus(gpioa: &GPIOA, gpioc: &GPIOC, delay: &mut Delay) {
     }
 }
 
-/// Gives the pins to what drives them: the motors' to timers that run with every channel off.
+/// Gives the pins to the peripherals that drive them: the motors' to timers that run with every channel off.
 fn give_pins(gpioa: &GPIOA, gpiob: &GPIOB, gpioc: &GPIOC) {
     gpioa.afrl().modify(|_, w| w.afrl1().af1().afrl2().af7().afrl3().af7());
     gpioa.afrh().modify(|_, w| w.afrh8().af4().afrh15().af1());

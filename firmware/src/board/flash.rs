@@ -58,7 +58,7 @@ impl Sectors {
         Self(flash)
     }
 
-    /// Does something with the registers open and closes them, whatever came of it.
+    /// Does something with the registers open and closes them, whether it succeeded or not.
     fn unlocked(&mut self, work: impl FnOnce(&FLASH) -> Result<(), FlashError>) -> Result<(), FlashError> {
         let flash = &self.0;
         for key in KEYS {
@@ -67,7 +67,7 @@ impl Sectors {
         finish(flash);
         let done = work(flash);
         flash.cr().write(|w| w.lock().locked());
-        // What was read of these places before is in the cache still.
+        // The cache still holds the old contents of these places.
         flash.acr().modify(|_, w| w.dcen().disabled());
         flash.acr().modify(|_, w| w.dcrst().reset());
         flash.acr().modify(|_, w| w.dcrst().clear_bit().dcen().enabled());
@@ -75,7 +75,7 @@ impl Sectors {
     }
 }
 
-/// Waits for the end of what was begun; whether the hardware did it.
+/// Waits for the end of the operation; whether the hardware did it.
 fn finish(flash: &FLASH) -> bool {
     while flash.sr().read().bsy().is_busy() {}
     let status = flash.sr().read();

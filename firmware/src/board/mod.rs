@@ -1,5 +1,5 @@
-//! Boards: one module for each, with its pins and clocks, over what the STM32F405's peripherals do behind the traits of
-//! `embedded-hal`.
+//! Boards: one module for each, with its pins and clocks. Below it are the peripherals of the STM32F405 behind the traits
+//! of `embedded-hal`.
 
 pub mod crazyflie_2_1;
 pub mod flash;

@@ -22,7 +22,7 @@ enum Output {
 }
 
 /// Starts both timers with every channel off: M1 to M4. Their pins are still to be given to them.
-#[allow(clippy::needless_pass_by_value, reason = "the timers are taken away from whoever had them")]
+#[allow(clippy::needless_pass_by_value, reason = "the timers are moved in, so that nothing else can drive them")]
 pub(super) fn start(tim2: TIM2, tim4: TIM4, rcc: &RCC) -> [Channel; 4] {
     rcc.apb1enr().modify(|_, w| w.tim2en().enabled().tim4en().enabled());
     let last = PERIOD_COUNTS - 1;

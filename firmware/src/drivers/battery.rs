@@ -14,7 +14,7 @@ pub struct CellVoltageError {
 }
 
 impl CellVoltage {
-    /// A cell half empty; stands for a reading where there is none.
+    /// A cell half empty; taken where there is no reading.
     pub const NOMINAL: Self = Self(3.7);
     /// A cell just charged.
     pub const FULL: Self = Self(4.2);
@@ -27,7 +27,7 @@ impl CellVoltage {
     /// Checks a reading.
     ///
     /// # Errors
-    /// [`CellVoltageError`] outside 2.0 to 4.5 V and for what is no number.
+    /// [`CellVoltageError`] outside 2.0 to 4.5 V and for a NaN.
     pub const fn new(voltage_v: f32) -> Result<Self, CellVoltageError> {
         if voltage_v >= Self::MIN_V && voltage_v <= Self::MAX_V {
             Ok(Self(voltage_v))

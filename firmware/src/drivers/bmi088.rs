@@ -23,7 +23,7 @@ mod register {
     pub(super) const INT3_INT4_IO_MAP: u8 = 0x18;
 }
 
-/// What chip-id holds (5.5.1).
+/// Value of the register chip-id (5.5.1).
 const CHIP_ID: u8 = 0x0F;
 /// Resets when written to its register (5.5.7), which takes 30 ms.
 const SOFTRESET: u8 = 0xB6;
@@ -35,7 +35,7 @@ const INT3_PUSH_PULL_HIGH: u8 = 0x0D;
 /// Of the register for the bandwidth: the upper bits read as they like.
 const BANDWIDTH_MASK: u8 = 0x0F;
 
-/// Where it is on the bus: what its pin SDO2 is tied to.
+/// Its address on the bus, by the level that its pin SDO2 is tied to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Address {
     /// To ground; on a Crazyflie.
@@ -94,18 +94,18 @@ pub enum Setting {
 pub enum GyroError<E> {
     /// The bus did not carry it.
     Bus(E),
-    /// What answers at the address is another chip.
+    /// Another chip answers at the address.
     ChipId {
-        /// What it says it is, not 0x0F.
+        /// Its chip-id, not 0x0F.
         found: u8,
     },
     /// The chip did not take a setting.
     Setting {
         /// Which.
         setting: Setting,
-        /// What was written.
+        /// The value written.
         written: u8,
-        /// What was read back.
+        /// The value read back.
         found: u8,
     },
 }

@@ -1,6 +1,6 @@
 //! Four brushed motors: forces in, duties of four PWM channels out.
 //!
-//! Whatever goes wrong ends with all of them off: a force that is not finite, a channel that does not answer. Nothing is
+//! Every error turns all of them off: a force that is not finite, a channel that does not answer. Nothing is
 //! ever asked of a channel beyond its full duty.
 
 use core::fmt;
@@ -43,7 +43,7 @@ pub enum MotorError<E> {
     Channel {
         /// Which motor.
         motor: u8,
-        /// What it said.
+        /// Its error.
         error: E,
     },
 }
@@ -67,7 +67,7 @@ impl<P: SetDutyCycle> Motors<P> {
         let mut duties = [Duty::OFF; 4];
         for ((motor, force_n), duty) in (1..).zip(forces_n).zip(&mut duties) {
             let Some(found) = self.curve.duty(*force_n, battery) else {
-                // What refuses here is found once more by the next one to stop.
+                // A channel that refuses here refuses again at the next stop.
                 let _ = self.stop();
                 return Err(MotorError::NotFinite { motor, force_n: *force_n });
             };
@@ -87,7 +87,7 @@ impl<P: SetDutyCycle> Motors<P> {
     /// Turns every motor off, also where one of them refuses.
     ///
     /// # Errors
-    /// What the first that refused said; the others are off.
+    /// The error of the first channel that refused; the others are off.
     pub fn stop(&mut self) -> Result<(), P::Error> {
         let mut stopped = Ok(());
         for channel in &mut self.channels {

@@ -21,7 +21,7 @@ pub struct ThrustCurve {
     chord_v_n: f32,
 }
 
-/// What a motor can be asked for.
+/// The range of forces of a motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Duty {
     /// Part of the time that the motor is on, 0 to 1.
@@ -31,7 +31,7 @@ pub struct Duty {
 }
 
 impl Duty {
-    /// A motor that stands still.
+    /// A motor that does not turn.
     pub const OFF: Self = Self { fraction: 0.0, is_short: false };
 }
 

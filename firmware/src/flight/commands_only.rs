@@ -1,5 +1,5 @@
-//! A flight that ends at its commands, for an image without the feature `motors`: what the paper's laws take by themselves
-//! is weighed and counted with it.
+//! A flight that ends at its commands, for an image without the feature `motors`: that image measures the size and the
+//! instructions of the paper's laws alone.
 
 use quatrack::link::NoCommand;
 use quatrack::nalgebra::Vector3;

@@ -11,7 +11,7 @@ use crate::laws::Laws;
 use crate::playback::Playback;
 use crate::vehicle::STOPPED;
 
-/// What is known of the motors, and what comes of a step for them.
+/// The battery, the body rates that came with the state, and the forces of the last step.
 pub struct ToMotors {
     battery: CellVoltage,
     /// Body rates that came with the newest state, rad/s.
@@ -36,7 +36,7 @@ impl ToMotors {
         }
     }
 
-    /// What the duties are reckoned with.
+    /// The voltage by which forces become duties.
     pub const fn battery(&self) -> CellVoltage {
         self.battery
     }
@@ -51,7 +51,7 @@ impl ToMotors {
         &self.passed_n
     }
 
-    /// Takes what came with a state.
+    /// Takes the body rates that came with a state.
     #[inline]
     pub(super) fn accept(&mut self, body_rates_rad_s: Option<Vector3<f32>>) {
         self.sent_rad_s = body_rates_rad_s;
@@ -135,7 +135,7 @@ impl ToMotors {
         }
     }
 
-    /// Passes what the step gave.
+    /// Passes the output of the step.
     #[inline]
     pub(super) fn pass(&mut self, output: &Output) {
         self.passed_n = match output {

@@ -35,7 +35,7 @@ impl Actuations {
         None
     }
 
-    /// What a controller of a table takes.
+    /// The settings with which a table's controller is made.
     pub(crate) const fn settings(&self, choice: &LawChoice, limits: Limits) -> Settings<'_> {
         Settings {
             feed_forward: choice.feed_forward,

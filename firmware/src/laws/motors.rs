@@ -50,7 +50,7 @@ impl Actuations {
     /// Sets it.
     ///
     /// # Errors
-    /// As [`BodyRateLoop::new`]; what was set stays.
+    /// As [`BodyRateLoop::new`]; the old setting stays.
     #[cold]
     pub fn set_bandwidth(&mut self, bandwidth_rad_s: [f32; 3]) -> Result<(), BandwidthError> {
         let body_rates = BodyRateLoop::new(&AIRFRAME, bandwidth_rad_s)?;
@@ -61,7 +61,7 @@ impl Actuations {
         Ok(())
     }
 
-    /// A table has been put to use: it is in slot 0, and what was there in slot 1.
+    /// A table has been put to use: it is in slot 0, and the one before in slot 1.
     pub(crate) fn load(&mut self, table: &AcceptedTable<'_>) {
         let [in_use, _] = self.of_slots;
         self.of_slots = [table.actuation(&self.board), in_use];
@@ -95,7 +95,7 @@ impl Actuations {
         }
     }
 
-    /// What a controller of a table takes.
+    /// The settings with which a table's controller is made.
     pub(crate) const fn settings(&self, choice: &LawChoice, limits: Limits) -> Settings<'_> {
         Settings {
             actuation: self.of(choice.table),

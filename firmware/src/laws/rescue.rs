@@ -1,4 +1,5 @@
-//! What the laws are good for, and what is flown instead of them: the cascade to a standstill and down, or by attitude alone.
+//! Limits of validity of the law in force, and its replacement where the supervisor orders one: the cascade to a
+//! standstill and down, or level by attitude alone.
 
 use quatrack::cascade::{Cascade, CascadeLimits};
 use quatrack::gains::cascade::CRAZYFLIE_2_1_DEFAULT;
@@ -25,7 +26,7 @@ const TO_MOTORS_LAG_S: [f32; 2] = [0.05, 0.126];
 const MASS_SHARE: f32 = 0.2;
 
 impl Laws {
-    /// What the law in force is certified for, if it ends in motor forces.
+    /// The certified figures of the law in force, if it ends in motor forces.
     #[cold]
     pub(crate) fn covers(&self, are_driven: bool) -> Certified {
         if !are_driven {

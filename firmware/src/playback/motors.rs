@@ -1,5 +1,5 @@
-//! The same sources, to the motors: a stored trajectory to its fifth derivative; what the link sends to its jerk, and
-//! without what lies beyond.
+//! The same sources, carried on to the motors: a stored trajectory to its fifth derivative; a sample of the link to its
+//! jerk, and without higher derivatives.
 
 use quatrack::error::Field;
 use quatrack::{
@@ -18,7 +18,7 @@ impl Playback {
         let sample = match &mut self.source {
             Source::Flash(player) if self.moving => player.at_fifth_order(tick),
             Source::Link(sample) => {
-                // What comes from outside is looked at, what is stored has been.
+                // A sample from outside is checked here; a stored trajectory has been.
                 Reference::from_flat(sample)?;
                 FifthOrderSample::of_jerk(*sample)
             }

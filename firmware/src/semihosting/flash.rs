@@ -6,7 +6,7 @@ use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashEr
 
 use super::{File, Mode};
 
-/// Bytes of a sector, and of what one blob is kept in.
+/// Bytes of a sector, which is also a blob's slot.
 pub const SLOT_BYTES: u32 = 16 * 1024;
 /// Two for each of two kinds.
 const SLOTS: u32 = 4;

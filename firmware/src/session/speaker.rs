@@ -1,4 +1,5 @@
-//! What goes out: messages in, frames of the open session or of one that is being opened out, with their tags where there is a key.
+//! Frames to the host: messages in; frames of the open session, or of one that is being opened, out, with their tags
+//! where there is a key.
 
 use quatrack::link::{
     Encoder, FRAME_BYTES, FromBoard, Key, Message as _, Nonce, Protection, Refusal, Rejected, Seal, SessionSeals,
@@ -12,23 +13,23 @@ struct Conversation {
     seals: Option<SessionSeals>,
 }
 
-/// The open session, and who asks for another one.
+/// The open session, and the one that a host has asked for.
 pub(super) struct Speaker {
     link: Option<(Key, Protection)>,
     open: Option<Conversation>,
     /// Somebody with the key has asked for it; its first frame opens it. Without a key there is none.
     proposed: Option<Conversation>,
-    /// Whom the next identity is for.
+    /// The session that the next identity is for.
     greeting: u32,
-    /// Who is told that he has not the key.
+    /// The session of a host that is refused for its key.
     stranger: Encoder,
 }
 
-/// What a hello is answered with.
+/// The answer to a hello.
 pub(super) struct Greeted {
     /// The board's.
     pub(super) nonce: Nonce,
-    /// What tags the frames that come, of a session that is not open yet.
+    /// Checks the tags of incoming frames, of a session that is not open yet.
     pub(super) to_board: Option<Seal>,
 }
 
@@ -95,7 +96,8 @@ impl Speaker {
         is_first
     }
 
-    /// What to say to a hello without the right tag, which is all that has a wrong one and is of no open session.
+    /// The answer to a hello without the right tag. Every frame with a wrong tag that is of no open session is such a
+    /// hello.
     pub(super) fn turned_away(&mut self, rejected: Rejected) -> Option<FromBoard> {
         let Rejected::Unauthentic { session, sequence } = rejected else { return None };
         if self.open.as_ref().is_some_and(|open| open.encoder.session() == session) {

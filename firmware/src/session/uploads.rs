@@ -9,7 +9,7 @@ use crate::signature::Signatures;
 use crate::vehicle::VEHICLE;
 
 impl<K: Keep> Session<K> {
-    /// Counts what is refused.
+    /// Counts refusals.
     pub(super) fn counted(&mut self, put: impl FnOnce(&mut Self) -> Result<(), Refusal>) -> Result<(), Refusal> {
         let done = put(self);
         if done.is_err() {
@@ -46,8 +46,8 @@ impl<K: Keep> Session<K> {
         Ok(())
     }
 
-    /// Puts to use what was kept before the power went; what is no longer taken is left alone. A kept table can be chosen, and
-    /// is not flown before it is.
+    /// Puts to use the uploads that were kept before the power went; one that is no longer accepted is left alone. A kept
+    /// table can be chosen, and is not flown before it is.
     pub fn restore(&mut self, flight: &mut impl Shared) {
         for kind in [BlobKind::Trajectory, BlobKind::GainTable] {
             let kept = self.uploads.fill(|buffer| self.kept.kept(kind, buffer));
@@ -64,7 +64,7 @@ impl<K: Keep> Session<K> {
 fn put_to_use(kind: BlobKind, blob: &[u8], signatures: &Signatures, flight: &mut impl Shared) -> Result<(), Refusal> {
     match kind {
         BlobKind::Trajectory => {
-            // Checking pieces takes longer than a tick, and must not change what is being flown.
+            // Checking pieces takes longer than a tick, and must not change the trajectory that is flown.
             disarmed(flight)?;
             flight.with(|flight| flight.playback.store().commit(blob)).map_err(Refusal::Blob)
         }

@@ -28,7 +28,7 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Fills `queue` and counts what does not fit.
+    /// Fills `queue` and counts bytes that do not fit.
     pub fn new(queue: Producer<'static, u8>, dropped: &'static AtomicU32) -> Self {
         Self { queue, dropped }
     }

@@ -1,4 +1,4 @@
-//! The flight without its board: what ends it, and that nothing is ever held.
+//! The flight without its board: every cause that ends it, and that no command is ever held.
 
 use quatrack::link::{CommandOut, LawChoice, NoCommand, StateIn, Table, TrajectoryId};
 use quatrack::nalgebra::Vector3;

@@ -1,4 +1,4 @@
-//! The flight down to its motors, without a board: the forces are the core's to the bit, and whatever ends a flight ends
+//! The flight down to its motors, without a board: the forces are the core's to the bit, and every flight that ends, ends
 //! with none.
 
 use embedded_hal::i2c::ErrorKind;
@@ -185,7 +185,7 @@ fn before_it_is_armed_and_after_a_disarm_there_are_no_forces() {
     }
 }
 
-/// A craft in flight with a gyroscope of its own, which never stands quite still.
+/// A craft in flight with a gyroscope of its own, whose readings are never quite still.
 struct Gyroscopic {
     flight: Flight,
     now: Tick,
@@ -221,7 +221,7 @@ fn after_the_link_is_lost_it_levels_and_lands_on_its_own_gyroscope() {
             let [a, b, c, d] = *craft.flight.forces_n();
             if craft.now > 2500 && craft.flight.mode().is_in_air() {
                 let hover = 4.0 * AIRFRAME.hover_force_n();
-                // A little less than the weight, whatever became of the climb before.
+                // A little less than the weight, however far the climb went before.
                 let thrust = a + b + c + d;
                 assert!(thrust > 0.9 * hover && thrust < hover, "{} of {hover} at {}", thrust, craft.now);
             }

@@ -1,4 +1,5 @@
-//! The gyroscope's driver on a bus that plays the chip: what is written, in which order, and what becomes of the answers.
+//! The gyroscope's driver on a bus that plays the chip: the registers written, their order, and the readings or errors
+//! made of the answers.
 
 use embedded_hal::i2c::ErrorKind;
 use embedded_hal_mock::eh1::delay::{CheckedDelay, Transaction as Wait};

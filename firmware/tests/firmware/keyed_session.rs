@@ -1,4 +1,4 @@
-//! A board with a key: whoever has it not, has another one, or has only heard what was said, gets nothing done.
+//! A board with a key: a host without it, with another one, or with recorded frames alone, gets nothing done.
 
 use std::cell::Cell;
 
@@ -90,7 +90,7 @@ impl Board {
     }
 }
 
-/// A host, and every frame that went over its line, for who listens.
+/// A host, and every frame that went over its line, for a listener.
 struct Host {
     session: HostSession,
     sent: Vec<Vec<u8>>,
@@ -107,7 +107,7 @@ impl Host {
         frame
     }
 
-    /// What the host makes of some bytes.
+    /// The messages that the host reads from some bytes.
     fn hear(&mut self, mut bytes: &[u8]) -> Vec<FromBoard> {
         let mut messages = Vec::new();
         while let Some((received, rest)) = self.session.next(bytes) {
@@ -177,7 +177,7 @@ fn who_has_no_key_or_another_one_is_told_so_and_gets_nothing() {
             assert!(other.say(&mut board, &message).is_empty());
         }
         assert_eq!(board.mode(), Mode::OnGround);
-        assert!(Host::new(7, key, 1).greet(&mut board), "a later session of who has the key");
+        assert!(Host::new(7, key, 1).greet(&mut board), "a later session with the key");
     }
 }
 
@@ -205,7 +205,7 @@ fn an_armed_craft_is_not_taken_over_not_even_after_silence() {
             board.hear(&[hello, disarm].concat());
             assert_eq!(board.mode(), Mode::Armed);
         }
-        // Silence. What was recorded is said again: it is no sign of life, and opens nothing.
+        // Silence. Recorded frames are sent again: they are no sign of life, and open nothing.
         board.now = CONFIG.link_silence_max_ticks + 1;
         for frame in &recorded {
             board.hear(frame);
@@ -240,7 +240,7 @@ fn an_arm_that_was_recorded_arms_nothing_in_its_session_or_after_a_restart() {
             board.hear(frame);
         }
         assert_eq!(board.mode(), Mode::OnGround);
-        // A session that is asked for by what was recorded is in nobody's way.
+        // A session that recorded frames ask for is in nobody's way.
         let mut pilot = Host::new(1001, key, 3);
         assert!(pilot.greet(&mut board));
         pilot.say(&mut board, &state());
@@ -285,7 +285,7 @@ fn a_fault_is_told_once_the_session_is_open() {
     let key = random_key();
     let fault = FaultReport { fault: Fault::HardFault, tick: 0, address: 0x0800_0000 };
     let (mut board, mut host) = (Board::with(key, Protection::Everything, Some(fault)), Host::new(1, key, 1));
-    assert!(host.greet(&mut board), "the identity alone: what comes with it could not have a tag yet");
+    assert!(host.greet(&mut board), "the identity alone: a message with it could not have a tag yet");
     let answers = host.say(&mut board, &ToBoard::TelemetryRequest);
     assert!(matches!(answers[..], [FromBoard::Telemetry(_), FromBoard::Fault(found)] if found == fault), "{answers:?}");
 }
@@ -293,7 +293,8 @@ fn a_fault_is_told_once_the_session_is_open() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
 
-    /// Any part of what was said, in any order, as often as you like, cut and altered: nothing that the pilot did not want happens.
+    /// Any part of the recorded frames, in any order, as often as you like, cut and altered: nothing that the pilot did
+    /// not want happens.
     #[test]
     fn nothing_that_was_heard_arms_again(
         everything in any::<bool>(),
@@ -344,7 +345,7 @@ fn a_tag_that_is_cut_or_of_another_frame_is_none() {
     assert_eq!(board.mode(), Mode::OnGround, "the frame itself");
 }
 
-/// What is in a frame before its checksum.
+/// The bytes of a frame before its checksum.
 fn unframed(frame: &[u8]) -> Vec<u8> {
     let (mut bytes, mut rest) = (Vec::new(), frame);
     while let Some((&code @ 1.., after)) = rest.split_first() {

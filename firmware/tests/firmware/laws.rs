@@ -1,4 +1,4 @@
-//! The law in force: what changes it, and what a change leaves alone.
+//! The law in force: the orders that change it, and the settings that a change leaves alone.
 
 use quatrack::gains::paper;
 use quatrack::gains::table::{Certificate, GainTable, Hash, Margins, Name, Rows, TableHead};
@@ -78,7 +78,7 @@ fn a_change_in_flight_takes_its_steps_whatever_is_asked_meanwhile() {
             assert_eq!(load(&mut flight), Err(Refused::Busy));
         }
     }
-    // 8 1/s^2 times what the reference has climbed in these 50 ms, a few micrometres.
+    // 8 1/s^2 times the reference's climb in these 50 ms, a few micrometres.
     assert!((before - 10.61).abs() < 1e-4, "{before}");
 }
 

@@ -11,7 +11,7 @@ use quatrack_firmware::drivers::thrust_curve::ThrustCurve;
 /// Full duty of the Crazyflie's timers.
 const FULL: u16 = 256;
 const CURVE: ThrustCurve = ThrustCurve::CRAZYFLIE_2_1;
-/// What hover takes of each motor, N: 2.3992 V by an independent solver.
+/// Force of each motor at hover, N: 2.3992 V by an independent solver.
 const HOVER_N: f32 = 0.029 * 9.81 / 4.0;
 const BROKEN: MockError = MockError::Io(ErrorKind::BrokenPipe);
 
@@ -25,7 +25,7 @@ fn off() -> Steps {
     vec![Transaction::set_duty_cycle(0)]
 }
 
-/// Four channels that expect to be turned off at the start, and then what follows for each.
+/// Four channels that expect to be turned off at the start, and then the given steps of each.
 fn motors(after: [Steps; 4]) -> (Motors<Mock>, Vec<Mock>) {
     let channels = after.map(|after| Mock::new(&[off(), after].concat()));
     (Motors::new(channels.clone(), CURVE).expect("every channel answers"), channels.to_vec())

@@ -1,4 +1,4 @@
-//! An image that takes signed gain tables alone: no other is flown, whatever its certificate says.
+//! An image that takes signed gain tables alone: no other is flown, however good its certificate.
 
 use quatrack::gains::paper;
 use quatrack::gains::table::{GainTable, Rows, TABLE_BYTES_MAX};
@@ -50,7 +50,7 @@ pub(crate) struct Board<K> {
 }
 
 impl<K: Keep> Board<K> {
-    /// Started anew, with what was kept.
+    /// Started anew, with the uploads that were kept.
     pub(crate) fn started(signing: Option<[u8; KEY_BYTES]>, kept: K) -> Self {
         let keys = Keys::of(&GivenKeys { link: None, signing });
         let mut flight = Here(Flight::new(Box::leak(Box::default()), None));

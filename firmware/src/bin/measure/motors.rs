@@ -16,7 +16,7 @@ use quatrack_firmware::flight::{DECIMATION as TICKS_PER_STEP, TICK_RATE};
 
 use crate::image::{Bench, Calls, hashed, write_words};
 
-#[allow(unreachable_pub, reason = "as it stands in the repository")]
+#[allow(unreachable_pub, reason = "the generated file as it is in the repository")]
 mod table {
     include!("../../../../gains/generated/actuator-aware.rs");
 }
@@ -30,7 +30,7 @@ const HIGHEST: f32 = 1e-12;
 /// How far a motor is from hover, N.
 const APART_N: f32 = 0.05;
 
-/// What is counted on a course.
+/// The steps that are counted on a course.
 pub(crate) struct Motors<'a> {
     designed: Controller<'a>,
     dense: Controller<'a>,

@@ -1,4 +1,4 @@
-// Every order to a flight, for the images that are weighed. Included by each of them.
+// Every order to a flight, for the images that are linked to measure their size. Each of them includes it.
 mod image {
     use core::hint::black_box;
 
