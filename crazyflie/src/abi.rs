@@ -145,7 +145,7 @@ pub struct Setpoint {
     pub attitude_rate: Attitude,
     /// Body to world.
     pub attitude_quaternion: Quaternion,
-    /// 0 to 65535 of what four motors can do.
+    /// 0 to 65535, the most that four motors can do.
     pub thrust: f32,
     /// m.
     pub position: Vector,

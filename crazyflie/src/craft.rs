@@ -19,7 +19,7 @@ pub const RATE: Rate = match Rate::from_hz(CONTROL_HZ) {
     None => panic!("the control rate is no rate"),
 };
 
-/// What the firmware says of the craft: `platform_defaults.h`, passed by the app.
+/// The firmware's figures of the craft: `platform_defaults.h`, passed by the app.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Platform {
@@ -33,12 +33,12 @@ pub struct Platform {
     pub torque_per_thrust_m: f32,
 }
 
-/// A craft, with what the steps need of it.
+/// A craft, with the figures that the steps need.
 #[derive(Clone, Copy, Debug)]
 pub struct Craft {
     /// Its way to the motors, with the lag that is published.
     pub actuation: Actuation,
-    /// Who it is for a gain table.
+    /// Its name and id for a gain table.
     pub vehicle: Vehicle,
     /// Which of [`KNOWN`] it is; [`OWN`] for none of them.
     pub index: usize,
@@ -50,7 +50,7 @@ pub struct Craft {
     pub per_force_max_1_n: f32,
     /// Largest thrust of all motors over the mass, m/s^2.
     pub thrust_max_m_s2: f32,
-    /// What it is told of the air where its owner says nothing.
+    /// The air that it is told where its owner says nothing.
     pub air: Air,
 }
 
@@ -61,7 +61,7 @@ pub struct Known {
     pub airframe: Airframe,
     /// Its name and id.
     pub vehicle: Vehicle,
-    /// What it is told of the air where its owner says nothing.
+    /// The air that it is told where its owner says nothing.
     pub air: Air,
 }
 
@@ -79,11 +79,12 @@ const fn known(table: BuiltInCascade, airframe: Airframe) -> Known {
 /// The place of a craft of the owner's, behind those that are known.
 pub const OWN: usize = KNOWN.len();
 
-/// Largest relative difference of a figure from the one that the tables were made for: what is left out of it in rounding.
+/// Largest relative difference of a figure from the one that the tables were made for: the rounding of the firmware's
+/// figures.
 const TOLERANCE: f32 = 2e-3;
 
 /// Largest relative difference of a stated mass from the craft's own: the inertia, which goes on being the craft's own, is then
-/// within what the tables are certified for.
+/// within the tables' certified range.
 const MASS_TOLERANCE: f32 = 0.2;
 
 /// Whether a figure that the firmware was built with is the craft's.

@@ -13,7 +13,7 @@ pub(crate) fn now() -> u32 {
     }
 }
 
-/// Cycles since a count, at most what a `u16` holds.
+/// Cycles since a count, at most the largest `u16`.
 #[inline]
 pub(crate) fn since(begun: u32) -> u16 {
     u16::try_from(now().wrapping_sub(begun)).unwrap_or(u16::MAX)

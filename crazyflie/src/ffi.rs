@@ -1,4 +1,5 @@
-//! The symbols of the object: what the firmware calls, what our app calls, and the variables behind its parameters.
+//! The symbols of the object: the functions that the firmware and our app call, and the variables behind the app's
+//! parameters.
 //!
 //! Everything takes C pointers that are never null as references. The stabilizer task calls the `controller` functions,
 //! the app's task the others; they meet in cells that turn the second visitor away.
@@ -31,7 +32,7 @@ static SERVICE: TryCell<Service> = TryCell::new(Service::new());
 /// From the one to the other.
 static HANDOVER: TryCell<Handover> = TryCell::new(Handover::new());
 
-/// The firmware selects this controller: what it remembers of an earlier flight no longer holds.
+/// The firmware selects this controller: its memory of an earlier flight no longer holds.
 #[unsafe(no_mangle)]
 pub extern "C" fn controllerOutOfTreeInit() {
     CONTROLLER.with(Controller::forget);

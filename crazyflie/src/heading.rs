@@ -1,5 +1,5 @@
 //! Headings that arrive slowly, each dated and with its rate, in; the heading at every step between them, with its derivatives
-//! to the third, out: what [`crate::stream`] is to positions.
+//! to the third, out: as [`crate::stream`] does for positions.
 //!
 //! The acceleration is the difference of successive rates, the jerk that of two accelerations, each carried on to the
 //! newest setpoint. A heading that moves while a rate of 0 is sent, as scripts do, gets the rate at which it moves. Nothing is
@@ -21,7 +21,7 @@ const SLOPE_SHARE: f32 = 0.2;
 /// Rate below which a heading is taken to be at rest, rad/s.
 const REST_RAD_S: f32 = 1e-3;
 
-/// The newest heading, and what the ones before tell about it.
+/// The newest heading, and the state of the fit through those before.
 #[derive(Clone, Copy, Debug)]
 pub struct HeadingStream {
     heading: Heading,
@@ -107,7 +107,8 @@ impl HeadingStream {
             if is_a_turn { (difference + 0.5 * gap_s * jerk, jerk, Some(difference)) } else { (0.0, 0.0, None) };
     }
 
-    /// The heading at a time, its derivatives into `sample`; it stands where it has come to when it has no successor.
+    /// The heading at a time, its derivatives into `sample`; after the last setpoint's time is over it stays where it has
+    /// come to.
     #[inline(never)]
     pub fn at(&self, now_ms: u32, sample: &mut FifthOrderSample) -> Heading {
         let (rate, acceleration, jerk) = (self.rate_rad_s, self.acceleration_rad_s2, self.jerk_rad_s3);

@@ -4,22 +4,22 @@
 //! force and torque, come out at 500 Hz.
 //!
 //! ```text
-//! ffi                  the symbols that the firmware and our app call; what they share
+//! ffi                  the symbols that the firmware and our app call; the struct that they share
 //!   service            parameters, logs, tables that are sent
-//!     parameters       what the owner has set, in range
+//!     parameters       the owner's settings, in range
 //!     upload           the packets of a table that is sent
 //!     control          one step; observers and background work between steps; changes of the table
-//!       inbox          the firmware's setpoint -> what changed; below it there is no C setpoint
+//!       inbox          the firmware's setpoint -> the change; below it there is no C setpoint
 //!       shaping        requests that are no motion -> a motion with heading
 //!         heading      headings, dated -> heading to its jerk, at every step
 //!         stream       motions, dated -> position to crackle, at every step
-//!           request    what a setpoint asks for
+//!           request    the request of a setpoint
 //!       tables, own_craft  gains as flown; a craft with its table
 //!         units        the firmware's units and conventions -> SI
 //!           abi, motion, output
-//!             craft    what the firmware was built for -> which craft
+//!             craft    the firmware's build figures -> the craft
 //!               builtin  the tables in the image
-//!                 shared, try_cell, cycles  what two tasks share, and without waiting; the cycle counter
+//!                 shared, try_cell, cycles  values that two tasks share without waiting; the cycle counter
 //! ```
 //!
 //! The way of a setpoint goes down through each of these once:

@@ -1,9 +1,9 @@
-//! What a step puts out, in SI units: a wrench for the firmware's mixer, or the four motors' forces.
+//! The output of a step, in SI units: a wrench for the firmware's mixer, or the four motors' forces.
 
 use quatrack::MotorForces;
 use quatrack::mixer::Wrench;
 
-/// What a step puts out.
+/// The output of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Output {
     /// For the firmware's mixer.

@@ -54,15 +54,13 @@ pub enum OwnCraftError {
 }
 
 impl OwnCraftError {
-    /// In words, with what to do.
+    /// In words, with the remedy.
     pub const fn words(self) -> &'static CStr {
         match self {
             Self::Table => c"quatrack_craft.h has no sound table of the cascade at 500 Hz: make it again",
             Self::Figures => c"the table in quatrack_craft.h is for other figures: make it again",
             Self::NoCraft => c"the figures in quatrack_craft.h are those of no craft: make it again",
-            Self::MotorLag => {
-                c"the craft's motor lag is outside what its table is certified for: widen the design's region"
-            }
+            Self::MotorLag => c"the craft's motor lag is outside its table's certificate: widen the design's region",
             Self::Arm => c"the firmware's ARM_LENGTH is not the craft's arm: set it with EXTRA_CFLAGS",
             Self::ForceMax => {
                 c"the firmware's THRUST_MAX is not the craft's largest force of a motor: mend the vehicle file"

@@ -25,7 +25,7 @@ fn defaults(craft: &Craft) -> [f32; Parameters::FLOATS] {
 /// Largest tilt on the way to a place that is far off, degrees.
 const TILT_DEG: f32 = 54.5;
 
-/// Puts back to its default what is no number; which that was last, if any, counted from 1.
+/// Puts parameters that are NaN back to their defaults; the last of them, if any, counted from 1.
 pub(crate) fn put_back(parameters: &Parameters, craft: &Craft) -> Option<u16> {
     let mut last = None;
     for (index, (value, default)) in (1..).zip(parameters.floats().into_iter().zip(defaults(craft))) {
@@ -37,7 +37,7 @@ pub(crate) fn put_back(parameters: &Parameters, craft: &Craft) -> Option<u16> {
     last
 }
 
-/// What the owner asks of a table.
+/// The owner's tuning of a table.
 pub(crate) fn tuning(parameters: &Parameters, craft: &Craft) -> Tuning {
     let moment_n_s = [&parameters.moment_x_n_s, &parameters.moment_y_n_s];
     let (sin, cos) = sin_cos(within(&parameters.tilt_deg, 6.0, 75.0) * RAD_PER_DEG);
@@ -63,7 +63,7 @@ pub(crate) fn motor_lag_s(parameters: &Parameters) -> f32 {
     within(&parameters.motor_lag_s, 0.0, 1.0)
 }
 
-/// What the owner has set beside the table, within what the table in the air says of itself.
+/// The owner's settings beside the table, within the limits of the table in the air.
 pub(crate) fn settings(parameters: &Parameters, craft: &Craft, table: &Limits) -> Settings {
     let roll_pitch = within(&parameters.roll_pitch_rate_rad_s, 0.5, 100.0);
     let yaw = within(&parameters.yaw_rate_rad_s, 0.5, 100.0);
@@ -78,7 +78,7 @@ pub(crate) fn settings(parameters: &Parameters, craft: &Craft, table: &Limits) -
     }
 }
 
-/// A parameter within what makes sense.
+/// A parameter within its range.
 fn within(value: &AtomicF32, least: f32, most: f32) -> f32 {
     let value = value.get();
     if value >= most {

@@ -1,9 +1,9 @@
-//! What a setpoint asks for: of the horizontal, the vertical and the heading, each in one of the ways that the firmware's
-//! commanders know.
+//! The request of a setpoint, for the horizontal, the vertical and the heading, each in one of the ways that the
+//! firmware's commanders know.
 
 use quatrack::nalgebra::Vector3;
 
-/// What is asked of each direction. The motion that a position or velocity refers to, and the heading, are beside it.
+/// The request for each direction. The motion that a position or velocity refers to, and the heading, are beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
     /// Along world x and y.
@@ -51,7 +51,7 @@ pub enum Turn {
 }
 
 impl Request {
-    /// Whether it goes along the motion in all directions, at a heading: what a trajectory asks for.
+    /// Whether it goes along the motion in all directions, at a heading, as a trajectory asks.
     pub fn is_along(&self) -> bool {
         matches!(self, Self { horizontal: Horizontal::Position, vertical: Vertical::Position, turn: Turn::Heading })
     }

@@ -19,7 +19,7 @@ use crate::try_cell::TryCell;
 use crate::units;
 use crate::upload::{Packet, Status, Uploads};
 
-/// What the app's task keeps.
+/// The state of the app's task.
 pub struct Service {
     craft: Option<Craft>,
     /// The table of a craft of the owner's.
@@ -34,7 +34,7 @@ pub struct Service {
     limits: Limits,
 }
 
-/// What the owner last asked to be flown.
+/// The table and tuning that the owner last asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Asked {
     table: u8,
@@ -44,7 +44,7 @@ struct Asked {
     upload: u8,
 }
 
-/// On its way to the stabilizer's task: what is there has not been taken over yet.
+/// Values on their way to the stabilizer's task; those present have not been taken over yet.
 pub struct Handover {
     craft: Option<Craft>,
     table: Option<Table>,
@@ -59,7 +59,7 @@ impl Handover {
         Self { craft: None, table: None, settings: None, is_kept: false }
     }
 
-    /// The controller takes over what there is.
+    /// The controller takes over the values that are present.
     #[inline]
     pub fn take_over(&mut self, controller: &mut Controller) {
         // The settings come last and with everything else.
@@ -156,7 +156,7 @@ impl Service {
         answer
     }
 
-    /// Looks at the parameters and hands over what has changed; to be called a few times a second.
+    /// Looks at the parameters and hands over changes; to be called a few times a second.
     pub(crate) fn keep_house(&mut self, shared: &Shared, handover: &TryCell<Handover>) {
         let Some(craft) = &self.craft else { return };
         if let Some(parameter) = parameters::put_back(&shared.parameters, craft)
@@ -223,7 +223,7 @@ pub fn log_errors(shared: &Shared, controller: &Controller, state: &abi::State) 
     log.rotation_mrad.iter().zip(rotation).for_each(|(to, value)| to.store(value, Relaxed));
 }
 
-/// What it put out and gave up, and what has been counted, into the log; likewise.
+/// Its outputs, limits and counts into the log; likewise.
 #[inline(never)]
 pub fn log_counters(shared: &Shared, controller: &Controller) {
     let (log, outcome) = (&shared.log, controller.outcome());
@@ -243,7 +243,7 @@ pub fn log_counters(shared: &Shared, controller: &Controller) {
     log.jumps.store(counters.jumps, Relaxed);
 }
 
-/// What the cascade has learned, into the log; likewise.
+/// The figures that the cascade has learned into the log; likewise.
 #[inline(never)]
 pub fn log_learned(shared: &Shared, controller: &Controller) {
     let Some((drag_per_s, moment_n_s, memory)) = controller.learned() else { return };

@@ -1,9 +1,9 @@
-//! Setpoint shaping: what a request that is no motion to be followed becomes, velocities, tilts and turns in, a motion with
+//! Setpoint shaping: makes a motion to follow of a request that is none. Velocities, tilts and turns in; a motion with
 //! heading out.
 //!
-//! What a request leaves free is taken from the measured state, so that the laws see no error there: at a tilt, position
-//! and velocity over the ground; under manual thrust, height and climb. A velocity setpoint becomes a position that moves
-//! with it, speeding up no faster than [`Bounds`] allow, and never far from where the craft is.
+//! The axes that a request leaves free are taken from the measured state, so that the laws see no error there: at a tilt,
+//! position and velocity over the ground; under manual thrust, height and climb. A velocity setpoint becomes a position
+//! that moves with it, speeding up no faster than [`Bounds`] allow, and never far from where the craft is.
 
 use quatrack::flatness::GRAVITY_M_S2;
 use quatrack::math::sqrt;
@@ -32,7 +32,7 @@ const VELOCITY_BANDWIDTH_1_S: f32 = 6.0;
 /// How far the position of a velocity setpoint may run ahead of the craft along each axis, m.
 const LEAD_MAX_M: f32 = 0.25;
 
-/// What is integrated over time: the point that a velocity setpoint moves, the heading that a turn rate moves.
+/// The integrated state: the point that a velocity setpoint moves, the heading that a turn rate moves.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaping {
     position_m: Vector3<f32>,
@@ -43,10 +43,10 @@ pub struct Shaping {
     is_new: bool,
 }
 
-/// What a step shapes, and from what.
+/// The inputs of a step of shaping.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaped<'a> {
-    /// What is asked for.
+    /// The request.
     pub request: &'a Request,
     /// Motions.
     pub stream: &'a Stream,
@@ -80,8 +80,8 @@ impl Shaping {
         *self = Self { position_m, velocity_m_s, heading_rad, is_new: false, ..*self };
     }
 
-    /// What to follow at this step: the motion into `sample`, whose angle of heading is not used, and the heading. Not for
-    /// a horizontal that asks for body rates, which no flat sample has.
+    /// The motion to follow at this step: it goes into `sample`, whose angle of heading is not used, and the heading. Not
+    /// for a horizontal that asks for body rates, which no flat sample has.
     #[inline(never)]
     pub fn put(
         &mut self,

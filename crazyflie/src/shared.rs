@@ -1,4 +1,4 @@
-//! What the firmware's parameters and logs look at: one C struct of atomics, which every task may read and write.
+//! The variables behind the firmware's parameters and logs: one C struct of atomics, which every task may read and write.
 //!
 //! `quatrack.h` has the same struct in C, field by field.
 
@@ -30,17 +30,17 @@ impl AtomicF32 {
 #[repr(C)]
 #[derive(Debug)]
 pub struct Shared {
-    /// What the owner sets.
+    /// Set by the owner.
     pub parameters: Parameters,
-    /// What the owner sees.
+    /// Shown to the owner.
     pub log: Log,
-    /// What the flight has shown.
+    /// Learned in flight.
     pub learned: Learned,
-    /// What is flown, to be read.
+    /// The gains that are flown, read-only.
     pub gains: Gains,
 }
 
-/// Set by the owner; a value out of range counts as the nearest one in it, and what is no number is put back to its default:
+/// Set by the owner; a value out of range counts as the nearest one in it, and a NaN is put back to its default:
 /// for the air the craft's own, which is known once the app has said which craft this is.
 #[repr(C)]
 #[derive(Debug)]
@@ -59,7 +59,7 @@ pub struct Parameters {
     pub roll_pitch_rate_rad_s: AtomicF32,
     /// Largest yaw rate, likewise, rad/s.
     pub yaw_rate_rad_s: AtomicF32,
-    /// Time constant of this craft's motors as its owner knows it, s; 0 where only what is published is known.
+    /// Time constant of this craft's motors as its owner knows it, s; 0: the published figures alone.
     pub motor_lag_s: AtomicF32,
     /// Linear drag over mass that is told, 1/s.
     pub drag_per_s: AtomicF32,
@@ -79,7 +79,7 @@ pub struct Parameters {
     pub table: AtomicU8,
     /// Whether the paper's laws are fed forward.
     pub feed_forward: AtomicU8,
-    /// Whether drag and moment are corrected by what the flight shows.
+    /// Whether drag and moment are corrected in flight.
     pub learn: AtomicU8,
 }
 
@@ -124,11 +124,11 @@ pub struct Log {
     pub rotation_mrad: [AtomicI16; 3],
     /// Forces that the motors should have, thousandths of the largest; 0 under a law of thrust and torque.
     pub forces: [AtomicU16; 4],
-    /// What the last step had to give up, see `quatrack.h`.
+    /// The limits that cut the last step, see `quatrack.h`.
     pub limited: AtomicU16,
     /// Processor cycles of the last step.
     pub cycles: AtomicU16,
-    /// What is done with the last setpoint.
+    /// How the last setpoint is flown.
     pub mode: AtomicU8,
     /// The table in use.
     pub table: AtomicU8,
@@ -152,7 +152,7 @@ pub struct Log {
     pub reason: AtomicU16,
 }
 
-/// What the cascade flies with, as the flight has shown it.
+/// The figures that the cascade has learned in flight and flies with.
 #[repr(C)]
 #[derive(Debug)]
 pub struct Learned {
@@ -160,11 +160,11 @@ pub struct Learned {
     pub drag_per_s: AtomicF32,
     /// Airflow moment about body x and y over the velocity along y and x, N s.
     pub moment_n_s: [AtomicF32; 2],
-    /// Force of the motors over what they are told.
+    /// Force of the motors as a share of the commanded one.
     pub motor_share: AtomicF32,
     /// Disturbance: x and y in the world frame and along the thrust, m/s^2.
     pub disturbance_m_s2: [AtomicF32; 3],
-    /// Whether the craft is taken to stand, 1, or to fly.
+    /// Whether the craft is taken to stand on the ground, 1, or to fly, 0.
     pub stands: AtomicF32,
 }
 

@@ -14,10 +14,10 @@ use crate::motion::Motion;
 /// Longest time between two setpoints of one motion, ms: one in a row of any rate above 40 a second may be missing.
 pub const GAP_MAX_MS: u32 = 50;
 
-/// Longest time that a setpoint is extrapolated, ms; then the motion stands still where it has come to.
+/// Longest time that a setpoint is extrapolated, ms; then the motion stops where it has come to.
 pub const EXTRAPOLATION_MAX_MS: u32 = 100;
 
-/// Differences from what the last setpoint led to expect, beyond which a setpoint is a jump: m, m/s, m/s^2, summed over
+/// Differences from the extrapolated last setpoint, beyond which a setpoint is a jump: m, m/s, m/s^2, summed over
 /// the axes.
 const JUMP: [f32; 3] = [0.02, 0.2, 2.0];
 
@@ -43,11 +43,11 @@ enum Source {
     Sent { unsound: u8 },
     /// The accelerations: none is sent.
     Accelerations,
-    /// The accelerations: what is sent is not their slope. How many in a row were.
+    /// The accelerations: the sent jerk is not their slope. How many in a row were.
     Mistrusted { sound: u8 },
 }
 
-/// The newest setpoint's motion, and what the ones before tell about it.
+/// The newest setpoint's motion, and the fit through those before.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
     newest: Motion,
@@ -65,7 +65,7 @@ pub struct Stream {
     gap_s: f32,
 }
 
-/// What a setpoint was to the ones before it.
+/// The relation of a setpoint to those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
     /// Their continuation.
@@ -115,7 +115,7 @@ impl Stream {
         self.sent_jerk_m_s3 = motion.jerk_m_s3;
         self.since_ms = Some(date_ms);
         if !(beyond_jerk || matches!(source, Source::Mistrusted { .. })) {
-            // Who looks no further is told what is sent.
+            // A law that takes no snap gets the setpoint as it is sent.
             (self.newest, self.source, self.is_due) = (*motion, source, false);
             self.forget_fit();
             return Arrival::Continued;
@@ -180,7 +180,7 @@ impl Stream {
         }
     }
 
-    /// Takes a motion, with what the one before leads to expect of its higher derivatives until it is fitted.
+    /// Takes a motion; until it is fitted, its higher derivatives are extrapolated from the one before.
     #[inline(always)]
     fn keep(&mut self, motion: &Motion, gap_s: f32, source: Source) {
         if self.is_due {

@@ -1,4 +1,4 @@
-//! Tables to fly: those in the image and an uploaded one in; gains as flown, scaled within what their certificate allows,
+//! Tables to fly: those in the image and an uploaded one in; gains as flown, scaled within their certificate,
 //! out.
 
 use quatrack::gains::table::{AcceptError, CascadeTable, GainTable, margin_behind};
@@ -54,12 +54,12 @@ impl TableId {
     }
 }
 
-/// What the owner may change of a table.
+/// The settings of a table that the owner may change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
     /// Factors on the feedback; of the cascade the first is its stiffness in position.
     pub scales: Scales,
-    /// What the cascade is told of the air.
+    /// The air that the cascade is told.
     pub air: Air,
     /// On its way to a place that is far off.
     pub limits: CascadeLimits,
@@ -77,11 +77,11 @@ pub struct Table {
     /// Within which its feedback may be scaled: of the paper's laws the loop stays stable with each of its channels weakened or
     /// strengthened as much, all at once.
     pub scales: [f32; 2],
-    /// What it may command; what its own head says, or nothing.
+    /// Limits of its commands; those of its own head, or nothing.
     pub limits: Limits,
 }
 
-/// A gain with what flies it.
+/// A gain with its law.
 #[allow(clippy::large_enum_variant, reason = "there is no heap to put the larger one on")]
 #[derive(Clone, Copy, Debug)]
 pub enum Gain {
@@ -97,11 +97,11 @@ pub enum Gain {
 pub enum Refusal {
     /// There is no such table.
     Unknown = 1,
-    /// Nothing has been sent yet, or what was sent was refused.
+    /// Nothing has been sent yet, or the last upload was refused.
     NothingUploaded = 2,
     /// Its certificate ends at a shorter motor lag than this craft's.
     MotorLag = 3,
-    /// What was sent is no sound table with a certificate.
+    /// The upload is no sound table with a certificate.
     Table = 4,
     /// It is for another vehicle or control rate.
     Vehicle = 5,
@@ -244,7 +244,7 @@ impl Table {
         }
     }
 
-    /// A step of the table's controller within limits, but for what follows it ([`Controller::observe`]).
+    /// A step of the table's controller within limits, but for the observers after it ([`Controller::observe`]).
     ///
     /// # Errors
     /// As [`Controller::step`].
@@ -283,7 +283,7 @@ impl Table {
     }
 
     /// The entries that make up the gain where it decouples as designs at hover do: thrust from height, roll from y,
-    /// pitch from x, yaw from heading. [`crate::shared::Gains`] has what is where.
+    /// pitch from x, yaw from heading. [`crate::shared::Gains`] names them.
     pub fn shown(&self) -> [f32; GAINS] {
         match &self.gain {
             Gain::Cascade(_, gains) => {

@@ -73,7 +73,7 @@ pub fn thrust_axis_of_quaternion(attitude: &abi::Quaternion) -> Vector3<f32> {
 /// The heading of an angle of yaw, degrees, that may have turned often.
 #[inline(always)]
 pub fn heading_of_yaw(yaw_deg: f32) -> Heading {
-    // Whole turns of 360 degrees are exact, and so is what they leave. Two of them give the same quaternion.
+    // Whole turns of 360 degrees are exact, and so is the remainder. Two of them give the same quaternion.
     let turns = (yaw_deg * (1.0 / 720.0)) as i32;
     Heading::from_angle((yaw_deg - turns as f32 * 720.0) * RAD_PER_DEG)
 }
@@ -97,7 +97,7 @@ pub fn heading_rate_rad_s(setpoint: &abi::Setpoint) -> f32 {
     let axis_z = h / sqrt(a.x * a.x + a.y * a.y + h * h);
     // Beyond 60 degrees of tilt the two have little to do with each other.
     let rate = if axis_z > 0.5 { body_rate / axis_z } else { body_rate };
-    // What is no number stays so.
+    // A NaN stays one.
     if rate.abs() > HEADING_RATE_MAX_RAD_S { HEADING_RATE_MAX_RAD_S.copysign(rate) } else { rate }
 }
 

@@ -47,7 +47,7 @@ pub enum Status {
     Offset = 4,
     /// Not all has been sent.
     Incomplete = 5,
-    /// Not what was announced: begin again.
+    /// The checksum is not the announced one: begin again.
     Checksum = 6,
     /// No sound table with a valid certificate.
     Table = 7,
@@ -62,7 +62,7 @@ pub enum Status {
 }
 
 impl Status {
-    /// What an answer says of a refusal, in words.
+    /// The words of a refusal in an answer.
     const fn words(self) -> &'static [u8] {
         match self {
             Self::Taken => b"",
@@ -149,7 +149,7 @@ impl Uploads {
     }
 }
 
-/// Why what was sent is not read.
+/// The reason why an upload is not read.
 enum Unread {
     Load(LoadError),
     ActuatorAware,

@@ -71,7 +71,7 @@ class Object(stand_in.Craft):
         self.time_ms = 0
 
     def at(self, place):
-        """How to get and set what is at a place within the shared struct."""
+        """Getter and setter of the value at a place within the shared struct."""
         *path, last = re.findall(r"\w+", place)
         owner = self.shared
         for step in path:

@@ -5,7 +5,7 @@
 
 Commands, gyroscope and accelerometer share a block of 22 bytes, since they are compared with each other: the firmware samples a block
 at one instant. The pose has another, of 26 bytes. A row of the CSV holds one block, under the firmware's names and in its units, with the firmware's time in ms.
-Nothing is sent but what starts the log: fly with what you fly with. Ctrl-C ends the recording.
+It sends nothing but the request that starts the log: fly with your usual program. Ctrl-C ends the recording.
 """
 
 import argparse

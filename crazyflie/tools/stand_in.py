@@ -1,7 +1,7 @@
-"""A Crazyflie that is not there, for tests of what speaks to one: cflib's packets in, the firmware's answers out. Needs cflib (0.1.34).
+"""A Crazyflie that is not there, for tests of programs that speak to one: cflib's packets in, the firmware's answers out. Needs cflib (0.1.34).
 
-It answers what cflib asks as it connects (protocol version 12, tables of contents, memories), takes parameters, log blocks, memories and
-packets of the app channel as the firmware does, and sends log blocks by its own clock. What is behind it is a `Craft`.
+It answers cflib's requests as it connects (protocol version 12, tables of contents, memories), takes parameters, log blocks, memories and
+packets of the app channel as the firmware does, and sends log blocks by its own clock. Behind it is a `Craft`.
 """
 
 import itertools
@@ -33,20 +33,20 @@ class Variable:
 
 
 class Craft:
-    """What the stand-in stands for; a test makes its own of it."""
+    """The craft that the stand-in represents; a test makes its own of it."""
 
     def __init__(self):
         self.parameters = {}
         self.logs = {}
         # By type, as the firmware numbers them; 0x12 is that of trajectories.
         self.memories = {}
-        # What the high-level commander was told, and the names of what was stored.
+        # The orders to the high-level commander, and the names of stored parameters.
         self.commands = []
         self.stored = []
         self.period_s = 0.01
 
     def app_packet(self, packet):
-        """A packet of the app channel; what the app answers, if it does."""
+        """A packet of the app channel; the app's answer, if there is one."""
 
     def tick(self, running):
         """Ten milliseconds, with so many log blocks running; the time in ms, or nothing while the craft waits."""
@@ -151,7 +151,7 @@ class StandIn(CRTPDriver):
     def settings(self, data, _port):
         command, status = data[0], 0
         if command in (6, 7):
-            # As the firmware: whole settings of three bytes, what is left over is not one.
+            # As the firmware: whole settings of three bytes, a remainder is not one.
             settings = [struct.unpack("<BH", data[i : i + 3]) for i in range(2, len(data) - 2, 3)]
             block = self.blocks.setdefault(data[1], [])
             variables = list(self.craft.logs.values())

@@ -73,7 +73,7 @@ def main():
                 # Half precision has 11 bits, single 24.
                 slack = {"uint16_t": 0.5, "FP16": 2**-11 * abs(sent[name]) + 1e-7, "float": 1e-6 * abs(sent[name]) + 1e-6}[kind]
                 assert abs(float(row[name]) - sent[name]) <= slack, (name, row[name], sent[name])
-    print(f"record.py has what was sent: {recorder.counts}")
+    print(f"record.py has every packet that was sent: {recorder.counts}")
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ BRUSHLESS = (0.0393, 0.05, 0.2, 0.0056927884)
 
 
 def said(*arguments):
-    """What the script prints, and what it ends with."""
+    """The script's output and its final message."""
     out, ending = io.StringIO(), None
     with contextlib.redirect_stdout(out):
         try:

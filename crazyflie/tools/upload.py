@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sends gain tables and trajectories to a Crazyflie that flies quatrack, stores parameters, and says what flies. Needs cflib (0.1.34).
+"""Sends gain tables and trajectories to a Crazyflie that flies quatrack, stores parameters, and names the law in the air. Needs cflib (0.1.34).
 
     upload.py status
     upload.py table my-craft.bin                  # from `quatrack gains design`
@@ -47,8 +47,8 @@ SENT = 5
 REFUSALS = {
     0: "nothing has been refused",
     1: "there is no table of that number: 0 to 5",
-    2: "no table has been sent since the craft was switched on, or what was sent was refused",
-    3: "the motors' lag is outside what the table is certified for: set quatrack.motorLag to what you measured, or design a table for it",
+    2: "no table has been sent since the craft was switched on, or the last upload was refused",
+    3: "the motors' lag is outside the table's certificate: set quatrack.motorLag to the measured one, or design a table for it",
     4: "it is no sound table with a certificate: send the file with the ending .bin that `quatrack gains design` wrote",
     5: "it is for another craft or another control rate: `quatrack gains show FILE` says for which",
     6: "its law is not flown here: design it with method = \"cascade\"",
@@ -63,7 +63,7 @@ COMPRESSED_SHORTS = (0, 1, 3, 7)
 
 
 class Refused(Exception):
-    """What the craft, or the file, is wanting in: one sentence."""
+    """A refusal by the craft or for the file: one sentence."""
 
 
 def look(cf, names=LOGGED):
@@ -74,13 +74,13 @@ def look(cf, names=LOGGED):
             raise Refused(f"the firmware has no {name}: was it built with quatrack's app?")
         block.add_variable(name)
     with SyncLogger(cf, block) as logger:
-        # What was on its way before is not looked at.
+        # The first block may be older than the request: it is dropped.
         next(logger)
         return next(logger)[1]
 
 
 def flown(values):
-    """What flies, in words."""
+    """The mode and the table, in words."""
     table = values["quatrack.table"]
     return f"{MODES[values['quatrack.mode']]}; table {table}, {TABLES[table]}"
 
@@ -172,7 +172,7 @@ def send_trajectory(cf, data, pieces, compressed=False, number=1, address=0):
             f"{address} + {len(data)} bytes are more than the craft's {memories[0].size}: "
             f"`quatrack refit --pieces {(memories[0].size - address) // PIECE_BYTES}` fits it in, or --compressed"
         )
-    # The bytes are packed: the memory's own write packs what is in its list.
+    # The bytes are packed: the memory's own write packs the entries of its list.
     memories[0].trajectory = [_Packed(data)]
     if not memories[0].write_data_sync(address):
         raise Refused("the craft did not take all of it: send it again")
@@ -217,7 +217,7 @@ def table_file(path):
 
 
 def run(cf, arguments):
-    if arguments.what == "status":
+    if arguments.command == "status":
         values = look(cf)
         print(flown(values))
         if values["quatrackN.refused"]:
@@ -225,10 +225,10 @@ def run(cf, arguments):
         return
     if look(cf)["quatrack.mode"] == 1:
         raise Refused("it flies, and closing this link would turn its motors off: land first, or send from the script that flies")
-    if arguments.what == "table":
+    if arguments.command == "table":
         data = table_file(arguments.file)
         print(f"sent, {len(data)} bytes: {flown(send_table(cf, data))}")
-    elif arguments.what == "trajectory":
+    elif arguments.command == "trajectory":
         data, pieces, duration_s, compressed = read_trajectory(arguments.file)
         send_trajectory(cf, data, pieces, compressed, arguments.number, arguments.address)
         print(
@@ -251,17 +251,17 @@ def pair(text):
 def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--uri", default="radio://0/80/2M/E7E7E7E7E7")
-    what = parser.add_subparsers(dest="what", required=True)
-    what.add_parser("status", help="what flies, and why the last table that does not was refused")
-    what.add_parser("table", help="send a gain table and fly it").add_argument("file")
-    trajectory = what.add_parser("trajectory", help="write a trajectory into the craft's memory")
+    commands = parser.add_subparsers(dest="command", required=True)
+    commands.add_parser("status", help="the law in the air, and why the last table that does not was refused")
+    commands.add_parser("table", help="send a gain table and fly it").add_argument("file")
+    trajectory = commands.add_parser("trajectory", help="write a trajectory into the craft's memory")
     trajectory.add_argument("file")
     trajectory.add_argument("--number", type=int, default=1, help="by which it is started (1)")
     trajectory.add_argument("--address", type=int, default=0, help="of the memory's bytes the first (0)")
-    what.add_parser("store", help="keep parameters").add_argument("pairs", nargs="+", type=pair, metavar="NAME=VALUE")
+    commands.add_parser("store", help="keep parameters").add_argument("pairs", nargs="+", type=pair, metavar="NAME=VALUE")
     arguments = parser.parse_args(arguments)
     try:
-        if arguments.what == "table":
+        if arguments.command == "table":
             table_file(arguments.file)
         cflib.crtp.init_drivers()
         with SyncCrazyflie(arguments.uri, cf=Crazyflie(rw_cache=None)) as craft:

@@ -1,11 +1,11 @@
-/* The quatrack controller's object, quatrack-crazyflie.o: what it exports beside the out-of-tree controller itself. */
+/* The quatrack controller's object, quatrack-crazyflie.o: its exports beside the out-of-tree controller itself. */
 #ifndef QUATRACK_H
 #define QUATRACK_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* What the firmware was built for, platform_defaults.h. */
+/* The craft that the firmware was built for, platform_defaults.h. */
 typedef struct {
   float massKg;          /* CF_MASS */
   float armM;            /* ARM_LENGTH */
@@ -42,7 +42,7 @@ typedef struct {
   float accelerationMS2;  /* its largest acceleration, 0.5..10 */
   float rollPitchRateRadS; /* largest roll and pitch rate that the body-rate loop is asked for, 0.5..100 */
   float yawRateRadS;      /* largest yaw rate, likewise */
-  float motorLagS;        /* time constant of this craft's motors as you know it; 0: only what is published is known */
+  float motorLagS;        /* time constant of this craft's motors as you know it; 0: the published figures alone */
   float dragPerS;         /* linear drag over mass, 0..1 1/s */
   float momentXNS;        /* airflow moment about body x over the velocity along y, 0..0.002 N s */
   float momentYNS;        /* the same about y, along x */
@@ -52,7 +52,7 @@ typedef struct {
   float tiltDeg;          /* its largest tilt on the way, 6..75 degrees; a trajectory that tilts farther may */
   uint8_t table;          /* 0 the cascade, 1 LYAP-E, 2 LQR-E, 3 LYAP-F, 4 LQR-F, 5 the one sent last */
   uint8_t feedForward;    /* whether the paper's laws are fed forward */
-  uint8_t learn;          /* whether drag and moment are corrected by what the flight shows */
+  uint8_t learn;          /* whether drag and moment are corrected in flight */
 } quatrackParameters_t;
 
 typedef struct {
@@ -76,11 +76,11 @@ typedef struct {
                                8 no ground found, 9 tilted, 10 upside down, 11 no climb under thrust */
 } quatrackLog_t;
 
-/* What the cascade flies with, as the flight has shown it. */
+/* The figures that the cascade has learned in flight and flies with. */
 typedef struct {
   float dragPerS;           /* 1/s */
   float momentNS[2];        /* N s */
-  float motorShare;         /* force of the motors over what they are told */
+  float motorShare;         /* force of the motors as a share of the commanded one */
   float disturbanceMS2[3];  /* x and y, world frame, and along the thrust */
   float stands;             /* 1: taken to stand or to be held */
 } quatrackLearned_t;

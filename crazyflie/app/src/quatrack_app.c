@@ -50,14 +50,14 @@ static const char *const refusals[] = {
   "",
   "there is no table of that number",
   "none has been sent",
-  "the motors' lag is outside what it is certified for",
+  "the motors' lag is outside its certificate",
   "no sound table with a certificate",
   "it is for another craft or control rate",
   "its law is not flown here",
 };
 
 /* Says why a table is not flown. */
-static void sayWhatWasRefused(void)
+static void sayRefusal(void)
 {
   static uint16_t said;
   const uint16_t refused = quatrack.log.refusedTables;
@@ -68,8 +68,8 @@ static void sayWhatWasRefused(void)
   said = refused;
 }
 
-/* Says which parameter was no number. */
-static void sayWhatWasPutBack(void)
+/* Says which parameter was NaN. */
+static void sayPutBack(void)
 {
   static uint16_t said;
   const uint16_t putBack = quatrack.log.putBack;
@@ -100,8 +100,8 @@ void appMain(void)
   while (1) {
     quatrackPacket_t packet, answer;
     quatrackService();
-    sayWhatWasPutBack();
-    sayWhatWasRefused();
+    sayPutBack();
+    sayRefusal();
     packet.length = (uint8_t)appchannelReceiveDataPacket(packet.bytes, sizeof(packet.bytes), PERIOD_MS);
     if (packet.length > 0) {
       memset(&answer, 0, sizeof(answer));
@@ -111,7 +111,7 @@ void appMain(void)
   }
 }
 
-/* What belongs to a craft can be stored on it. */
+/* Parameters that belong to a craft can be stored on it. */
 #define OWN_FLOAT (PARAM_FLOAT | PARAM_PERSISTENT)
 #define OWN_UINT8 (PARAM_UINT8 | PARAM_PERSISTENT)
 
@@ -192,7 +192,7 @@ LOG_ADD(LOG_UINT16, parameter, &quatrack.log.parameter)
 LOG_ADD(LOG_UINT16, reason, &quatrack.log.reason)
 LOG_GROUP_STOP(quatrackN)
 
-/* What the flight has shown of the air, the motors and what pushes the craft. */
+/* The figures learned in flight: of the air, the motors and the disturbance. */
 LOG_GROUP_START(quatrackA)
 LOG_ADD(LOG_FLOAT, drag, &quatrack.learned.dragPerS)
 LOG_ADD(LOG_FLOAT, momentX, &quatrack.learned.momentNS[0])

@@ -1,4 +1,4 @@
-//! The tables in the image with what their certificates say.
+//! The tables in the image, with the figures of their certificates.
 
 mod paper_limits;
 
@@ -12,7 +12,7 @@ pub(crate) use paper_limits::{LQR_E, LQR_F, LYAP_E, LYAP_F};
 /// the longest lag of the motors, s, with which it is flown.
 pub(crate) type Certified = (f32, f32);
 
-/// Gains of a cascade with what they are certified for.
+/// Gains of a cascade with their certified range.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cascade {
     /// The gains.

@@ -1,4 +1,4 @@
-//! What is allowed of the paper's tables: made by `cargo gains generate` and not edited by hand.
+//! Scales and motor lags with which the paper's tables are flown: made by `cargo gains generate` and not edited by hand.
 
 use super::Certified;
 

@@ -1,11 +1,12 @@
-//! What is followed along a stream of setpoints at the next control step, made at the call before it.
+//! The reference along a stream of setpoints at the next control step, made at the call before it, to keep the step
+//! short.
 
 use quatrack::{FifthOrderSample, Heading, Leash, Reference, State};
 
 use crate::heading::HeadingStream;
 use crate::stream::Stream;
 
-/// Sample and heading, and what they ask of the laws that take references, with the step that they are for.
+/// Sample and heading, and the reference made of them for the laws that take one, with the step that they are for.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ahead {
     pub(super) sample: FifthOrderSample,

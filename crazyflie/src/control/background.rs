@@ -1,15 +1,15 @@
-//! Background work: what is done between control steps when nothing else is, one thing at a time, in turn.
+//! Background work: one thing at a time, in turn, in the calls between control steps in which nothing else is done.
 
-/// What there is to do.
+/// The kinds of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Work {
     /// To write into the log how far the last step was off.
     LogErrors,
-    /// To write into the log what has been counted.
+    /// To write into the log the counters.
     LogCounters,
-    /// To write into the log what was learned.
+    /// To write into the log the learned figures.
     LogLearned,
-    /// To take over what the app's task has handed over.
+    /// To take over the table or settings that the app's task has handed over.
     TakeOver,
 }
 

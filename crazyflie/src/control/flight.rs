@@ -25,7 +25,7 @@ pub(super) enum Flight {
 }
 
 impl Flight {
-    /// What flies a request.
+    /// The state of flight that flies a request.
     pub(super) fn of(request: &Request, craft: &Craft) -> Self {
         let Horizontal::Rates([p, q]) = request.horizontal else {
             return if request.is_along() { Self::Stream } else { Self::Guided(*request) };

@@ -1,5 +1,5 @@
-//! What flies a craft: what follows a setpoint, a law's table, and what it remembers, in; the output of a step out, as the
-//! supervisor orders it.
+//! Flies a craft as the supervisor orders: setpoints, a law's table and the law's memory in; the output of a
+//! step out.
 
 use quatrack::flatness::GRAVITY_M_S2;
 use quatrack::mixer::MotorLimited;
@@ -26,7 +26,7 @@ use crate::units;
 /// Control steps that a change of the table takes: a quarter of a second.
 pub const FADE_STEPS: u16 = 125;
 
-/// Everything that flies: what every step looks at comes first.
+/// Everything that flies: the fields that every step reads come first.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(super) struct Flyer {
@@ -95,7 +95,8 @@ impl Flyer {
         self.memory.clear_integral();
     }
 
-    /// Motors off for this step. They run down with their lag: who flies on soon has the rest of their forces.
+    /// Motors off for this step. They run down with their lag: a flight that goes on soon begins with the rest of their
+    /// forces.
     #[cold]
     #[inline(never)]
     pub(super) fn switch_off(&mut self) {
@@ -113,7 +114,7 @@ impl Flyer {
         self.ahead.forget();
     }
 
-    /// The firmware's mixer has carried commands to the motors: what they have by now nobody has kept.
+    /// The firmware's mixer has carried commands to the motors: their forces of now have not been kept.
     fn take_motors_over(&mut self) {
         self.memory.assume_hovering(self.craft.airframe());
     }
@@ -125,7 +126,8 @@ impl Flyer {
         (a + b + c + d) * self.craft.per_force_max_1_n * (0.25 * self.craft.thrust_max_m_s2)
     }
 
-    /// What the last step cut of what the law asked for: neither what a pilot asked for nor the idling of a craft that stands.
+    /// The limits that cut the law's command in the last step; none for a pilot's command by hand and for the idling of a
+    /// craft on the ground.
     #[inline(always)]
     pub(super) fn cut(&self) -> MotorLimited {
         let limited = self.outcome.limited;
@@ -146,8 +148,8 @@ impl Flyer {
         self.table.gives_forces() || !self.handover.is_over()
     }
 
-    /// Makes what the next control step follows along a stream. It takes nothing from the state, the last that was flown on, but
-    /// where the leash of the paper's laws ends.
+    /// Makes what the next control step follows along a stream. It takes nothing from the last state that was flown on,
+    /// but where the leash of the paper's laws ends.
     #[inline(always)]
     pub(super) fn look_ahead(&mut self, guard: &Guard, next_step: u32) {
         if self.flight != Flight::Stream {
@@ -214,7 +216,7 @@ impl Flyer {
         self.fly_towards(&looked, &sample, heading, Followed::ALL)
     }
 
-    /// What a flight as asked would go on with begins anew.
+    /// Forgets the state that a flight as asked would go on from.
     fn leave(&mut self) {
         self.handover = Handover::OVER;
         self.ahead.forget();
@@ -258,7 +260,7 @@ impl Flyer {
         }
     }
 
-    /// What the step follows where nobody has looked ahead: the motion of a stream, or what setpoint shaping makes.
+    /// The step's reference where none was made ahead: the motion of a stream, or that of setpoint shaping.
     #[inline(never)]
     fn shape(&mut self, state: &State, now_ms: u32) {
         let beyond_jerk = self.looks_beyond_jerk();
@@ -280,7 +282,7 @@ impl Flyer {
         }
     }
 
-    /// Where the motion asks for what no thrust does, its position and velocity alone.
+    /// Where no thrust gives the motion's acceleration, its position and velocity alone.
     #[cold]
     #[inline(never)]
     fn fly_upright(&mut self, looked: &Looked<'_>) -> Result<(), Unflown> {
@@ -331,7 +333,7 @@ impl Flyer {
     }
 
     /// Flies another table from the next control step on, after [`Self::keep_table`]; in flight over [`FADE_STEPS`] of them,
-    /// but for a cascade that takes over from another one: what they remember is the same, and their limits hold at once.
+    /// but for a cascade that takes over from another one: their memory is the same, and their limits hold at once.
     #[inline(never)]
     pub(super) fn change_table(&mut self, table: &Table) {
         self.table = *table;
@@ -355,7 +357,7 @@ impl Flyer {
         (self.flight, self.handover) = (Flight::Off, Handover::OVER);
     }
 
-    /// Takes over what the owner has set.
+    /// Takes over the owner's settings.
     #[inline(never)]
     pub(super) fn set(&mut self, settings: &Settings, craft: &Craft) {
         self.settings = *settings;
@@ -363,7 +365,7 @@ impl Flyer {
         self.craft.motor_lag_s = craft.motor_lag_s;
     }
 
-    /// Drag (1/s) and moment (N s) that are flown with, and what else the cascade has seen; nothing under another law.
+    /// Drag (1/s) and moment (N s) that are flown with, and the cascade's memory; nothing under another law.
     pub(super) fn learned(&self) -> Option<(f32, [f32; 2], &CascadeMemory)> {
         let cascade = self.table.as_cascade()?;
         let memory = self.memory.cascade();
@@ -371,7 +373,7 @@ impl Flyer {
         Some((drag_per_s, moment_n_s, memory))
     }
 
-    /// Rotation vector from what the last control step wanted to the craft's attitude, body frame, rad.
+    /// Rotation vector from the attitude that the last control step wanted to the craft's, body frame, rad.
     pub(super) fn rotation_error_rad(&self, attitude: Quaternion) -> Vector3<f32> {
         if self.table.gives_forces() {
             return self.memory.cascade().rotation_error_rad();

@@ -14,7 +14,7 @@ use crate::tables::Table;
 /// Why a step gave nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unflown {
-    /// The motion asks for what no thrust does: free fall, or upside down.
+    /// No thrust gives the motion's acceleration: free fall, or upside down.
     Motion,
     /// The state, or the law at this state.
     State,
@@ -35,7 +35,7 @@ impl From<StepError> for Unflown {
     }
 }
 
-/// What every law's step takes beside its table.
+/// The inputs of every law's step beside its table.
 pub(super) struct LawStep<'a> {
     pub(super) craft: &'a Craft,
     pub(super) settings: &'a Settings,
@@ -69,7 +69,7 @@ impl LawStep<'_> {
         outcome: &mut Outcome,
     ) -> Result<(), Unflown> {
         let to = |memory: &mut Memory| self.output(table, memory, outcome);
-        // What is logged is the new law's.
+        // The new law's outcome is logged.
         let from = |memory: &mut Memory| self.output_before(before, memory);
         let output = handover.step_with(memory, Some(&table.actuation), self.measured(), to, from)?;
         let target = outcome.target;

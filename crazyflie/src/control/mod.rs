@@ -1,8 +1,8 @@
 //! The controller: setpoints, estimates and gyroscope readings at 1 kHz in; thrust and torque, or motor forces, out at
 //! 500 Hz.
 //!
-//! A control step asks the core's [`Guard`] what is to be done, does it, and nothing else. The call between takes setpoints, lets
-//! the law's observers look, makes what the next step follows, and does background work.
+//! A control step asks the core's [`Guard`] for its order, does it, and nothing else. The call between takes setpoints,
+//! lets the law's observers look, makes the next step's reference, and does background work.
 //!
 //! ```text
 //! setpoint ─▶ Inbox ─▶ Flyer ◀── estimate, gyroscope ─▶ Guard
@@ -11,7 +11,7 @@
 //! ```
 //!
 //! A change of the table is faded over [`FADE_STEPS`] control steps, both laws stepping side by side. The stabilizer's
-//! stack is small: what is large is here and is written in place.
+//! stack is small: large values are here and are written in place.
 
 mod ahead;
 mod background;
@@ -45,13 +45,13 @@ use crate::units;
 /// Time without a control step after which another controller has flown, or nobody, ms.
 const ABSENT_MS: u32 = 25;
 
-/// What the supervisor holds a flight to: ticks are the firmware's steps of 1 ms.
+/// The supervisor's limits: ticks are the firmware's steps of 1 ms.
 const CONFIGS: (&Config, &MonitorConfig) = (&Config::STANDARD, &MonitorConfig::STANDARD);
 
 /// The controller of a craft.
 ///
-/// In this order: a load of a float reaches a kilobyte from where the controller is, and what every step looks at is to be
-/// within.
+/// In this order: a load of a float reaches a kilobyte from where the controller is, and the fields that every step reads
+/// are to be within.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Controller {
@@ -115,7 +115,7 @@ impl Controller {
         true
     }
 
-    /// Flies as asked where the supervisor says so, else does what it orders.
+    /// Flies as asked where the supervisor says so, else does as it orders.
     #[inline(always)]
     fn supervise(&mut self, sensors: &abi::SensorData, state: &abi::State, step: u32) {
         let (limited, measured) = (self.flyer.outcome.limited, (sensors, state));
@@ -125,13 +125,13 @@ impl Controller {
         }
     }
 
-    /// What the supervisor looks at beside what is measured; link, battery and arming are the firmware's.
+    /// The supervisor's inputs beside the measurements; link, battery and arming are the firmware's.
     fn circumstances(&self) -> Circumstances {
         let reference = if self.is_bad { ReferenceReport::Bad } else { ReferenceReport::Sound };
         Circumstances { asked: self.flyer.flight.asked(), reference, limited: self.flyer.cut(), ..Circumstances::WELL }
     }
 
-    /// Not all is well: does what the supervisor orders, but for flying as asked, which is left to the caller.
+    /// Not all is well: does as the supervisor orders, but for flying as asked, which is left to the caller.
     #[cold]
     #[inline(never)]
     fn is_to_fly(&mut self, (sensors, state): (&abi::SensorData, &abi::State), step: u32) -> bool {
@@ -209,7 +209,7 @@ impl Controller {
         if has_time { Some(self.background.next()) } else { self.background.put_off() }
     }
 
-    /// Takes a setpoint, and does what it asks for.
+    /// Takes a setpoint, and does as it asks.
     #[inline(never)]
     fn take(&mut self, setpoint: &abi::Setpoint, now: u32) {
         match self.inbox.take(setpoint) {
@@ -288,7 +288,7 @@ impl Controller {
         self.flyer.restart();
     }
 
-    /// Forgets what it remembers, at the next control step.
+    /// Forgets the flight so far, at the next control step.
     pub fn forget(&mut self) {
         self.last_step = None;
     }
@@ -299,7 +299,7 @@ impl Controller {
     }
 
     /// Flies another table from the next control step on, after [`Self::keep_table`]; in flight over [`FADE_STEPS`] of them,
-    /// but for a cascade that takes over from another one: what they remember is the same, and their limits hold at once.
+    /// but for a cascade that takes over from another one: their memory is the same, and their limits hold at once.
     pub fn change_table(&mut self, table: &Table) {
         self.flyer.change_table(table);
     }
@@ -313,12 +313,12 @@ impl Controller {
         self.counters = Counters::default();
     }
 
-    /// Takes over what the owner has set.
+    /// Takes over the owner's settings.
     pub fn set(&mut self, settings: &Settings, craft: &Craft) {
         self.flyer.set(settings, craft);
     }
 
-    /// What is done with the last setpoint.
+    /// How the last setpoint is flown.
     pub fn mode(&self) -> Mode {
         match self.flyer.flight {
             Flight::NoCraft => Mode::NoCraft,
@@ -341,28 +341,28 @@ impl Controller {
         &self.flyer.craft
     }
 
-    /// What has been seen so far.
+    /// The counts so far.
     pub fn counters(&self) -> &Counters {
         &self.counters
     }
 
-    /// What the last control step gave.
+    /// The result of the last control step.
     pub fn outcome(&self) -> &Outcome {
         &self.flyer.outcome
     }
 
-    /// Drag (1/s) and moment (N s) that are flown with, and what else the cascade has seen; nothing under another law.
+    /// Drag (1/s) and moment (N s) that are flown with, and the cascade's memory; nothing under another law.
     pub fn learned(&self) -> Option<(f32, [f32; 2], &CascadeMemory)> {
         self.flyer.learned()
     }
 
-    /// Rotation vector from what the last control step wanted to the craft's attitude, body frame, rad.
+    /// Rotation vector from the attitude that the last control step wanted to the craft's, body frame, rad.
     pub fn rotation_error_rad(&self, attitude: Quaternion) -> Vector3<f32> {
         self.flyer.rotation_error_rad(attitude)
     }
 }
 
-/// Whether all is well with what is measured at a step: apart, with what it takes in registers of its own.
+/// Whether all measurements of a step are sound. A function of its own, so that its values have registers of their own.
 #[inline(never)]
 fn goes_on(
     guard: &mut Guard,

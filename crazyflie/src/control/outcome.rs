@@ -1,5 +1,5 @@
-//! What goes into the controller beside setpoint and estimate, and what comes out of it: settings in; the output, what
-//! was given up for it, and what has been seen on the way, out.
+//! Settings and results of the controller, beside setpoint and estimate: the owner's settings in; the output, the limits
+//! that cut it, and the counts of faults, out.
 
 use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
@@ -9,7 +9,7 @@ use quatrack::{FeedForward, Limits, Quaternion};
 use crate::output::Output;
 use crate::shaping::Bounds;
 
-/// What is done with the last setpoint, for the log.
+/// How the last setpoint is flown, for the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Mode {
@@ -56,7 +56,7 @@ pub enum Why {
 }
 
 impl Why {
-    /// Of what the supervisor does.
+    /// Of the supervisor's mode.
     pub(super) const fn of(mode: supervisor::Mode) -> Option<Self> {
         let reason = match mode {
             supervisor::Mode::Tumbled(Tumble::Tilted) => return Some(Self::Tilted),
@@ -73,24 +73,24 @@ impl Why {
             Some(Reason::Saturated) => Some(Self::Saturated),
             Some(Reason::Landed) => Some(Self::Landed),
             Some(Reason::NoGround) => Some(Self::NoGround),
-            // Of what the object does not feed: link, geofence, battery, overruns.
+            // Of the supervisor's inputs that the object does not have: link, geofence, battery, overruns.
             _ => None,
         }
     }
 }
 
-/// What the owner may change beside the table, as the steps take it.
+/// The owner's settings beside the table, as the steps take them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Of setpoints.
     pub bounds: Bounds,
-    /// What the paper's laws may command.
+    /// Limits of the paper's laws' commands.
     pub limits: Limits,
     /// Of the paper's laws.
     pub feed_forward: FeedForward,
 }
 
-/// What the steps have seen.
+/// Counts of events over all steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
     /// Steps on an estimate or gyroscope that had to be bridged.
@@ -103,12 +103,12 @@ pub struct Counters {
     pub jumps: u16,
 }
 
-/// What one step gives.
+/// The result of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// What is put out.
+    /// The output.
     pub output: Output,
-    /// What it gave up.
+    /// The limits that cut it.
     pub limited: MotorLimited,
     /// The attitude that the reference has.
     pub target: Quaternion,

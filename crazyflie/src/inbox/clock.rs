@@ -1,10 +1,10 @@
 //! From the commander's clock, with which setpoints are stamped, to the stabilizer's steps: both count milliseconds, from
 //! different beginnings and with different quartzes.
 //!
-//! A setpoint is seen some steps after its stamp. The least of these delays is the difference between the clocks; what is seen
-//! later than that was on its way for longer.
+//! A setpoint is seen some steps after its stamp. The least of these delays is the difference between the clocks; a
+//! setpoint that is seen later than that was on its way for longer.
 
-/// Longest that a setpoint is on its way, beyond the shortest, ms; what is later belongs to a clock that was set anew.
+/// Longest that a setpoint is on its way, beyond the shortest, ms; a later one means that the clock was set anew.
 const LATE_MAX_MS: u32 = 20;
 
 /// Setpoints in a row that are late after which the clocks are taken to have drifted: half a second.

@@ -10,9 +10,9 @@ pub(super) fn is_another_kind(before: &abi::Setpoint, setpoint: &abi::Setpoint) 
 
 /// Whether two setpoints ask for the same.
 ///
-/// The commander stamps every setpoint that it takes: one with the same stamp can differ only in what the supervisor, when
-/// it levels the craft, and collision avoidance change, and in the thrust, of which two may come within a millisecond.
-/// Without a stamp all of it is looked at.
+/// The commander stamps every setpoint that it takes: one with the same stamp can differ only in the fields that the
+/// supervisor, when it levels the craft, and collision avoidance change, and in the thrust, of which two may come within
+/// a millisecond. Without a stamp all of it is looked at.
 #[inline(always)]
 pub(super) fn is_same(a: &abi::Setpoint, b: &abi::Setpoint) -> bool {
     if a.timestamp != b.timestamp {

@@ -1,4 +1,4 @@
-//! The inbox: owns the newest setpoint as the firmware has it, and says what changed. Below it there is no C struct.
+//! The inbox: owns the newest setpoint as the firmware has it, and names the change. Below it there is no C struct.
 
 mod clock;
 mod comparison;
@@ -13,7 +13,7 @@ use crate::motion::Motion;
 use crate::request::Request;
 use crate::units;
 
-/// What has changed since the inbox was last looked into.
+/// The change since the inbox was last looked into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum News {
     /// Nothing.
@@ -24,7 +24,7 @@ pub enum News {
     Other,
 }
 
-/// What a setpoint that was taken asks for.
+/// The request of a setpoint that was taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Change {
     /// To be flown.
@@ -54,7 +54,7 @@ pub struct Newest {
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Inbox {
-    /// The newest one, but for what nothing compares.
+    /// The newest one, but for the fields that are never compared.
     kept: abi::Setpoint,
     newest: Newest,
     /// Whether it asks for a motion along setpoints at a heading.
@@ -91,14 +91,14 @@ impl Inbox {
         &self.newest
     }
 
-    /// At a control step: whether there is what cannot wait for the next call, a setpoint of another kind.
+    /// At a control step: whether a setpoint of another kind has come, which cannot wait for the next call.
     #[inline(always)]
     pub fn is_urgent(&mut self, setpoint: &abi::Setpoint, now_ms: u32) -> bool {
         self.note(setpoint, now_ms);
         comparison::is_another_kind(&self.kept, setpoint)
     }
 
-    /// At a call without time: nothing is taken, but what has come is remembered to have come now.
+    /// At a call without time: nothing is taken, but a setpoint that has come is dated now.
     #[inline(always)]
     pub fn glance(&mut self, setpoint: &abi::Setpoint, now_ms: u32) -> News {
         self.note(setpoint, now_ms);
@@ -118,7 +118,7 @@ impl Inbox {
         }
     }
 
-    /// Takes a setpoint whatever it is.
+    /// Takes a setpoint of any kind.
     #[inline(never)]
     pub fn take(&mut self, setpoint: &abi::Setpoint) -> Change {
         self.kept = *setpoint;
@@ -215,7 +215,7 @@ mod tests {
         assert!((newest.heading.cos_sin().1 - 1.0).abs() < 1e-6);
         let mut moved = along(15, 1.1, 90.0);
         moved.velocity.x = 0.5;
-        assert_eq!(inbox.look(&moved, 118), News::Motion, "collision avoidance changes what is stamped already");
+        assert_eq!(inbox.look(&moved, 118), News::Motion, "collision avoidance changes a stamped setpoint");
         assert_eq!(inbox.newest().date_ms, 115);
         assert!(inbox.is_urgent(&Setpoint { timestamp: 20, ..Setpoint::OFF }, 120));
         assert_eq!(inbox.take(&Setpoint::OFF), Change::Off);

@@ -1,4 +1,4 @@
-//! What a setpoint asks for, as far as its modes make sense together and the figures that count are finite.
+//! From a C setpoint to a request: it is taken if its modes make sense together and the figures that count are finite.
 
 use quatrack::Heading;
 
@@ -6,13 +6,13 @@ use crate::abi::{self, Mode};
 use crate::request::{Horizontal, Request, Turn, Vertical};
 use crate::units::{self, RAD_PER_DEG};
 
-/// What stands for all of the thrust.
+/// The figure of full thrust.
 const THRUST_MAX: f32 = 65_535.0;
 
 /// Thrust below which a manual setpoint means motors off, as with the firmware's own controllers.
 const THRUST_OFF: f32 = 1_000.0;
 
-/// Largest size of what the figures of a setpoint add up to: a kilometre and more, with room to carry it on by its
+/// Largest size of the sum of a setpoint's figures: a kilometre and more, with room to carry it on by its
 /// derivatives for a while.
 const SUM_MAX: f32 = 1e6;
 

@@ -61,7 +61,7 @@ const STEPS_1_S: f64 = 1e4;
 /// [`CodegenError`] where a table has no design or no certificate.
 pub fn paper_limits() -> Result<String, CodegenError> {
     let mut source = String::from(
-        "//! What is allowed of the paper's tables: made by `cargo gains generate` and not edited by hand.\n\n\
+        "//! Scales and motor lags with which the paper's tables are flown: made by `cargo gains generate` and not edited by hand.\n\n\
          use super::Certified;\n",
     );
     for (constant, (name, text)) in TABLES {
