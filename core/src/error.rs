@@ -1,4 +1,5 @@
-//! All errors, one small enum per edge; every variant carries the offending value and says what to do.
+//! All errors, one small enum for each place where input comes in; every variant carries the offending value and names
+//! the remedy.
 
 use core::fmt;
 
@@ -48,7 +49,7 @@ impl fmt::Display for Field {
     }
 }
 
-/// The first number that is not finite and where it stands, from groups of three numbers in the order of `fields`.
+/// The first number that is not finite and its place, from groups of three numbers in the order of `fields`.
 ///
 /// On slices and out of line: it is small, and no caller needs it to be fast.
 #[cold]

@@ -59,7 +59,7 @@ impl<const M: usize, const N: usize> Gain<M, N> {
     /// # Errors
     /// [`GainError`] names the entry or column.
     pub const fn new(rows: [[f32; N]; M]) -> Result<Self, GainError> {
-        const { assert!(N <= 64, "a bit of a u64 stands for each column") };
+        const { assert!(N <= 64, "each column has a bit of a u64") };
         match fault(rows.as_flattened(), N) {
             None => Ok(Self { rows }),
             Some(fault) => Err(fault),

@@ -1,8 +1,8 @@
 //! Quaternion-based trajectory tracking for small quadcopters, after "Trajectory Tracking with a Quaternion-based
 //! Quadcopter Model": an estimated state and a reference in, thrust and body rates out, at a fixed rate.
 //!
-//! No `std`, no allocation, no panic, `f32`, and the same bits on every target. Gains are computed offline and stand in
-//! [`gains`].
+//! No `std`, no allocation, no panic, `f32`, and the same bits on every target. Gains are computed offline and are stored
+//! in [`gains`].
 //!
 //! ```
 //! use quatrack::{Controller, Equilibrium, Limits, Measured, Memory, Output, Reference, State, Target};

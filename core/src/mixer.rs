@@ -250,7 +250,7 @@ fn smaller(a: f32, b: f32) -> f32 {
 
 /// The forces that a motor can give, not below zero.
 ///
-/// By integers: floats of one sign stand in the order of their bits, and those below zero or not finite come after all
+/// By integers: floats of one sign are in the order of their bits, and those below zero or not finite come after all
 /// others. That takes half the instructions of two comparisons by the FPU.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ForceRange {

@@ -5,7 +5,7 @@
 
 use core::fmt;
 
-/// What the craft is told of the air.
+/// The air that the craft is told of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Air {
@@ -17,7 +17,7 @@ pub struct Air {
     pub moment_n_s: [f32; 2],
     /// Share of the wind's moment that is told from the accelerometer and fed forward.
     pub gust: f32,
-    /// Whether the coefficients are corrected by what the flight shows.
+    /// Whether the coefficients are corrected in flight.
     pub learn: bool,
 }
 
@@ -54,11 +54,11 @@ impl Air {
     pub const NONE: Self =
         Self { drag_per_s: 0.0, drag_along_share: 1.0, moment_n_s: [0.0; 2], gust: 0.0, learn: false };
 
-    /// Crazyflie 2.1 Brushless: 80 % of what was identified from flights with guards (arXiv 2512.14450).
+    /// Crazyflie 2.1 Brushless: 80 % of the air identified from flights with guards (arXiv 2512.14450).
     pub const BRUSHLESS: Self =
         Self { drag_per_s: 0.353, drag_along_share: 1.0, moment_n_s: [5.6e-4, 7.3e-4], gust: 0.55, learn: true };
 
-    /// Crazyflies with brushed motors: 80 % of what was identified from flights of the 2.1 (arXiv 2603.09908).
+    /// Crazyflies with brushed motors: 80 % of the air identified from flights of the 2.1 (arXiv 2603.09908).
     pub const BRUSHED: Self =
         Self { drag_per_s: 0.316, drag_along_share: 1.0, moment_n_s: [3.0e-4, 3.4e-4], gust: 0.55, learn: true };
 

@@ -1,13 +1,13 @@
-//! The air as the flight shows it: drag and moment learned from accelerometer, gyroscope and the forces sent, and the wind that
-//! is left. A hundred times a second.
+//! The coefficients of the air, estimated in flight: drag and moment by regression over accelerometer, gyroscope and the
+//! commanded forces; the rest of the felt force is wind. A hundred times a second.
 //!
 //! All signals pass the same low-pass, LP at 8 rad/s. A force along body x and y that is felt is drag, `LP f = -d LP v`; a turning
 //! that the motors do not explain is the air's moment, `i 8 (w - LP w) - LP t = (c_x v_y, -c_y v_x)` as parts. Behind a high-pass at
 //! 1 rad/s, which takes biases off, each coefficient is a regression through the origin with some weight on the told figure. The
 //! velocity is the **reference's**: with the measured one, a step of wind would be taken for drag.
 //!
-//! What the known drag leaves of the felt force is wind: `r = LP f + d LP v = d w`. It is fed forward into the moment alone: as a
-//! force, a bias of the accelerometer of 0.05 g would cost 5 cm.
+//! The felt force less that of the known drag is the wind's: `r = LP f + d LP v = d w`. It is fed forward into the moment
+//! alone: as a force, a bias of the accelerometer of 0.05 g would cost 5 cm.
 
 use nalgebra::Vector3;
 
@@ -21,12 +21,12 @@ const TICK_S: f32 = 0.01;
 /// Shares of the filters an update: 8 and 1 rad/s over [`TICK_S`].
 const LOW_PASS: f32 = 8.0 * TICK_S / (1.0 + 4.0 * TICK_S);
 const HIGH_PASS: f32 = TICK_S;
-/// Weight of the told figures, and most weight of what was seen, m^2/s.
+/// Weight of the told figures, and most weight of the measurements, m^2/s.
 const TOLD_WEIGHT: f32 = 0.02;
 const SEEN_MOST: f32 = 30.0;
 /// Least drag by which a felt force is taken for a wind, 1/s.
 const DRAG_LEAST_PER_S: f32 = 0.2;
-/// Moment over drag beyond which what is learned is not trusted: over the told one, or where none is told, N s^2.
+/// Moment over drag beyond which the learned figures are not trusted: over the told one, or where none is told, N s^2.
 const RATIO_MOST_SHARE: f32 = 1.5;
 const RATIO_MOST_UNTOLD: f32 = 2.5e-3;
 /// Largest felt force of a wind, m/s^2.
@@ -34,7 +34,7 @@ const WIND_MAX_M_S2: f32 = 2.0;
 /// Largest specific force that an accelerometer shows, m/s^2: 32 g.
 const FELT_MAX_M_S2: f32 = 314.0;
 
-/// What is told, in the units of the forces' parts.
+/// The told figures, in the units of the forces' parts.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AirLearner {
     told: Coefficients,
@@ -68,11 +68,11 @@ impl Coefficients {
     }
 }
 
-/// What it remembers.
+/// Its memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct SeenAir {
-    /// What was learned; nothing while what is told is flown with.
+    /// The learned coefficients; nothing while the told ones are flown with.
     pub(super) learned: Option<Coefficients>,
     /// The wind's moment that is answered, as parts: roll and pitch, N.
     pub(super) wind: [f32; 2],
@@ -87,7 +87,7 @@ pub(super) struct SeenAir {
     pub(super) wait: u8,
 }
 
-/// What an update looks at.
+/// The inputs of an update.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Felt<'a> {
     /// Specific force in the body frame, m/s^2.
@@ -97,7 +97,7 @@ pub(super) struct Felt<'a> {
     pub(super) body_rates: &'a Vector3<f32>,
     /// The motors' forces, in parts.
     pub(super) forces: &'a Parts,
-    /// Whether the craft flies where it was sent with motors that do what they are told.
+    /// Whether the craft flies where it was sent with motors within their range.
     pub(super) undisturbed: bool,
 }
 
@@ -113,7 +113,7 @@ impl SeenAir {
         wait: 0,
     };
 
-    /// Nothing is learned and no wind answered while the craft stands; what was learned stays.
+    /// Nothing is learned and no wind answered while the craft stands on the ground; the learned figures stay.
     pub(super) fn rest(&mut self) {
         *self = Self { learned: self.learned, products: self.products, squares: self.squares, ..Self::NONE };
     }
@@ -257,7 +257,7 @@ mod tests {
     const DRAG: f32 = 0.45;
     const MOMENT: [f32; 2] = [7e-4, 9e-4];
 
-    /// What is known after flying a circle of 1 m/s for some seconds, with an accelerometer that is off, in a wind.
+    /// The coefficients after flying a circle of 1 m/s for some seconds, with an accelerometer that is off, in a wind.
     fn known(air: &Air, seconds: f32, bias: f32, wind: f32, speed: f32) -> (AirLearner, SeenAir) {
         let learner = AirLearner::new(air, &CRAFT, H);
         let mut seen = SeenAir::NONE;

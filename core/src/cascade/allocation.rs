@@ -1,7 +1,8 @@
 //! Four motors' commands from parts, within the motors' range: attitude first, then room for some yaw, then thrust, then yaw.
 //!
 //! Motors that are cut one by one leave no torque, and the craft tumbles. Roll and pitch are scaled, together, only where they alone
-//! exceed the range; the thrust moves to make room for them and for three tenths of the yaw asked; yaw takes what is left.
+//! exceed the range; the thrust moves to make room for them and for three tenths of the yaw asked; yaw takes the room
+//! that is left.
 
 use super::bounds::{between, smaller};
 use crate::airframe::Airframe;
@@ -23,7 +24,7 @@ impl Allocation {
         Self { least_n: figures.force_min_n, most_n: figures.force_max_n }
     }
 
-    /// Parts within the range and what was given up; nothing where one is not finite.
+    /// Parts within the range and the limits that cut them; nothing where one is not finite.
     #[inline(always)]
     pub(super) fn allocate(&self, asked: Parts) -> Option<(Parts, MotorLimited)> {
         let (low, high) = (asked.thrust - self.least_n, self.most_n - asked.thrust);
@@ -47,7 +48,7 @@ impl Allocation {
             (roll, pitch, swing) = (roll * scale, pitch * scale, half_range);
             limited = limited.with_attitude();
         }
-        // Motors 1 and 3 lose by yaw what 2 and 4 gain.
+        // Motors 1 and 3 lose by yaw as much as 2 and 4 gain.
         let (along, across) = ((roll + pitch).abs(), (pitch - roll).abs());
         // No more than the yaw's share that the range has room for beside both.
         let room = half_range - swing;
@@ -113,7 +114,7 @@ mod tests {
     fn thrust_gives_way_to_attitude_and_to_some_yaw() {
         let (found, limited) = allocated(0.2, 0.02, 0.0, 0.01);
         assert!((found.thrust - (0.12 - 0.02 - 0.003)).abs() < 1e-7, "{found:?}");
-        // What is left beside the three tenths is found where roll pulls the other way: none here.
+        // Room beside the three tenths is there where roll pulls the other way: none here.
         assert!((found.yaw - 0.003).abs() < 1e-7 && limited.thrust() && limited.yaw() && !limited.attitude());
         let (untouched, limited) = allocated(0.07, 0.01, -0.01, 0.01);
         assert_eq!((untouched.yaw, limited), (0.01, MotorLimited::NOTHING));

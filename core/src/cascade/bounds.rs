@@ -1,5 +1,5 @@
 //! Cutting numbers and horizontal vectors to a bound, by comparisons: `f32::clamp` may panic, and `f32::min` is a library call
-//! on the Cortex-M4. What is not a number stays visible.
+//! on the Cortex-M4. A NaN stays one, so that a later check finds it.
 
 use crate::math::sqrt;
 

@@ -40,7 +40,7 @@ pub(super) struct Now {
     pub(super) body_rates: Vector3<f32>,
 }
 
-/// What the carrying on remembers.
+/// The newest estimate, carried on to the present step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Carried {
@@ -95,7 +95,7 @@ fn normalised(q: Quaternion) -> Option<Quaternion> {
     (squared >= least && squared <= most).then(|| q.scaled(1.0 / sqrt(squared)))
 }
 
-/// What holds the velocity to the position.
+/// The observer that holds the velocity to the position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct HeldVelocity {

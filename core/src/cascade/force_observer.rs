@@ -1,4 +1,5 @@
-//! What pushes the craft beside its thrust, gravity and the drag that is known: an observer fed by the velocity alone.
+//! The disturbing force: an observer of the acceleration (m/s^2) beside thrust, gravity and the known drag, fed by the
+//! velocity alone.
 //!
 //! `v^' = n (T^ / m + d_z) - g z - d v + (d_x, d_y, 0)`, corrected by `e = v - v^`. Across, the disturbance is a double integrator,
 //! `d' = s`, and the gains are those of the steady Kalman filter for a velocity noise of 0.01 m/s and a noise of 6 m/s^3/sqrt(s)
@@ -10,19 +11,19 @@ use nalgebra::Vector3;
 use super::bounds::{is_beyond, within};
 use crate::flatness::GRAVITY_M_S2;
 
-/// Largest disturbance across and along the thrust, m/s^2: the latter is that of motors that give 70 % of what they are told.
+/// Largest disturbance across and along the thrust, m/s^2: the latter is that of motors that give 70 % of their command.
 const DISTURBANCE_MAX_M_S2: f32 = 4.0;
 const ALONG_MAX_M_S2: f32 = 5.0;
 
 /// Largest slope of it, m/s^3.
 const SLOPE_MAX_M_S3: f32 = 15.0;
 
-/// What is left of the slope after a step with the disturbance on its bound.
+/// Share of the slope that is left after a step with the disturbance on its bound.
 const SLOPE_DECAY: f32 = 0.95;
 
-/// Velocity jump along an axis, between a step and what was expected of it, that no air makes, m/s: that of 25 m/s^2 while an
-/// estimate is held for 10 ms, and what a disturbance of 11 m/s^2 that is not learned yet leaves at every step. A wall stops a craft
-/// faster.
+/// Velocity jump along an axis, between measured and predicted, that no air makes, m/s: that of 25 m/s^2 while an
+/// estimate is held for 10 ms, and the error that a disturbance of 11 m/s^2 leaves at every step until it is learned. A
+/// wall stops a craft faster.
 const JUMP_M_S: f32 = 0.25;
 /// Jump beyond which it is another estimate, or the first one, m/s.
 const ANOTHER_M_S: f32 = 3.0;
@@ -41,7 +42,7 @@ pub(super) struct ForceObserver {
     period_s: f32,
 }
 
-/// What it remembers.
+/// Its memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Disturbance {
@@ -53,7 +54,7 @@ pub(super) struct Disturbance {
     pub(super) along: f32,
 }
 
-/// What moved the craft over the step that has ended.
+/// The forces on the craft over the step that has ended.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pushed {
     /// Velocity at its end, and the mean over it, m/s.
@@ -120,7 +121,7 @@ impl Disturbance {
     pub(super) const NONE: Self =
         Self { velocity: Vector3::new(f32::INFINITY, 0.0, 0.0), across: [0.0; 2], slope: [0.0; 2], along: 0.0 };
 
-    /// Forgotten, at a velocity: what a craft sees that stands.
+    /// Forgotten, at a velocity: as for a craft on the ground.
     pub(super) fn rest(&mut self, velocity: &Vector3<f32>) {
         *self = Self { velocity: *velocity, ..Self::NONE };
     }
@@ -144,7 +145,7 @@ mod tests {
 
     const H: f32 = 0.002;
 
-    /// What is found after some seconds of a force along x that grows, and a thrust that is off.
+    /// The disturbance found after some seconds of a force along x that grows, and a thrust that is off.
     fn found(seconds: f32, slope: f32, thrust_off: f32) -> Disturbance {
         let (observer, mut memory) = (ForceObserver::new(H), Disturbance::NONE);
         let (mut vx, mut vz, mut time) = (0.0, 0.0, 0.0);

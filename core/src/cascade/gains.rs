@@ -114,7 +114,7 @@ impl CascadeGains {
     /// For tables in the source: a bad one does not compile when it initialises a constant.
     ///
     /// # Panics
-    /// At compile time, on what [`Self::new`] refuses.
+    /// At compile time, on numbers that [`Self::new`] refuses.
     pub const fn table(numbers: [f32; Self::COUNT]) -> Self {
         match Self::from_numbers(numbers) {
             Ok(gains) => gains,

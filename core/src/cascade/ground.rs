@@ -1,4 +1,4 @@
-//! Standing, held or flying: whether the observers may believe what they see.
+//! Standing, held or flying: whether the observers may believe the measurements.
 //!
 //! On the ground, or held by a wall or a hand, a craft does not move as its forces say. After a start with motors off it stands until
 //! it has climbed or moves, and asks for no way sideways. A disturbance on its bound at rest means that it is held, and so does a

@@ -20,7 +20,7 @@ struct Axis {
     force: f32,
 }
 
-/// What the loop answers to.
+/// The errors that the loop answers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Errors {
     pub(super) half_rotation: [f32; 3],

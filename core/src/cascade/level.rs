@@ -1,5 +1,5 @@
 //! The cascade by attitude alone, for a craft that has lost its place: an attitude, body rates and an acceleration in; motor forces
-//! out. The heading stays whatever it is.
+//! out. Any heading stays as it is.
 
 use nalgebra::Vector3;
 
@@ -14,10 +14,10 @@ use crate::quaternion::{Heading, Quaternion};
 
 impl Cascade {
     /// One step that makes an acceleration (m/s^2, beside gravity, cut to the limits) at an attitude of norm 1 and body rates:
-    /// commanded forces, N, finite and within the motors' range, and what was given up to stay there. Nothing where what it is
-    /// given is no number.
+    /// commanded forces, N, finite and within the motors' range, and the limits that cut them. Nothing where an
+    /// input is not finite.
     ///
-    /// What has been learned of motors, air and imbalance is flown with and stays as it is.
+    /// The learned figures of motors, air and imbalance are flown with and stay as they are.
     #[inline(never)]
     pub fn level(
         &self,

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Bounds of what the outer loop asks for, beyond the reference's own motion.
+/// Bounds of the outer loop's output, beyond the reference's own motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CascadeLimits {

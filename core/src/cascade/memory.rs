@@ -1,4 +1,4 @@
-//! What the cascade remembers from step to step.
+//! The cascade's memory from step to step: estimates of its observers, and values for the next step.
 
 use nalgebra::Vector3;
 
@@ -28,11 +28,11 @@ pub struct CascadeMemory {
     /// Mean of the forces over the step that has begun, in parts, N.
     pub(super) coming: Parts,
     pub(super) seen: Seen,
-    /// What was seen a step before.
+    /// The values of the step before.
     pub(super) before: Before,
 }
 
-/// What the means over a step take of its beginning.
+/// Values at a step's beginning, for the means over it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Before {
@@ -41,7 +41,7 @@ pub(super) struct Before {
     pub(super) answer: [f32; 2],
 }
 
-/// What a step leaves to the observers.
+/// The values of a step that its observers take.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Seen {
@@ -49,7 +49,7 @@ pub(super) struct Seen {
     pub(super) axis: Vector3<f32>,
     /// Mean of the motors' forces over the step that has ended, in parts, N.
     pub(super) mean_forces: Parts,
-    /// What of them answers the air: roll and pitch, N.
+    /// The part of them that answers the air: roll and pitch, N.
     pub(super) answer: [f32; 2],
     /// The reference's velocity in the world frame, and x and y of it in its own body frame, m/s.
     pub(super) wanted: Vector3<f32>,
@@ -61,7 +61,7 @@ pub(super) struct Seen {
 }
 
 impl CascadeMemory {
-    /// Of a craft that stands with its motors off.
+    /// Of a craft on the ground with its motors off.
     pub const STANDING: Self = Self::new(Ground::STANDING);
 
     /// Of a craft in flight that has seen nothing yet.
@@ -95,7 +95,7 @@ impl CascadeMemory {
         }
     }
 
-    /// The cascade is selected in flight, after another law: what was learned of the air and of the motors stays.
+    /// The cascade is selected in flight, after another law: the learned figures of the air and of the motors stay.
     pub(crate) fn begin_in_flight(&mut self) {
         let mut air = self.air;
         air.rest();
@@ -111,7 +111,7 @@ impl CascadeMemory {
         self.air.rest();
     }
 
-    /// The motors are off: the craft stands until it moves.
+    /// The motors are off: the craft is taken to stand on the ground until it moves.
     pub(crate) fn motors_off(&mut self) {
         self.ground = Ground::STANDING;
     }
@@ -121,7 +121,7 @@ impl CascadeMemory {
         self.air.wait == 0 && matches!(self.ground, Ground::Flying { .. })
     }
 
-    /// Whether the craft is taken to stand, or to be held.
+    /// Whether the craft is taken to stand on the ground, or to be held.
     pub fn stands(&self) -> bool {
         self.ground.is_standing()
     }
@@ -132,7 +132,7 @@ impl CascadeMemory {
         Vector3::new(2.0 * x, 2.0 * y, 2.0 * z)
     }
 
-    /// Force of the motors over what they are told, as the flight shows it.
+    /// Force of the motors as a share of the commanded one, as learned in flight.
     pub fn motor_share(&self) -> f32 {
         self.motors.share
     }

@@ -16,8 +16,8 @@
 //! force_observer  d^ across and its slope, d^_z along the thrust
 //! torque_observer t^ about each axis
 //! air_learner     d, c_x, c_y; the wind's moment
-//! yield_learner   what the motors give of what they are told
-//! ground          whether the craft stands, and the observers with it
+//! yield_learner   the motors' force as a share of the commanded one
+//! ground          whether the craft is on the ground, and the observers off with it
 //! ```
 //!
 //! [`Cascade::command`] is the upper half, [`Cascade::observe`] the lower one: a caller with little time at the step
@@ -72,7 +72,7 @@ use crate::motor_reference::FifthOrderSample;
 use crate::quaternion::Heading;
 use crate::state::State;
 
-/// The cascade for a craft at a control rate. What it remembers is apart, in [`CascadeMemory`].
+/// The cascade for a craft at a control rate. Its memory is apart, in [`CascadeMemory`].
 #[derive(Clone, Copy, Debug)]
 pub struct Cascade {
     actuation: Actuation,
@@ -85,7 +85,7 @@ pub struct Cascade {
     air_learner: AirLearner,
 }
 
-/// What a step is given.
+/// The inputs of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct CascadeInput<'a> {
     /// The estimate.
@@ -101,7 +101,7 @@ pub struct CascadeInput<'a> {
 }
 
 /// Which directions of a reference are followed. Where one is not, a pilot flies the craft: there is no error, no known air and no
-/// observer that answers, and the reference's acceleration is what was asked of tilt or thrust.
+/// observer that answers, and the reference's acceleration is that of the tilt or thrust asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Followed {
     /// Over the ground.
@@ -155,7 +155,7 @@ impl Cascade {
         self.actuation.airframe()
     }
 
-    /// What carries commands of other laws to its motors, with the lag that it reckons with.
+    /// The actuation for commands of other laws, with the cascade's motor lag.
     pub const fn actuation(&self) -> &Actuation {
         &self.actuation
     }
@@ -184,7 +184,7 @@ impl Cascade {
         Ok(stepped)
     }
 
-    /// The commanded forces for this step, N, finite and within the motors' range, and what was given up to stay there.
+    /// The commanded forces for this step, N, finite and within the motors' range, and the limits that cut them.
     ///
     /// # Errors
     /// [`StepError`] where the estimate is not to be flown on or the reference has no attitude. There are then no
@@ -279,7 +279,7 @@ impl Cascade {
         Some((commands_n, limited))
     }
 
-    /// What follows a step: the observers, the air, the ground.
+    /// The updates after a step: the observers, the air, the ground.
     pub fn observe(&self, memory: &mut CascadeMemory, accelerometer: Option<&Vector3<f32>>) {
         let (seen, before) = (memory.seen, memory.before);
         let (flew, period_s) = (memory.ground.is_flying(), self.actuation.lag.period_s());
@@ -294,7 +294,7 @@ impl Cascade {
             (self.air_learner.now(&memory.air).drag, mean(&before.velocity, &seen.now.velocity));
         let drag = smaller(known, BELIEVED_DRAG_MAX_PER_S);
         if known > drag {
-            // What is known beyond is taken of the reference's velocity, as the reference has it: it is no part of the
+            // Drag known beyond that is taken of the reference's velocity, as the reference has it: it is no part of the
             // loop.
             let (rest, v) = ((known - drag) / drag, &seen.wanted);
             mean_velocity += Vector3::new(rest * v.x, rest * v.y, rest * v.z);

@@ -4,7 +4,7 @@
 //! `A = -k_v sat[(v - v_r) + sat((k_p / k_v) (p - p_r))]`: the inner bound is the speed with which a position error is
 //! made good. With
 //! `k_p = g k_r / k_th`, `k_v = g k_v / k_th` sideways and `4 k / (m (1 + k_f))` in height it is the LQR's own answer
-//! where nothing is limited. What thrust and gravity then have to make, `h = a' + A + g z`, keeps its upward part
+//! where nothing is limited. The specific force that thrust then has to make, `h = a' + A + g z`, keeps its upward part
 //! first, then its tilt, then its size.
 
 use nalgebra::Vector3;
@@ -19,9 +19,9 @@ use crate::math::sqrt;
 
 /// Largest velocity that the velocity loop answers to, m/s.
 const VELOCITY_MOST_M_S: f32 = 3.0;
-/// Least upward part of what thrust has to make, m/s^2.
+/// Least upward part of the specific force, m/s^2.
 const UPWARD_LEAST_M_S2: f32 = 2.0;
-/// Most of it over what all motors give together: what lies beyond is cut by the allocation, which weighs attitude.
+/// Its largest size as a share of that of all motors together: the allocation cuts the rest, and keeps the attitude.
 const SIZE_MOST_SHARE: f32 = 1.2;
 
 /// The loop's gains and limits.
@@ -93,8 +93,9 @@ impl OuterLoop {
         self.limits.speed_m_s
     }
 
-    /// What the errors of position and velocity ask for, beside the reference's own acceleration, where a position error over ground
-    /// is made good with a speed; nothing sideways where the craft stands or is flown by tilt.
+    /// The acceleration (m/s^2) that the errors of position and velocity ask for, beside the reference's own, where a
+    /// position error over ground is made good with a speed; nothing sideways where the craft is on the ground or is
+    /// flown by tilt.
     #[inline(always)]
     pub(super) fn correction(
         &self,
@@ -111,7 +112,8 @@ impl OuterLoop {
         Vector3::new(-across.velocity * x, -across.velocity * y, up)
     }
 
-    /// What thrust has to make of a reference's acceleration and a correction, within its limits.
+    /// The specific force (m/s^2) that thrust has to make for a reference's acceleration and a correction, within its
+    /// limits.
     #[inline(always)]
     pub(super) fn limited(&self, own: &Vector3<f32>, correction: &Vector3<f32>) -> Vector3<f32> {
         let (x, y) = (own.x + correction.x, own.y + correction.y);

@@ -1,4 +1,4 @@
-//! The reference in air: what the craft has to do beyond the motion itself, exactly, with its derivatives up to the
+//! The reference in air: the forces and moments that the motion takes in air, exactly, with their derivatives up to the
 //! lead that the motors need.
 //!
 //! Drag that is the same in all directions asks for an acceleration more, `a' = a + d v`, and so `j' = j + d a`, `s' =
@@ -25,7 +25,7 @@ const HALF_APART: [f32; 3] = [0.921_061, 0.389_418_3, 0.422_793_2];
 /// overshoots a goal by as much as one that has it: a centimetre each.
 const APPROACH_SHARE: f32 = 0.4;
 
-/// What else acts on the craft.
+/// The air and the disturbance that act on the craft.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Surroundings {
     pub(super) air: Coefficients,
@@ -73,7 +73,7 @@ pub(super) struct InAir {
     /// Forces and the commands that give them, in parts, N.
     pub(super) forces: Parts,
     pub(super) commands: Parts,
-    /// What of the forces answers the air, roll and pitch, N.
+    /// The part of the forces that answers the air, roll and pitch, N.
     pub(super) answer: [f32; 2],
     /// Velocity in the body frame, x and y, m/s.
     pub(super) body_velocity: [f32; 2],

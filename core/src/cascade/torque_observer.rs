@@ -1,5 +1,5 @@
-//! What turns the craft beside its motors, its own rotation and the moment of the air that is known: a centre of mass that is
-//! off, a weak motor. An observer fed by the gyroscope alone.
+//! The disturbing torque: an observer of the torque (in parts, N) beside motors, rotation and the known moment of the
+//! air: a centre of mass that is off, a weak motor. It is fed by the gyroscope alone.
 //!
 //! Per axis, with forces in parts and `i` the inertia over four levers: `i w^' = f^ + t^ - m - gyroscopic`, m the part that
 //! answers the air; the correction by `e = w - w^` has both poles at w_0, or a pair of the given damping.
@@ -18,7 +18,7 @@ const DAMPING: f32 = 0.8;
 /// Largest part, over the most force of a motor.
 const MOST_SHARE: f32 = 0.15;
 
-/// Difference of a body rate from what was expected of it that no torque makes in a step, rad/s.
+/// Difference between measured and predicted body rate that no torque makes in a step, rad/s.
 const JUMP_RAD_S: f32 = 10.0;
 
 /// Gains and the craft.
@@ -33,7 +33,7 @@ pub(super) struct TorqueObserver {
     most_n: f32,
 }
 
-/// What it remembers.
+/// Its memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Imbalance {
@@ -48,7 +48,7 @@ impl Imbalance {
 }
 
 impl Imbalance {
-    /// Forgotten, at body rates: what a craft sees that stands.
+    /// Forgotten, at body rates: as for a craft on the ground.
     pub(super) fn rest(&mut self, body_rates: &Vector3<f32>) {
         *self = Self { body_rates: *body_rates, ..Self::NONE };
     }

@@ -1,5 +1,6 @@
-//! What the motors give of what they are told: real ones give 11 to 34 % less (arXiv 2603.09908, 2512.14450), another share with each
-//! battery. The thrust shows it: at hover, thrust and the error along it make up gravity. The torques are asked for by as much more.
+//! The motors' force as a share of the commanded one: real ones give 11 to 34 % less (arXiv 2603.09908, 2512.14450),
+//! another share with each battery. The thrust shows it: at hover, thrust and the error along it make up gravity. The
+//! torques are asked for by as much more.
 //!
 //! A craft that is heavier than told looks the same. Its inertia is larger by about as much, so that its torques are right, too.
 

@@ -1,4 +1,4 @@
-//! One control step of any law: what is measured and what is to be followed in, an output within the limits out, or the
+//! One control step of any law: the measurements and the reference in, an output within the limits out, or the
 //! reason for none.
 
 use nalgebra::Vector3;
@@ -17,9 +17,10 @@ use crate::law::{ActuatorAware, AlongTrajectory, IntegralAction};
 use crate::motor_reference::MotorReference;
 use crate::state::State;
 
-/// A law, the limits that its commands keep to, and what carries them to the motors. To be called at a fixed rate.
+/// A law, the limits that its commands keep to, and the actuation that carries them to the motors. To be called at a
+/// fixed rate.
 ///
-/// What is remembered is apart, in [`Memory`]: a flight begins with a new one, and another controller can take over between
+/// Its memory is apart, in [`Memory`]: a flight begins with a new one, and another controller can take over between
 /// two steps with the same.
 #[derive(Clone, Copy, Debug)]
 pub struct Controller<'a> {
@@ -30,7 +31,7 @@ pub struct Controller<'a> {
 
 impl<'a> Controller<'a> {
     /// A controller that flies `law` within `limits`. A law of motor forces keeps to the motors' range instead, and has brought
-    /// what it needs to know of them.
+    /// their figures.
     #[inline]
     pub fn new(law: impl Into<Law<'a>>, limits: Limits) -> Self {
         let law = law.into();
@@ -43,7 +44,7 @@ impl<'a> Controller<'a> {
         Self { law, limits, actuation }
     }
 
-    /// With what carries commands to the motors; a law of motor forces keeps its own.
+    /// With the actuation that carries commands to the motors; a law of motor forces keeps its own.
     #[inline]
     pub const fn with_actuation(self, actuation: &'a Actuation) -> Self {
         match self.law {
@@ -64,7 +65,7 @@ impl<'a> Controller<'a> {
         &self.limits
     }
 
-    /// What carries commands to the motors.
+    /// The actuation that carries commands to the motors.
     pub const fn actuation(&self) -> Option<&'a Actuation> {
         self.actuation
     }
@@ -72,8 +73,8 @@ impl<'a> Controller<'a> {
     /// The output for this step.
     ///
     /// # Errors
-    /// [`StepError`] where the state is no state, the law has no answer, or lacks what it takes. There is then no output, and
-    /// the memory is as it was: the caller stops or levels, and never holds the last output.
+    /// [`StepError`] where the state is not finite, the law has no answer, or lacks an input. There is then no output,
+    /// and the memory is as it was: the caller stops or levels, and never holds the last output.
     #[inline(always)]
     pub fn step(&self, memory: &mut Memory, measured: Measured<'_>, target: Target<'_>) -> Result<Output, StepError> {
         match &self.law {
@@ -87,8 +88,8 @@ impl<'a> Controller<'a> {
         }
     }
 
-    /// The same but for what the law looks at once the motors have their forces: for a caller with little time at the step, who
-    /// calls [`Self::observe`] before the next one.
+    /// The same without the law's observers, which can wait until the motors have their forces: for a caller with little
+    /// time at the step, which calls [`Self::observe`] before the next one.
     ///
     /// # Errors
     /// As [`Self::step`].
@@ -114,8 +115,8 @@ impl<'a> Controller<'a> {
         }
     }
 
-    /// What follows [`Self::step_unobserved`], with the accelerometer's specific force in the body frame, m/s^2: observers, where
-    /// the law has any.
+    /// The observers' update after [`Self::step_unobserved`], with the accelerometer's specific force in the body frame,
+    /// m/s^2: observers, where the law has any.
     #[inline(always)]
     pub fn observe(&self, memory: &mut Memory, specific_force_m_s2: Option<&Vector3<f32>>) {
         #[cfg(feature = "cascade")]
@@ -126,8 +127,8 @@ impl<'a> Controller<'a> {
         let _ = (memory, specific_force_m_s2);
     }
 
-    /// Motor forces for what a step gave, at the body rates that it was taken on; those of a law that gives forces as they
-    /// are.
+    /// Motor forces for the output of a step, at the body rates that it was taken on; those of a law that gives forces as
+    /// they are.
     ///
     /// # Errors
     /// [`StepError::NoBodyRates`] and [`StepError::NoActuation`] where a command cannot be carried; [`StepError::State`] for

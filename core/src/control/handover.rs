@@ -30,8 +30,8 @@ impl Handover {
     /// Nobody hands over to anybody.
     pub const OVER: Self = Self { steps: 0, done: 0, memory: Memory::at_rest() };
 
-    /// The way from `old` to `new` in so many steps, the last of which is the new one's alone; 0 and 1 swap at once. What the
-    /// old one has integrated goes on with the new one only where it means the same to it.
+    /// The way from `old` to `new` in so many steps, the last of which is the new one's alone; 0 and 1 swap at once. The
+    /// old one's integral goes on with the new one only where it means the same to it.
     #[inline]
     pub fn begin(steps: u16, old: &Law<'_>, new: &Law<'_>, memory: &mut Memory) -> Self {
         let mut way = Self::OVER;
@@ -89,8 +89,8 @@ impl Handover {
         self.step_with(memory, actuation, measured, to, from)
     }
 
-    /// The same for controllers that make their own targets. `to` steps the new one on `memory`, `from` the old one on what it
-    /// remembers; both are given motors that have followed the mixed forces so far.
+    /// The same for controllers that make their own targets. `to` steps the new one on `memory`, `from` the old one on
+    /// its own memory; both are given motors that have followed the mixed forces so far.
     ///
     /// # Errors
     /// Those of the new one.
@@ -117,7 +117,7 @@ impl Handover {
         Ok(to)
     }
 
-    /// What lies between two outputs at this step of the way; nothing where one of them cannot be carried to the motors.
+    /// The mixture of two outputs at this step of the way; nothing where one of them cannot be carried to the motors.
     #[inline]
     fn mixed(
         &mut self,

@@ -1,4 +1,4 @@
-//! What a step is given: what is measured of the craft, and what it is to follow.
+//! The inputs of a step: the measurements of the craft, and its target.
 
 use nalgebra::Vector3;
 
@@ -16,7 +16,7 @@ use crate::rigid_state::RigidState;
 use crate::state::State;
 use crate::trajectory::Progress;
 
-/// What is measured of a craft at a step, borrowed from where it is.
+/// The measurements of a craft at a step, borrowed.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured<'a> {
     pub(crate) state: &'a State,
@@ -37,14 +37,14 @@ impl<'a> Measured<'a> {
         }
     }
 
-    /// With the gyroscope's body rates `p q r`, rad/s: what a law of motor forces takes, and who carries a command to them.
+    /// With the gyroscope's body rates `p q r`, rad/s: needed by a law of motor forces, and to carry a command to them.
     #[inline]
     pub const fn with_body_rates(self, body_rates_rad_s: &'a Vector3<f32>) -> Self {
         Self { body_rates_rad_s: Some(body_rates_rad_s), ..self }
     }
 
     #[cfg(feature = "cascade")]
-    /// With the accelerometer's specific force in the body frame, m/s^2: what the cascade learns the air from.
+    /// With the accelerometer's specific force in the body frame, m/s^2: from which the cascade learns the air.
     #[inline]
     pub const fn with_specific_force(self, specific_force_m_s2: &'a Vector3<f32>) -> Self {
         Self { specific_force_m_s2: Some(specific_force_m_s2), ..self }
@@ -73,7 +73,7 @@ impl<'a> From<&'a RigidState> for Measured<'a> {
     }
 }
 
-/// What is to be followed at a step, borrowed from where it is: as deep as the law needs it ([`super::Law::follows_forces`]).
+/// The target at a step, borrowed: with as many derivatives as the law needs ([`super::Law::follows_forces`]).
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
     pub(crate) reference: &'a Reference,

@@ -46,7 +46,7 @@ impl Law<'_> {
         matches!(self, Self::ActuatorAware(_) | Self::IntegralAction(_))
     }
 
-    /// Whether what one has integrated means the same to the other: both are of one kind that integrates.
+    /// Whether the integral of one means the same to the other: both are of one kind that integrates.
     pub(crate) const fn integrates_like(&self, other: &Self) -> bool {
         matches!(
             (self, other),

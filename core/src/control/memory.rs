@@ -1,4 +1,4 @@
-//! What a controller remembers from one step to the next.
+//! A controller's memory from one step to the next: predicted motor forces, integral, states of observers.
 
 use nalgebra::Vector3;
 
@@ -11,7 +11,7 @@ use crate::motor_lag::MotorForces;
 #[cfg(feature = "cascade")]
 use crate::supervisor::Levelled;
 
-/// What is remembered from step to step: one record for every law, so that another law can take over.
+/// The memory of a flight: one record for every law, so that another law can take over.
 ///
 /// The forces that the motors should have by now are kept up whenever motor forces come of a step; they are not measured. The
 /// integral of the position error is moved on by the laws that have one, and is cleared where a law without one hands over
@@ -35,7 +35,7 @@ impl Memory {
         finite.then_some(Self { forces_n, ..Self::at_rest() })
     }
 
-    /// Motors that stand still: before a take-off, and for who has no motors.
+    /// Motors that do not turn: before a take-off, and where there are no motors.
     pub const fn at_rest() -> Self {
         Self {
             forces_n: [0.0; 4],
@@ -56,7 +56,7 @@ impl Memory {
         }
     }
 
-    /// Takes the motors to be at the forces of hover, where nobody has kept what they were commanded in flight.
+    /// Takes the motors to be at the forces of hover, where nobody has kept their commands in flight.
     pub fn assume_hovering(&mut self, airframe: &Airframe) {
         self.forces_n = [airframe.hover_force_n(); 4];
         #[cfg(feature = "cascade")]
@@ -82,7 +82,7 @@ impl Memory {
     }
 
     #[cfg(feature = "cascade")]
-    /// What the cascade remembers.
+    /// The cascade's memory.
     pub const fn cascade(&self) -> &CascadeMemory {
         &self.cascade
     }
@@ -94,7 +94,7 @@ impl Memory {
     }
 
     #[cfg(feature = "cascade")]
-    /// Flies an attitude alone: forces, N, and what was given up; nothing where what is given is no number.
+    /// Flies an attitude alone: forces, N, and the limits that cut them; nothing where an input is not finite.
     pub fn level(&mut self, cascade: &Cascade, levelled: &Levelled) -> Option<(MotorForces, MotorLimited)> {
         let Levelled { attitude, body_rates_rad_s, acceleration_m_s2 } = levelled;
         cascade.level(&mut self.cascade, &mut self.forces_n, (*attitude, body_rates_rad_s), acceleration_m_s2)

@@ -1,7 +1,7 @@
-//! The controller: what is measured and what is to be followed in, a command or motor forces out, by any law.
+//! The controller: the measurements and the target in, a command or motor forces out, by any law.
 //!
 //! One composition for every product. A [`Law`] is one of the laws with its gain; a [`Controller`] is a law with the limits
-//! that its commands keep to and what carries them to the motors ([`crate::Actuation`]). What is remembered from step to step is
+//! that its commands keep to and the [`crate::Actuation`] that carries them to the motors. The memory of a flight is
 //! apart, in [`Memory`], and serves every law: another controller can take over between two steps, at once or over a
 //! [`Handover`].
 //!

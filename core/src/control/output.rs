@@ -1,10 +1,10 @@
-//! What a step gives: thrust and body rates, or the forces of the motors.
+//! The output of a step: thrust and body rates, or the forces of the motors.
 
 use crate::command::{Command, Limited};
 use crate::mixer::MotorLimited;
 use crate::motor_lag::MotorForces;
 
-/// What a step of a controller gives, as its law has it; [`super::Controller::carry`] makes motor forces of either.
+/// The output of a controller's step, as its law has it; [`super::Controller::carry`] makes motor forces of either.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Output {
@@ -20,7 +20,7 @@ pub enum Output {
 pub struct Step {
     /// The command, finite and within the limits.
     pub command: Command,
-    /// What was cut to stay there.
+    /// The limits that cut it.
     pub limited: Limited,
 }
 
@@ -31,7 +31,7 @@ pub struct Step {
 pub struct MotorStep {
     /// Commanded forces of M1 to M4, N, finite and within the motors' range.
     pub forces_n: MotorForces,
-    /// What was given up to stay there, the command's cuts included.
+    /// The limits that cut them, the command's included.
     pub limited: MotorLimited,
 }
 
@@ -45,7 +45,7 @@ impl Output {
         }
     }
 
-    /// What was cut or given up.
+    /// The limits that cut the output.
     #[inline]
     pub const fn limited(&self) -> MotorLimited {
         match self {

@@ -1,4 +1,4 @@
-//! How a gain of any kind is flown: what the board decides beside the table.
+//! How a gain of any kind is flown: the board's settings beside the table.
 
 use core::fmt;
 
@@ -9,12 +9,12 @@ use crate::clock::Rate;
 use crate::command::Limits;
 use crate::law::{ErrorForm, FeedForward};
 
-/// What a board decides of a controller that it makes of a gain table.
+/// A board's settings of a controller that it makes of a gain table.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings<'a> {
-    /// What the craft can be asked for; the table's own limits hold beside.
+    /// Limits of the craft; the table's own hold beside.
     pub limits: Limits,
-    /// What carries commands to the motors; a table for motor forces takes that of its own lag
+    /// The actuation that carries commands to the motors; a table for motor forces takes that of its own lag
     /// ([`crate::gains::table::AcceptedTable::actuation`]).
     pub actuation: Option<&'a Actuation>,
     /// The law that was made of a table of the cascade, for that table.

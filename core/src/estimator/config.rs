@@ -11,7 +11,7 @@ pub enum Force {
     /// Along body z the accelerometer's reading; along body x and y linear drag alone. A rotor craft's
     /// accelerometer measures little else on those axes, and that little is often hidden under vibration and bias.
     ThrustAxis,
-    /// All three axes of the accelerometer. Whatever pushes the craft is measured, so that no drag is reckoned with; a
+    /// All three axes of the accelerometer. Every force but gravity is measured, so that no drag is modelled; a
     /// bias of the accelerometer goes straight into the velocity.
     AllAxes,
 }

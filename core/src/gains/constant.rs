@@ -1,4 +1,4 @@
-//! A gain that is the same all the time, of any law: what every product keeps, scales, shows, and flies.
+//! A gain that is the same all the time, of any law: every product keeps, scales, shows and flies it.
 
 use crate::clock::Rate;
 use crate::control::{Controller, ControllerError, Law, Measured, Memory, Output, Settings, Target};
@@ -29,9 +29,9 @@ pub enum ConstantGain {
 /// Factors on the feedback.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// Of what moves the craft: thrust, roll and pitch.
+    /// Of thrust, roll and pitch, which move the craft.
     pub position: f32,
-    /// Of what turns it about the vertical.
+    /// Of yaw, which turns it about the vertical.
     pub yaw: f32,
 }
 
@@ -39,7 +39,7 @@ impl Scales {
     /// The gain as it is.
     pub const ONE: Self = Self { position: 1.0, yaw: 1.0 };
 
-    /// Each within one over `margin` and `margin`; what is not a number counts as the least.
+    /// Each within one over `margin` and `margin`; a NaN counts as the least.
     pub fn within(&self, margin: f32) -> Self {
         let (least, most) = (1.0 / margin, margin);
         let cut = |scale: f32| {
@@ -55,7 +55,7 @@ impl Scales {
     }
 }
 
-/// The entries of a gain that decouples, by what they drive: zero where a law has none. Of a gain that does not decouple, the
+/// The entries of a gain that decouples, by chain: zero where a law has none. Of a gain that does not decouple, the
 /// entries in the same places.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decoupled {
@@ -87,8 +87,8 @@ impl ConstantGain {
         })
     }
 
-    /// A step of its controller, for who makes it anew for each: within the limits of the settings. The law of each arm is
-    /// known to the compiler, so that it costs no more than a step of a controller that is kept.
+    /// A step of its controller, for a caller that makes it anew for each: within the limits of the settings. The law of
+    /// each arm is known to the compiler, so that it costs no more than a step of a controller that is kept.
     ///
     /// # Errors
     /// As [`Controller::step`].
@@ -154,7 +154,7 @@ impl ConstantGain {
         }
     }
 
-    /// The entries by what they drive.
+    /// The entries by chain.
     pub fn decoupled(&self) -> Decoupled {
         match self {
             Self::Equilibrium(gain) => around_hover(gain.gain().rows(), [[0.0; 3]; 4]),

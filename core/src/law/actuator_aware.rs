@@ -35,7 +35,7 @@ enum Feedback {
     Dense([[f32; 4]; 19]),
 }
 
-/// The gain of a design in which the hover model of an X with equal arms falls apart: thrust, roll, pitch and yaw parts
+/// The gain of a design in which the hover model of an X with equal arms decouples: thrust, roll, pitch and yaw parts
 /// of the four forces answer each to their own errors. A quarter of the products of the whole matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Chains {
@@ -94,7 +94,7 @@ impl ActuatorAwareGain {
         &self.gain
     }
 
-    /// Whether it falls apart into thrust, roll, pitch and yaw, and a step therefore takes a quarter of the products.
+    /// Whether it decouples into thrust, roll, pitch and yaw, and a step therefore takes a quarter of the products.
     pub const fn is_decoupled(&self) -> bool {
         matches!(self.feedback, Feedback::Decoupled(_))
     }

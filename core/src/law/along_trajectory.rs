@@ -18,11 +18,11 @@ use crate::reference::Reference;
 use crate::state::NormalizedState;
 use crate::trajectory::Progress;
 
-/// A gain at a knot by rows as it stands in a table, each entry an `f32` lowest byte first: outputs `[T p q r]` from
+/// A gain at a knot by rows as a table stores it, each entry an `f32` lowest byte first: outputs `[T p q r]` from
 /// errors `[x y z q1 q2 q3 vx vy vz]`. Made by [`GainSchedule::knot`].
 pub type Knot = [[[u8; 4]; 9]; 4];
 
-/// Gains over time; borrowed from where they stand, for they are too many to copy.
+/// Gains over time; borrowed, for they are too many to copy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GainSchedule<'a> {
     knots: &'a [Knot],

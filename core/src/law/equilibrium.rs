@@ -19,7 +19,7 @@ pub struct EquilibriumGain {
     chains: Option<Chains>,
 }
 
-/// The gain of a design in which the hover model falls apart, as the paper's do: thrust answers to height, roll rate to
+/// The gain of a design in which the hover model decouples, as the paper's do: thrust answers to height, roll rate to
 /// y, pitch rate to x, yaw rate to heading. A quarter of the products of the whole matrix. Entries are those of `-K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Chains {

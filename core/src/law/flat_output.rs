@@ -21,7 +21,7 @@ pub struct FlatOutputGain {
     chains: Option<Chains>,
 }
 
-/// The gain of a design in which the flat chain falls apart, as the paper's do: acceleration answers to position and
+/// The gain of a design in which the flat chain decouples, as the paper's do: acceleration answers to position and
 /// velocity of its axis, jerk to acceleration, the rate of `q3` to `q3`. A seventh of the products of the whole matrix.
 /// Entries are those of `-K`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,7 +75,7 @@ impl FlatOutputGain {
                 ka[2] * az,
                 kq * q3,
             ],
-            // An array of its own: the chains' errors then never need to stand in memory.
+            // An array of its own: the chains' errors then never need to be in memory.
             None => self.gain.times(&[x, y, z, vx, vy, vz, ax, ay, az, q3]).map(|sum| -sum),
         }
     }

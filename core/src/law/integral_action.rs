@@ -1,8 +1,9 @@
 //! LQI: the equilibrium law with the integral of the position error, `u = u_e - K e - K_i i`.
 //!
-//! The integral is a sum over the control steps, `i+ = i + h (r - r_r)`, kept in the world frame, where a wind or a weight
-//! stands still while the craft turns; the law turns it to the reference's heading frame like every other error. A
-//! command is computed from the sum before the present error is added: the design's model does the same.
+//! The integral is a sum over the control steps, `i+ = i + h (r - r_r)`, kept in the world frame, where the force of a
+//! wind or a weight keeps its direction while the craft turns; the law turns it to the reference's heading frame like
+//! every other error. A command is computed from the sum before the present error is added: the design's model does the
+//! same.
 //!
 //! **Anti-windup.** The sum holds while the command that answers to it is cut to the limits: the vertical part while the
 //! thrust is, both horizontal parts while the roll rate or the pitch rate is. A cut yaw rate holds nothing: no position

@@ -18,7 +18,7 @@ impl<const N: usize> BlobReceiver<N> {
         Self { announced, bytes: heapless::Vec::new() }
     }
 
-    /// Takes an announcement. The one in force again changes nothing; another one drops what has been received.
+    /// Takes an announcement. The one in force again changes nothing; another one drops the bytes received so far.
     ///
     /// # Errors
     /// [`UploadError::Length`].
@@ -78,8 +78,8 @@ impl<const N: usize> BlobReceiver<N> {
         Ok((announced, &self.bytes))
     }
 
-    /// Uses the room for a blob that comes from elsewhere: `read` fills the start of a buffer and says how much of it. What was
-    /// announced is forgotten.
+    /// Uses the room for a blob that comes from elsewhere: `read` fills the start of a buffer and says how much of it.
+    /// The announcement is forgotten.
     pub fn fill(&mut self, read: impl FnOnce(&mut [u8]) -> Option<usize>) -> Option<&[u8]> {
         self.clear();
         // There is room for as many as there is room for.
@@ -89,7 +89,7 @@ impl<const N: usize> BlobReceiver<N> {
         bytes.map(|_| &*self.bytes)
     }
 
-    /// Forgets what was announced and received.
+    /// Forgets the announcement and the bytes received.
     pub fn clear(&mut self) {
         self.announced.length = 0;
         self.bytes.clear();
@@ -173,9 +173,9 @@ mod tests {
             (2, 96, 1, UploadError::OtherBlob { announced: 1 }, "of another blob"),
             (1, 96, 0, UploadError::ChunkLength { wanted: 96, length: 200 }, "empty"),
         ];
-        for (id, offset, bytes, error, what) in cases {
+        for (id, offset, bytes, error, case) in cases {
             let chunk = Chunk::new(id, offset, &BLOB[..bytes]).unwrap();
-            assert_eq!(receiver.chunk(&chunk), Err(error), "{what}");
+            assert_eq!(receiver.chunk(&chunk), Err(error), "{case}");
         }
         let mut nearly = receiver_with(192);
         let beyond = Chunk::new(1, 192, &[0; 9]).unwrap();

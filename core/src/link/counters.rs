@@ -1,4 +1,4 @@
-//! What a decoder has seen: one count for every way a frame can end.
+//! A decoder's counters: one count for every way a frame can end.
 
 use core::fmt;
 
@@ -39,7 +39,7 @@ pub enum Rejected {
         /// Its sequence number.
         sequence: u32,
     },
-    /// Without the tag of whoever may send it.
+    /// Without the tag of a sender that is allowed to send it.
     Unauthentic {
         /// The frame's session.
         session: u32,

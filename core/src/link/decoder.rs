@@ -20,7 +20,7 @@ pub struct Received<M> {
     pub session: u32,
     /// The frame's sequence number, to be named in an answer.
     pub sequence: u32,
-    /// What was sent.
+    /// The message.
     pub message: M,
 }
 
@@ -46,12 +46,14 @@ impl<M: Message> Decoder<M> {
         Self::with(Window::open(session), Guard::CABLE)
     }
 
-    /// For a board with a key: takes the hellos of who has it, too. Sessions are [proposed](Self::propose) then.
+    /// For a board with a key: takes the hellos of other holders of the key, too. Sessions are [proposed](Self::propose)
+    /// then.
     pub fn keyed(key: &Key, protection: Protection) -> Self {
         Self::with(Window::closed(), Guard::keyed(key.hello(), protection))
     }
 
-    /// For a host with a key: takes the answer to its hello, and others once it knows [by what](Self::open) they are tagged.
+    /// For a host with a key: takes the answer to its hello, and other frames once it [knows](Self::open) the key of
+    /// their tags.
     pub fn for_keyed_session(session: u32, answer: Seal) -> Self {
         Self::with(Window::open(session), Guard::keyed(answer, Protection::Everything))
     }
@@ -72,13 +74,13 @@ impl<M: Message> Decoder<M> {
         self.window.session()
     }
 
-    /// For the board: what tags the frames of the session that a hello of this sequence number asks for. The first of them opens it;
-    /// until then the open one goes on.
+    /// For the board: the seal of the frames of the session that a hello of this sequence number asks for. The first of
+    /// them opens it; until then the open one goes on.
     pub fn propose(&mut self, session: u32, hello: u32, seal: Seal) {
         self.guard.propose(session, hello, seal);
     }
 
-    /// For the host: what tags the frames of the session, and which of them.
+    /// For the host: the seal of the session's frames, and the messages that it covers.
     pub fn open(&mut self, seal: Seal, protection: Protection) {
         self.guard.open(seal, protection);
     }
@@ -88,7 +90,7 @@ impl<M: Message> Decoder<M> {
         self.admission = admission;
     }
 
-    /// What has been seen so far.
+    /// The counts so far.
     pub const fn counters(&self) -> &Counters {
         &self.counters
     }
@@ -173,7 +175,7 @@ struct Unstuffer {
     length: usize,
     /// Bytes of the block still to come; 0 where a code byte is next.
     block_left: u8,
-    /// Whether a block has begun; a zero stands between it and the next one. A block of 254 bytes, which COBS would
+    /// Whether a block has begun; a zero is between it and the next one. A block of 254 bytes, which COBS would
     /// not follow by a zero, is longer than any frame.
     begun: bool,
     overlong: bool,

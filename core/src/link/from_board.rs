@@ -1,4 +1,4 @@
-//! What the board tells a host.
+//! Messages from the board to a host.
 
 use core::fmt;
 
@@ -76,7 +76,7 @@ pub struct Version {
     pub patch: u16,
 }
 
-/// Who answers. The protocol's version stands in every frame.
+/// The board's identity. The protocol's version is in every frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Identity {
@@ -106,7 +106,7 @@ pub struct CommandOut {
     pub tick: Tick,
     /// The tick of the state that was stepped on, as it came.
     pub state_tick: Tick,
-    /// The command and what of it was limited, or why there is none.
+    /// The command and the limits that cut it, or why there is none.
     pub result: Result<Step, NoCommand>,
 }
 
@@ -118,7 +118,7 @@ pub struct ForcesOut {
     pub tick: Tick,
     /// The tick of the state that was stepped on, as it came.
     pub state_tick: Tick,
-    /// The forces of M1 to M4 and what of them was given up, or why there are none.
+    /// The forces of M1 to M4 and the limits that cut them, or why there are none.
     pub result: Result<MotorStep, NoCommand>,
 }
 
@@ -138,7 +138,7 @@ pub enum NoCommand {
     NoBodyRates,
 }
 
-/// Telemetry: what the loop has been doing since start-up.
+/// Telemetry: counts and timing of the loop since start-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Telemetry {
@@ -176,7 +176,7 @@ pub struct LoopStatistics {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FaultReport {
-    /// What.
+    /// The fault.
     pub fault: Fault,
     /// The board's tick.
     pub tick: Tick,
@@ -188,7 +188,7 @@ pub struct FaultReport {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Refusal {
-    /// This firmware does not have what was asked for.
+    /// This firmware does not support the request.
     Unsupported,
     /// Not while the motors may turn.
     NotWhileArmed,
@@ -214,7 +214,7 @@ pub enum Refusal {
     Key,
     /// The board has a key and nothing to make a nonce of: its source of random numbers does not work.
     NoNonce,
-    /// There is nothing to keep blobs in, or it failed; what was kept before is as it was.
+    /// There is nothing to keep blobs in, or it failed; the blob kept before is unchanged.
     NotKept,
 }
 
@@ -231,9 +231,9 @@ impl fmt::Display for Refusal {
             Self::Upload(error) => error.fmt(f),
             Self::Blob(error) => error.fmt(f),
             Self::NoTable => f.write_str("board: no such gain table; upload and commit one for this rate first"),
-            Self::Key => f.write_str("board: it talks to those who have its key alone; give the file of its key"),
+            Self::Key => f.write_str("board: it answers holders of its key alone; give the file of its key"),
             Self::NoNonce => f.write_str("board: no random numbers to use its key with; restart it"),
-            Self::NotKept => f.write_str("board: its flash did not keep it; what was kept before is as it was"),
+            Self::NotKept => f.write_str("board: its flash did not keep it; the upload kept before is unchanged"),
             Self::LawChanging => f.write_str("board: the law is changing; ask again when it has, or disarm first"),
         }
     }

@@ -63,7 +63,7 @@ impl<const KNOTS: usize> GainStore<KNOTS> {
         Self { board: None, slots: [Slot::EMPTY; 2], second_in_use: false }
     }
 
-    /// Takes tables of this vehicle at this rate from now on, or none at all. What was loaded before is dropped.
+    /// Takes tables of this vehicle at this rate from now on, or none at all. Tables loaded before are dropped.
     pub fn assign(&mut self, board: Option<(Vehicle, Rate)>) {
         self.board = board;
         self.slots.iter_mut().for_each(Slot::clear);
@@ -77,14 +77,14 @@ impl<const KNOTS: usize> GainStore<KNOTS> {
     /// Reads and checks a blob, and only then puts it to use.
     ///
     /// # Errors
-    /// [`LoadError`]; what was in use stays in use, and what was before it stays too.
+    /// [`LoadError`]; the table in use stays in use, and the one before it stays too.
     pub fn commit(&mut self, blob: &[u8]) -> Result<(), LoadError> {
         let table = GainTable::from_bytes(blob)?;
         let (vehicle, rate) = *self.board_for(table.head())?;
         Ok(self.put_to_use(&table.accept_for(&vehicle, rate)?)?)
     }
 
-    /// Puts to use what has been read elsewhere.
+    /// Puts to use a table that has been read elsewhere.
     ///
     /// # Errors
     /// [`AcceptError`] where it was accepted for another board, or has more knots than there is room for; nothing changes then.

@@ -11,12 +11,12 @@ pub(crate) struct Frame<'b> {
     pub(crate) sequence: u32,
     pub(crate) opens: bool,
     pub(crate) tagging: Tagging,
-    /// What the tag is of.
+    /// The bytes that the tag is of.
     pub(crate) signed: &'b [u8],
     pub(crate) tag: Option<&'b [u8; TAG_BYTES]>,
 }
 
-/// What is asked of frames beside their numbers: tags, or nothing on a cable.
+/// The check of frames beside their numbers: of tags, or none on a cable.
 #[derive(Clone, Debug)]
 pub(crate) struct Guard(Option<Keyed>);
 

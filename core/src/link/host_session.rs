@@ -57,7 +57,7 @@ impl HostSession {
         self.encoder.next_sequence()
     }
 
-    /// What has been heard so far.
+    /// The counts so far.
     pub const fn counters(&self) -> &Counters {
         self.decoder.counters()
     }

@@ -1,7 +1,7 @@
-//! What an image is given after it was built: keys in, the bytes of its slot out, and back.
+//! The keys that an image is given after it was built: keys in, the bytes of its slot out, and back.
 //!
-//! The slot is in the image's flash; whoever provisions an image finds it in the file by its magic and writes over it. So the keys
-//! are in no source and in no build.
+//! The slot is in the image's flash; `quatrack keys provision` finds it in the file by its magic and writes over it. So
+//! the keys are in no source and in no build.
 //!
 //! ```text
 //! magic       16 bytes  [`KEY_SLOT_MAGIC`]
@@ -11,7 +11,7 @@
 //! signing     32 bytes  the key that gain tables are signed with
 //! ```
 //!
-//! Writing to flash only clears bits: what was given is not taken away by it, but for a whole erase.
+//! Writing to flash only clears bits: only a whole erase takes a key away again.
 
 use super::seal::{KEY_BYTES, Protection};
 
@@ -30,9 +30,9 @@ const SIGNED: u8 = 1;
 /// The keys of an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct GivenKeys {
-    /// The link's, and what it protects; nothing for a cable.
+    /// The link's, and the messages that it protects; nothing for a cable.
     pub link: Option<([u8; KEY_BYTES], Protection)>,
-    /// What gain tables are signed with; nothing where any are taken.
+    /// The key that gain tables are signed with; nothing where any are taken.
     pub signing: Option<[u8; KEY_BYTES]>,
 }
 
@@ -40,7 +40,7 @@ impl GivenKeys {
     /// None at all.
     pub const NONE: Self = Self { link: None, signing: None };
 
-    /// What a slot holds.
+    /// The keys in a slot.
     pub fn read(slot: &[u8; KEY_SLOT_BYTES]) -> Self {
         let (_, rest) = slot.split_first_chunk::<16>().unwrap_or((&KEY_SLOT_MAGIC, &[]));
         let ([protection, tables], keys) = rest.split_first_chunk::<2>().unwrap_or((&[0; 2], &[]));

@@ -1,4 +1,4 @@
-//! Which law to fly: a choice as it stands in a message in, the law out.
+//! Which law to fly: a choice as a message holds it in, the law out.
 
 use serde::{Deserialize, Serialize};
 

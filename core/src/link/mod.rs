@@ -7,27 +7,27 @@
 //! session   varint   the host's number for this connection; the board echoes it
 //! sequence  varint   counts the sender's frames in this session, from 0
 //! message   postcard ToBoard or FromBoard: one byte that says which, then its fields
-//! tag       16 bytes who sent it, where a key says so ([`Key`]); otherwise absent
+//! tag       16 bytes of the sender's key ([`Key`]), where there is one; otherwise absent
 //! checksum  u32 LE   CRC-32C of all of the above
 //! ```
 //!
 //! [`Encoder`] writes frames into a caller's buffer, [`Decoder`] reads them from any chunks of bytes, rejects and counts
-//! what is not sound ([`Counters`]), and finds back at the next 0x00. Who opens the line sends one 0x00 first, so that
-//! noise before it does not spoil the first frame. A reply may be lost: requests carry no state between frames and can be
-//! sent again.
+//! unsound frames ([`Counters`]), and finds back at the next 0x00. The end that opens the line sends one 0x00 first, so
+//! that noise before it does not spoil the first frame. A reply may be lost: requests carry no state between frames and
+//! can be sent again.
 //!
 //! Session and sequence rule: within a session only a sequence number above the last accepted one is taken, so that
 //! duplicates, late and replayed frames are rejected; gaps are counted as lost. The board opens a session on
 //! [`ToBoard::Hello`] with a session number ahead of the current one (in serial-number arithmetic), the host on its own
-//! choice: a restarted host takes a later number, the seconds since 1970 say, and is not locked out. What opens another session
-//! is the receiver's to say ([`Admission`]): nothing while a craft is armed, anything once its link has been silent. A session
-//! ends with its last sequence number, after 49 days at 1 kHz.
+//! choice: a restarted host takes a later number, the seconds since 1970 say, and is not locked out. Which hellos open
+//! another session is the receiver's to say ([`Admission`]): nothing while a craft is armed, anything once its link has
+//! been silent. A session ends with its last sequence number, after 49 days at 1 kHz.
 //!
 //! Without a key none of this authenticates: anybody with access to the line can fly. With one ([`Protection`]) a hello and its answer
 //! carry tags of the key, and bring a nonce each; from both follows the session's own key, whose tags the other frames carry. The
 //! hello alone opens nothing: the session that was open goes on until the first frame of the new one with a right tag, so that a hello
-//! which is replayed neither takes a craft nor keeps a lost link alive. What carries no tag has sequence numbers of its own, so that
-//! nothing without a tag makes an order late.
+//! which is replayed neither takes a craft nor keeps a lost link alive. Frames without a tag have sequence numbers of
+//! their own, so that nothing without a tag makes an order late.
 //!
 //! On the target, [`BlobReceiver`] and [`TrajectoryStore`] are best statics of their own: they start as zeros and take
 //! no flash.
@@ -83,7 +83,7 @@ pub const BLOB_BYTES_MAX: usize = {
     if trajectory > table { trajectory } else { table }
 };
 
-/// Ends every frame and stands nowhere else.
+/// Ends every frame and is nowhere else in it.
 pub const DELIMITER: u8 = 0;
 
 /// A message that can be framed: [`ToBoard`] or [`FromBoard`]. Sealed: the schema is this module's.

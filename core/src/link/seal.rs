@@ -1,19 +1,19 @@
-//! Who speaks: a key that both ends were given in; tags of frames, made and checked, out.
+//! Authentication: a key that both ends were given in; tags of frames, made and checked, out.
 //!
-//! A tag is HMAC-SHA-256 (RFC 2104) of a label, what the label needs, and a frame from its version to its message, cut to
-//! [`TAG_BYTES`]. No two kinds of tag share a label, so that none passes for another:
+//! A tag is HMAC-SHA-256 (RFC 2104) of a label, the bytes in front of the frame, and the frame from its version to its message, cut
+//! to [`TAG_BYTES`]. No two kinds of tag share a label, so that none passes for another:
 //!
 //! ```text
 //! label  key          in front of the frame     tags
 //! 1      the key      -                         a hello
-//! 2      the key      the host's nonce          its answer: whoever made it has the key, and made it for this hello
+//! 2      the key      the host's nonce          its answer: its maker has the key, and made it for this hello
 //! 4      the session  -                         frames to the board
 //! 5      the session  -                         frames from the board
 //! 6      tables' own  -                         gain tables, in the place of a frame
 //! ```
 //!
 //! The session's key is the same function, uncut, of label 3, the session's number and both nonces: the frames of one session are worth
-//! nothing in any other, whatever their numbers. Tags are compared in constant time.
+//! nothing in any other, even with the same numbers. Tags are compared in constant time.
 
 use core::fmt;
 
@@ -45,10 +45,10 @@ impl Nonce {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Protection {
-    /// None: whoever is on the line can fly. For a cable.
+    /// None: anybody on the line can fly. For a cable.
     #[default]
     CableOnly,
-    /// All but states, references and what answers them: whoever is on the line can mislead the craft, but not arm it, disarm
+    /// All but states, references and their answers: anybody on the line can mislead the craft, but not arm it, disarm
     /// it or set it up.
     Orders,
     /// All of them.
@@ -62,7 +62,7 @@ pub enum Tagging {
     Greeting,
     /// Under any protection.
     Always,
-    /// A state or what answers it, many times a second: under [`Protection::Everything`].
+    /// A state or its answer, many times a second: under [`Protection::Everything`].
     Motion,
 }
 
@@ -87,7 +87,7 @@ impl fmt::Display for Protection {
     }
 }
 
-/// What host and board share. Printed nowhere.
+/// The secret that host and board share. Printed nowhere.
 #[derive(Clone)]
 pub struct Key(Hmac<Sha256>);
 

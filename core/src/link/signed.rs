@@ -1,17 +1,17 @@
 //! Signed gain tables: a table and its key in, the signed one out; a blob in, its table out, if it is signed.
 //!
 //! A signed table is the table's bytes ([`crate::gains::table`]), then `QTSG`, then a tag of 16 bytes ([`Key::tables`]). The key is
-//! one of its own, which hosts of the link need not have. It is shared: who reads it out of a board can sign as well.
+//! one of its own, which hosts of the link need not have. It is shared: a reader of the board's flash can sign as well.
 
 use super::seal::{Key, TAG_BYTES};
 
-/// What is in front of a tag.
+/// The bytes in front of a tag.
 const MAGIC: [u8; 4] = *b"QTSG";
 
 /// Bytes behind a signed table.
 pub const SIGNATURE_BYTES: usize = MAGIC.len() + TAG_BYTES;
 
-/// What goes behind a table that is signed with a key.
+/// The bytes behind a table that is signed with a key.
 pub fn signature(key: &Key, table: &[u8]) -> [u8; SIGNATURE_BYTES] {
     let tag = key.tables().tag(table);
     let mut bytes = [0; SIGNATURE_BYTES];

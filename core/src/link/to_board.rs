@@ -1,4 +1,4 @@
-//! What a host tells the board.
+//! Messages from a host to the board.
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -14,15 +14,15 @@ use crate::rigid_state::RigidState;
 use crate::state::State;
 
 /// A message to the board. States are answered by a command or by motor forces, the hello by an identity, everything else by an
-/// acknowledgement, a refusal, or what was asked for.
+/// acknowledgement, a refusal, or the requested value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ToBoard {
-    /// Opens a session and asks who is there, with a nonce of the host. May be repeated until it is answered.
+    /// Opens a session and asks for the board's identity, with a nonce of the host. May be repeated until it is answered.
     Hello(Nonce),
     /// A state; the reference comes from the stored trajectory that is playing.
     State(StateIn),
-    /// A state and what to follow.
+    /// A state and the reference.
     StateAndReference(StateIn, FlatSample),
     /// Which law to fly from the next step on.
     SelectLaw(LawChoice),
@@ -47,7 +47,7 @@ pub enum ToBoard {
         /// Of the announced blob.
         id: u32,
     },
-    /// Ask for telemetry now, whatever its period.
+    /// Ask for telemetry now, beside its period.
     TelemetryRequest,
     /// A state with body rates, for a board without a gyroscope; the reference comes from the stored trajectory that is
     /// playing.
@@ -108,7 +108,7 @@ pub enum TrajectoryId {
     Uploaded,
 }
 
-/// What to do with stored trajectories.
+/// Orders about stored trajectories.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum TrajectoryCommand {
@@ -152,7 +152,7 @@ pub enum ParameterId {
 pub enum Parameter {
     /// Ticks of the loop for one control step.
     Decimation(u32),
-    /// What the vehicle can be asked for.
+    /// Limits of the vehicle's commands.
     Limits(LimitsSetting),
     /// Oldest state that is flown on, ticks.
     StateAgeMaxTicks(Tick),
@@ -164,7 +164,7 @@ pub enum Parameter {
     TelemetryPeriodTicks(Tick),
     /// Commits since start-up that did not put an upload to use. Cannot be set.
     UploadsRefused(u32),
-    /// What the motors' duties are reckoned with, V. May be set in flight, as the battery drains.
+    /// The voltage by which the motors' duties are computed, V. May be set in flight, as the battery drains.
     BatteryVoltage(f32),
     /// Bandwidth of the loop that follows a law's body rates about body x, y, z, rad/s.
     BodyRateBandwidth([f32; 3]),

@@ -1,6 +1,6 @@
 //! Uploaded trajectories: a blob in, checked pieces out, the ones in use untouched until then.
 //!
-//! The blob is what postcard makes of a slice of [`Piece`]: their number as a varint, then for each its duration in ns
+//! The blob is postcard's encoding of a slice of [`Piece`]: their number as a varint, then for each its duration in ns
 //! as a varint and the 32 coefficients of x, y, z and heading, ascending powers, `f32` lowest byte first.
 
 use core::fmt;
@@ -80,7 +80,7 @@ pub fn encode_trajectory<'b>(pieces: &[Piece], buffer: &'b mut [u8]) -> Option<&
 #[derive(Clone, Debug)]
 pub struct TrajectorySlot<const P: usize> {
     pieces: Vec<Piece, P>,
-    /// Whether they have been checked as a whole, and what that found. Not an option of one: an empty slot is all zero
+    /// Whether they have been checked as a whole, and the result. Not an option of one: an empty slot is all zero
     /// bytes, and a static one then takes no flash.
     checked: bool,
     summary: Summary,
@@ -154,7 +154,7 @@ impl<const P: usize> TrajectoryStore<P> {
     /// Decodes and checks a blob, and only then puts it to use.
     ///
     /// # Errors
-    /// [`BlobError`]; what was in use stays in use.
+    /// [`BlobError`]; the trajectory in use stays in use.
     pub fn commit(&mut self, blob: &[u8]) -> Result<(), BlobError> {
         let (_, spare) = self.split();
         spare.load(blob)?;

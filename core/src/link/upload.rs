@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::size::CHUNK_BYTES;
 use crate::checksum::crc32c;
 
-/// What a blob is.
+/// The kind of a blob.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum BlobKind {
@@ -25,7 +25,7 @@ pub enum BlobKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct UploadBegin {
-    /// What it is.
+    /// Its kind.
     pub kind: BlobKind,
     /// The sender's name for it; every chunk carries it.
     pub id: u32,
@@ -82,7 +82,7 @@ impl Progress {
     }
 }
 
-/// Why a part of an upload is refused. What has been received so far stays.
+/// Why a part of an upload is refused. The bytes received so far stay.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum UploadError {
@@ -117,11 +117,11 @@ pub enum UploadError {
         /// The offset of the next chunk.
         wanted: u32,
     },
-    /// The whole is not what was announced; it has to be sent again from the start.
+    /// The whole has not the announced checksum; it has to be sent again from the start.
     Checksum {
         /// As announced.
         announced: u32,
-        /// Of what is there.
+        /// Of the bytes received.
         found: u32,
     },
 }

@@ -8,9 +8,9 @@ pub enum Admission {
     /// Those with a later number: late and replayed ones are none.
     #[default]
     Later,
-    /// None: what is flown keeps its master.
+    /// None: a craft in flight keeps its host.
     Nobody,
-    /// All of them, whatever their number: the master has fallen silent, and may come back with a clock of another time.
+    /// All of them, with any number: the host has fallen silent, and may come back with a clock of another time.
     Anybody,
 }
 
@@ -69,7 +69,7 @@ impl Window {
         Ok(if is_tagged { bare.map_or(0, |bare| skipped.min(sequence.saturating_sub(bare))) } else { skipped })
     }
 
-    /// Opens another session with this frame. What its sender sent before was for nobody.
+    /// Opens another session with this frame. Earlier frames of its sender are not counted as lost.
     pub(crate) fn begin(&mut self, session: u32, sequence: u32) {
         *self = Self { session: Some(session), next: [sequence.checked_add(1); 2] };
     }

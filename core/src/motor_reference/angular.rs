@@ -41,7 +41,7 @@ pub(crate) struct Motion {
     pub(crate) crackle: Vector3<f32>,
 }
 
-/// A heading with its first three derivatives. Most craft do not turn: none stands for heading 0 throughout.
+/// A heading with its first three derivatives. Most craft do not turn: none means heading 0 throughout.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turn {
     heading: Heading,

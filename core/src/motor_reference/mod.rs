@@ -146,7 +146,7 @@ impl MotorReference {
         Self::of_motion(&flat.position_m, &flat.velocity_m_s, &motion, Some(&turn), airframe)
     }
 
-    /// The same from its parts. Inlined, so that none of them has to stand in memory.
+    /// The same from its parts. Inlined, so that none of them has to be in memory.
     #[inline(always)]
     pub(crate) fn of_motion(
         position_m: &Vector3<f32>,

@@ -1,4 +1,5 @@
-//! A standstill from any course: where a craft is and how fast in; what it is to follow until it stands, and down from there, out.
+//! A standstill from any course: position and velocity in; the reference that brakes to a standstill, and goes down from
+//! there, out.
 
 use nalgebra::Vector3;
 
@@ -9,7 +10,7 @@ use crate::motor_reference::FifthOrderSample;
 use crate::quaternion::{Heading, Quaternion};
 use crate::state::State;
 
-/// How hard it brakes over ground, m/s^2: from 3 m/s within 0.75 m, and what the attitude takes to get there.
+/// How hard it brakes over ground, m/s^2: from 3 m/s within 0.75 m, and the way that the attitude's change takes.
 const BRAKE_M_S2: f32 = 6.0;
 /// The same up and down, m/s^2.
 const BRAKE_UP_M_S2: f32 = 4.0;
@@ -28,7 +29,7 @@ pub struct Braking {
     begun: Tick,
     /// Since when it goes down.
     descending: Option<Tick>,
-    /// What is followed; here, so that no caller's stack has to hold it.
+    /// The reference; here, so that no caller's stack has to hold it.
     sample: FifthOrderSample,
 }
 
@@ -45,7 +46,7 @@ impl Braking {
         self.descending.get_or_insert(now);
     }
 
-    /// What is to be followed at a tick of a length (s), by a craft at a height (m): it is never far ahead of one that has come to
+    /// The reference at a tick of a length (s), by a craft at a height (m): it is never far ahead of one that has come to
     /// the ground.
     pub fn at(&mut self, now: Tick, tick_s: f32, height_m: f32) -> &FifthOrderSample {
         let t = now.wrapping_sub(self.begun) as f32 * tick_s;
@@ -87,7 +88,7 @@ impl Braking {
     }
 }
 
-/// A speed of 1 that is braked: what is left of it, the way so far over it (s), and how it changes (1/s).
+/// A speed of 1 that is braked: the rest of it, the way so far over it (s), and its rate of change (1/s).
 struct Braked {
     speed: f32,
     way: f32,

@@ -1,8 +1,10 @@
-//! Level and down without a place: what is still believed of the velocity in; the acceleration to be flown by attitude alone, out.
+//! Level and down without a place: the velocity, as far as it is believed, in; the acceleration to be flown by attitude
+//! alone, m/s^2, out.
 //!
-//! What moves sideways is braked for as long as the velocity is believed. Downwards the same velocity is held to a slow descent;
-//! once it is believed no more, the thrust is a little below the weight, and less with every second, so that the craft comes down
-//! even where its motors give more than they are told. With the drag of small craft the end of it is 1.5 m/s.
+//! Sideways motion is braked for as long as the velocity is believed. Downwards the same velocity is held to a slow
+//! descent; once it is believed no more, the thrust is a little below the weight, and less with every second, so that the
+//! craft comes down even where its motors give more than their command. With the drag of small craft the end of it is 1.5
+//! m/s.
 
 use nalgebra::Vector3;
 
@@ -19,7 +21,7 @@ const HOLD_PER_S: f32 = 2.0;
 const HOLD_MAX_M_S2: f32 = 1.5;
 /// For how long a bridged velocity is believed, s: an accelerometer that is off by 0.05 g is then off by 0.75 m/s.
 const BELIEVED_S: f32 = 1.5;
-/// What is missing of the weight then, m/s^2; how that grows, m/s^3; and to what, m/s^2.
+/// The thrust's deficit to the weight then, m/s^2; its growth, m/s^3; and its most, m/s^2.
 const LESS_M_S2: f32 = 0.12;
 const LESS_PER_S: f32 = 0.06;
 const LESS_MAX_M_S2: f32 = 0.6;

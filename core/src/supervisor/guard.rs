@@ -1,8 +1,8 @@
-//! The supervisor as a product calls it: what a step measures in; what is to be flown, out.
+//! The supervisor as a product calls it: the measurements of a step in; an order, and the state to fly it on, out.
 //!
 //! ```text
 //! state, gyroscope, accelerometer ─▶ Monitor ─▶ Supervisor ─▶ Off | Fly | Brake | Level
-//!                 what can be flown on   │           ▲              │ Braking, descent
+//!                state to be flown on    │           ▲              │ Braking, descent
 //! link, reference, battery, overruns ────┼───────────┘              ▼
 //!                                        └──────────────────▶  the product's law, or Cascade::level
 //! ```
@@ -18,16 +18,16 @@ use crate::motor_reference::FifthOrderSample;
 use crate::quaternion::Heading;
 use crate::state::State;
 
-/// What a step has beside its sample.
+/// The inputs of a step beside its sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Circumstances {
     /// Ticks since the last accepted frame; none if there never was one. 0 without a link.
     pub link_silence_ticks: Option<Tick>,
     /// How it is asked to fly.
     pub asked: Asked,
-    /// What there is to be followed.
+    /// Whether there is a reference, and a sound one.
     pub reference: ReferenceReport,
-    /// What the last step cut.
+    /// The limits that cut the last step.
     pub limited: MotorLimited,
     /// Whether the craft can be levelled by attitude: there are body rates and motors.
     pub levels: bool,
@@ -64,7 +64,7 @@ pub struct Guard {
     way: Way,
 }
 
-/// Thrust over mass from which on motors lift a craft, m/s^2: what is cut below is no climb.
+/// Thrust over mass from which on motors lift a craft, m/s^2: a cut below it prevents no climb.
 const CLIMB_LEAST_M_S2: f32 = 1.05 * GRAVITY_M_S2;
 
 impl Guard {
@@ -93,7 +93,7 @@ impl Guard {
         self.supervisor.fail(fault, now);
     }
 
-    /// What the craft is doing.
+    /// The mode of the craft.
     pub const fn mode(&self) -> Mode {
         self.supervisor.mode()
     }
@@ -108,7 +108,7 @@ impl Guard {
         self.supervisor.disarm(now);
     }
 
-    /// What is to be done in a step.
+    /// The order for a step.
     #[inline(always)]
     pub fn order(
         &mut self,
@@ -132,8 +132,8 @@ impl Guard {
     }
 
     /// Whether all is well and the flight goes on as asked, on [`Self::looked`]: the first half of [`Self::order`], for a product that
-    /// fetches what only the second half looks at, [`Self::order_closely`], where it has to. The sample's specific force is not looked at;
-    /// a thrust of infinity is one that nobody has looked up yet.
+    /// fetches the inputs of the second half alone, [`Self::order_closely`], where it has to. The sample's specific force
+    /// is not looked at; a thrust of infinity is one that nobody has looked up yet.
     #[inline(always)]
     pub fn goes_on(
         &mut self,
@@ -157,13 +157,13 @@ impl Guard {
             && self.monitor.keeps(monitor, sample)
     }
 
-    /// What the last step was to be flown on.
+    /// The state and body rates that the last step was flown on.
     #[inline(always)]
     pub fn looked(&self) -> Looked<'_> {
         self.monitor.looked()
     }
 
-    /// What is to be done in a step that does not simply go on.
+    /// The order for a step that does not simply go on.
     #[cold]
     #[inline(never)]
     pub fn order_closely(
@@ -187,7 +187,7 @@ impl Guard {
         }
     }
 
-    /// The law has given nothing: what is to be done instead in this very step, at ticks of a length (s).
+    /// The law has given nothing: the levelled flight instead of it in this very step, at ticks of a length (s).
     #[cold]
     pub fn step_failed(&mut self, now: Tick, tick_s: f32, around: &Circumstances) -> Option<Levelled> {
         let verdict = self.supervisor.step_failed(now, around.levels);
@@ -198,7 +198,7 @@ impl Guard {
         (around.levels && verdict.action == Action::Level).then(|| Levelled::of(&looked, tick_s).asked(around.asked))
     }
 
-    /// What is to be followed turns out not to be flyable: what is to be followed instead in this very step.
+    /// The reference turns out not to be flyable: another one in its place in this very step.
     #[cold]
     pub fn reference_failed(
         &mut self,
@@ -221,7 +221,7 @@ impl Guard {
     }
 }
 
-/// What the monitor makes of a sample, and what the supervisor says to it.
+/// The monitor's judgement of a sample, and the supervisor's verdict on it.
 #[cold]
 #[inline(never)]
 fn judge<'m>(
@@ -254,7 +254,7 @@ fn judge<'m>(
     (supervisor.step(config, &conditions), looked)
 }
 
-/// Half of what the vertical component of the thrust axis is less than 1.
+/// Half of the difference from 1 of the thrust axis' vertical component.
 #[inline(always)]
 fn tilted(state: &State) -> f32 {
     let q = state.attitude;

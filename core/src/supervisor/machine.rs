@@ -1,4 +1,4 @@
-//! The state machine: what a step sees in; what the craft is doing from here on, and what reaches its motors, out.
+//! The state machine: the conditions of a step in; the mode of the craft, and the action on its motors, out.
 
 use nalgebra::Vector3;
 
@@ -76,7 +76,7 @@ impl Config {
     };
 }
 
-/// What there is to be followed.
+/// Whether there is a reference, and a sound one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReferenceReport {
@@ -88,7 +88,7 @@ pub enum ReferenceReport {
     Sound,
 }
 
-/// What a step sees.
+/// The conditions of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// The tick.
@@ -103,7 +103,7 @@ pub struct Conditions {
     pub position_m: Vector3<f32>,
     /// See there.
     pub velocity_m_s: Vector3<f32>,
-    /// What there is to be followed.
+    /// Whether there is a reference, and a sound one.
     pub reference: ReferenceReport,
     /// Whether the last step cut something to the motors' range.
     pub limited: bool,
@@ -123,12 +123,12 @@ pub struct Conditions {
     pub fault: Option<Fault>,
 }
 
-/// What follows from a step.
+/// The verdict of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Verdict {
-    /// What the craft is doing from here on.
+    /// The mode of the craft from here on.
     pub mode: Mode,
-    /// What reaches its motors.
+    /// The action on its motors.
     pub action: Action,
     /// Whether this step ended a flight or the readiness for one.
     pub stopped: bool,
@@ -202,7 +202,7 @@ impl Supervisor {
         }
     }
 
-    /// The law has given nothing, on a state that is sound: what is flown instead from this very step on.
+    /// The law has given nothing, on a state that is sound: the verdict from this very step on.
     #[cold]
     pub fn step_failed(&mut self, now: Tick, levels: bool) -> Verdict {
         let next = match self.mode {
@@ -215,7 +215,7 @@ impl Supervisor {
         Verdict { action: if verdict.action == Action::Brake { Action::Level } else { verdict.action }, ..verdict }
     }
 
-    /// What is to be followed turns out not to be flyable in this very step.
+    /// The reference turns out not to be flyable in this very step.
     #[cold]
     pub fn reference_failed(&mut self, now: Tick, levels: bool) -> Verdict {
         let next = match self.mode {
@@ -261,7 +261,7 @@ impl Supervisor {
         !has_lasted(&mut self.saturated, is_limited, now, config.saturation_max_ticks)
     }
 
-    /// Takes what a step sees, before it is taken.
+    /// Takes the conditions of a step, before it is taken.
     ///
     /// Of several reasons the first in the order of [`Reason`] is named.
     #[cold]
@@ -310,7 +310,7 @@ impl Supervisor {
         self.overruns_in_a_row > config.overruns_tolerated
     }
 
-    /// What follows on armed without a fault: on the ground nothing has to be levelled.
+    /// The mode after armed, without a fault: on the ground nothing has to be levelled.
     fn armed(&self, config: &Config, seen: &Conditions) -> Mode {
         if self.is_overrun(config) {
             Mode::Stopped(Reason::Overrun)
@@ -351,7 +351,7 @@ impl Supervisor {
         if lasted(&mut self.watched.well, is_well, now, config.recovery_ticks) {
             return Mode::Flying;
         }
-        // What is going on keeps the reason that it began with.
+        // A mode that goes on keeps the reason that it began with.
         match self.mode {
             Mode::LevelAndDown(_) if seen.landed => Mode::Stopped(Reason::Landed),
             Mode::LevelAndDown(_) if now.wrapping_sub(self.since) > config.down_max_ticks => {

@@ -1,7 +1,8 @@
-//! The supervisor: whether what is measured may be flown on, what the craft does where it may not, and whether the motors turn.
+//! The supervisor: whether the measurements may be flown on, how the craft is flown where they may not, and whether the
+//! motors turn.
 //!
-//! One for every product. Each gives it what it has (a link, a battery and a geofence have the image alone) and does what it is
-//! told: [`Guard::order`] once a step, [`Preflight::check`] before arming.
+//! One for every product. Each gives it its inputs (a link, a battery and a geofence have the image alone) and does as it
+//! is told: [`Guard::order`] once a step, [`Preflight::check`] before arming.
 //!
 //! ```text
 //!                arm, checks passed         a sound state, something to follow
@@ -21,10 +22,10 @@
 //! | mode | motors | leaves it |
 //! |---|---|---|
 //! | on the ground | off | an arm request that passes [`Preflight::check`] |
-//! | armed | off | the first reference on a sound state; what would stop a flight |
+//! | armed | off | the first reference on a sound state; a reason that stops a flight |
 //! | flying | the law's | trouble; disarm |
-//! | holding | the law's, towards a standstill | after 1.5 s down; well again; what stops; disarm |
-//! | level and down | the law's, downwards at 0.3 m/s; without a place, attitude alone | landed, or after 30 s; well again; what stops; disarm |
+//! | holding | the law's, towards a standstill | after 1.5 s down; well again; a reason to stop; disarm |
+//! | level and down | the law's, downwards at 0.3 m/s; without a place, attitude alone | landed, or after 30 s; well again; a reason to stop; disarm |
 //! | stopped | off | arm, disarm; after a fault a restart alone |
 //! | tumbled | off | arm, disarm |
 //!

@@ -1,4 +1,4 @@
-//! What a craft is doing as the supervisor has it, why it stopped doing something else, and what reaches its motors.
+//! The mode of a craft, the reason for leaving the one before, and the action on its motors.
 
 use core::fmt;
 
@@ -35,11 +35,11 @@ pub enum Reason {
     StateLost,
     /// No accepted frame for longer than allowed.
     LinkLost,
-    /// What is to be followed makes no sense.
+    /// The reference makes no sense.
     BadReference,
     /// There was nothing to follow, or it is too old.
     NoReference,
-    /// What is to be followed begins farther from the craft than the law is good for.
+    /// The reference begins farther from the craft than the law can bridge.
     StartTooFar,
     /// The craft has left the space that it is allowed.
     Geofence,
@@ -53,7 +53,7 @@ pub enum Reason {
     NoGround,
 }
 
-/// What a craft that cannot fly any more does.
+/// How a craft that cannot fly any more has tumbled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -66,7 +66,7 @@ pub enum Tumble {
     NoClimb,
 }
 
-/// What the craft is doing.
+/// The mode of a craft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -87,12 +87,12 @@ pub enum Mode {
     Tumbled(Tumble),
 }
 
-/// What reaches the motors.
+/// The action on the motors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Nothing: they are off.
     Off,
-    /// The law, towards what it is asked to follow.
+    /// The law, towards its reference.
     Fly,
     /// The law, towards a standstill and then downwards.
     Brake,

@@ -1,8 +1,10 @@
-//! Whether a state may be flown on: an estimate and body rates in; the same, or what bridges them, and how sound it is, out.
+//! Whether a state may be flown on: an estimate and body rates in; the same, or others that bridge them, and how sound
+//! they are, out.
 //!
-//! A step with a sound estimate costs a few comparisons. What is not sound is replaced by the last sound one, carried on:
-//! attitude by the gyroscope, velocity and position by the accelerometer, or by what the motors should give where there is
-//! none. Each part is looked at by itself, so that a position that is no number takes nothing from a good attitude.
+//! A step with a sound estimate costs a few comparisons. A part that is not sound is replaced by the last sound one,
+//! carried on: attitude by the gyroscope, velocity and position by the accelerometer, or by the thrust that the motors
+//! should give where there is none. Each part is looked at by itself, so that a position that is no number takes nothing
+//! from a good attitude.
 
 use nalgebra::Vector3;
 
@@ -12,7 +14,7 @@ use crate::math::sqrt;
 use crate::quaternion::Quaternion;
 use crate::state::State;
 
-/// What is sound, and for how long the rest is bridged.
+/// The bounds of a sound sample, and for how long the rest is bridged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonitorConfig {
     /// Length of a tick, s.
@@ -23,13 +25,14 @@ pub struct MonitorConfig {
     pub attitude_ticks: Tick,
     /// How long body rates may be the attitude's differences, ticks.
     pub body_rates_ticks: Tick,
-    /// How long an estimate may stand still, bit by bit, while the gyroscope moves; and a gyroscope while the attitude does.
+    /// How long an estimate may stay the same, bit by bit, while the gyroscope moves; and a gyroscope while the attitude
+    /// does.
     pub frozen_ticks: Tick,
     /// Velocity that no craft has, m/s.
     pub speed_max_m_s: f32,
     /// Farthest position, m.
     pub position_max_m: f32,
-    /// Body rate beyond what the gyroscope gives, rad/s.
+    /// Body rate beyond the gyroscope's range, rad/s.
     pub body_rate_max_rad_s: f32,
 }
 
@@ -55,7 +58,8 @@ const NORM_SQUARED_NEAR: [f32; 2] = [0.98, 1.02];
 const FORCE_MAX_M_S2: f32 = 157.0;
 /// Change of a body rate from which on the gyroscope moves, rad/s: one step of its output at 2000 degrees a second.
 const MOVED_RAD_S: f32 = 1e-3;
-/// How long an estimate or body rates may stay the same before anybody looks whether they stand still, ticks: three periods of 100 Hz.
+/// How long an estimate or body rates may stay the same before it is checked whether they are stuck, ticks: three periods
+/// of 100 Hz.
 const QUIET_TICKS: Tick = 30;
 /// Drag over mass that bridges a velocity where there is no accelerometer, 1/s.
 const DRAG_PER_S: f32 = 0.4;
@@ -71,7 +75,7 @@ pub enum Soundness {
     Sound,
     /// In parts the last sound one, carried on.
     Bridged,
-    /// A position, velocity or attitude has been missing for too long: what is left is good for staying level.
+    /// A position, velocity or attitude has been missing for too long: the rest is good for staying level.
     AttitudeOnly,
     /// There is no attitude.
     AttitudeLost,
@@ -79,7 +83,7 @@ pub enum Soundness {
     BodyRatesLost,
 }
 
-/// What a step may be flown on.
+/// The state and body rates that a step may be flown on.
 #[derive(Clone, Copy, Debug)]
 pub struct Looked<'a> {
     /// How sound it is.
@@ -92,7 +96,7 @@ pub struct Looked<'a> {
     pub velocity_bridged_ticks: Option<Tick>,
 }
 
-/// What is measured at a step.
+/// The measurements of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
     /// The tick.
@@ -103,11 +107,11 @@ pub struct Sample<'a> {
     pub body_rates_rad_s: Option<&'a Vector3<f32>>,
     /// The accelerometer's specific force in the body frame, m/s^2.
     pub specific_force_m_s2: Option<&'a Vector3<f32>>,
-    /// Thrust over mass that the motors should give, m/s^2: what carries a velocity on without accelerometer.
+    /// Thrust over mass that the motors should give, m/s^2: it carries a velocity on where there is no accelerometer.
     pub thrust_m_s2: f32,
 }
 
-/// What the monitor remembers.
+/// The monitor's memory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Monitor {
     /// The newest estimate as it was given, and its body rates.
@@ -120,13 +124,13 @@ pub struct Monitor {
     is_known: bool,
     /// One has, and nothing has been bridged since.
     is_well: bool,
-    /// The last step is flown on what is bridged.
+    /// The last step is flown on a bridged state.
     is_bridged: bool,
-    /// Something is not sound, or stands still.
+    /// Something is not sound, or stays the same.
     bridge: Option<Bridge>,
 }
 
-/// What is carried on while something is not sound.
+/// The state that is carried on while something is not sound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Bridge {
     state: State,
@@ -135,13 +139,13 @@ struct Bridge {
     place: Option<Tick>,
     attitude: Option<Tick>,
     gyroscope: Option<Tick>,
-    /// That the estimate stands still, and where the gyroscope was when it began to.
+    /// That the estimate stays the same, and where the gyroscope was when it began to.
     still: Option<Still<Vector3<f32>>>,
     /// That the gyroscope does, and where the attitude was.
     still_gyroscope: Option<Still<Quaternion>>,
 }
 
-/// One thing stands still.
+/// One measurement stays the same.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Still<T> {
     from: Tick,
@@ -176,14 +180,14 @@ impl Monitor {
         }
     }
 
-    /// Looks at what a step is given.
+    /// Checks the sample of a step.
     #[inline(always)]
     pub fn look(&mut self, config: &MonitorConfig, sample: &Sample<'_>) -> Looked<'_> {
         if self.keeps(config, sample) { self.looked() } else { self.look_closely(config, sample) }
     }
 
-    /// Keeps what a step is given where all of it is sound and nothing has been bridged, which is seen by a few comparisons; whether
-    /// it is.
+    /// Keeps the sample of a step where all of it is sound and nothing has been bridged, which is seen by a few
+    /// comparisons; whether it is.
     #[inline(always)]
     pub(super) fn keeps(&mut self, config: &MonitorConfig, sample: &Sample<'_>) -> bool {
         let rates = sample.body_rates_rad_s.unwrap_or(&NO_RATES);
@@ -212,7 +216,7 @@ impl Monitor {
         true
     }
 
-    /// What the last step is flown on.
+    /// The state and body rates that the last step is flown on.
     #[inline(always)]
     pub(super) fn looked(&self) -> Looked<'_> {
         if self.is_bridged { self.bridged() } else { self.sound() }
@@ -266,7 +270,7 @@ impl Monitor {
         let attitude = fresh.and_then(|state| as_attitude(state.attitude));
         since(&mut bridge.place, place.is_none(), stuck_since.unwrap_or(now));
         since(&mut bridge.attitude, attitude.is_none(), stuck_since.unwrap_or(now));
-        // What stands still is carried on beside it, should it turn out to be stuck.
+        // A part that stays the same is carried on beside it, should it turn out to be stuck.
         let is_still = bridge.still.is_some();
         if let Some(state) = place.filter(|_| !is_still) {
             (bridge.state.position_m, bridge.state.velocity_m_s) = (state.position_m, state.velocity_m_s);
@@ -332,7 +336,7 @@ impl Default for Monitor {
 }
 
 impl Bridge {
-    /// Carries the state on by what is felt.
+    /// Carries the state on by gyroscope and accelerometer.
     #[inline(never)]
     fn carry(&mut self, sample: &Sample<'_>, step_s: f32) {
         let State { position_m, attitude, velocity_m_s } = self.state;
@@ -418,7 +422,7 @@ fn is_moving(rates: &Vector3<f32>, before: &Vector3<f32>) -> bool {
     rates.x != before.x || rates.y != before.y || rates.z != before.z
 }
 
-/// Whether two estimates have the same bits; what is no number is the same as itself. Most differ in the first that is looked at.
+/// Whether two estimates have the same bits; a NaN is the same as itself. Most differ in the first that is looked at.
 #[inline(always)]
 fn is_same(a: &State, b: &State) -> bool {
     a.velocity_m_s.x.to_bits() == b.velocity_m_s.x.to_bits() && is_all_the_same(a, b)

@@ -1,4 +1,5 @@
-//! What is looked at before a craft is armed: what it has in; nothing, or the first thing that forbids it, by name, out.
+//! The checks before a craft is armed: its state, limits and law in; nothing, or the first reason that forbids it, by
+//! name, out.
 
 use core::fmt;
 
@@ -15,12 +16,12 @@ use crate::state::State;
 pub(super) const AGE_MAX_TICKS: Tick = 500;
 /// Cosine of the largest tilt that is armed: 25 degrees.
 const UPRIGHT_LEAST: f32 = 0.906;
-/// What a cell has, V.
+/// Voltage of a charged cell, V.
 const CELL_V: [f32; 2] = [3.0, 4.35];
-/// What limits of the thrust have to leave above and below the weight, as a share of it.
+/// Room that limits of the thrust have to leave above and below the weight, as a share of it.
 const HOVER_ROOM: f32 = 0.1;
 
-/// What a law is good for.
+/// The range that a law's certificate covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
     /// Shortest and longest lag of the motors that its certificate covers, s.
@@ -31,7 +32,7 @@ pub struct Coverage {
     pub rate_hz: u32,
 }
 
-/// What is known of a law before a flight.
+/// A law's certificate as it is known before a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Certified {
     /// It is certified for this.
@@ -42,7 +43,7 @@ pub enum Certified {
     NoMotors,
 }
 
-/// What is known before a flight.
+/// The inputs of the checks.
 #[derive(Clone, Copy, Debug)]
 pub struct Preflight {
     /// A fault that only a restart mends.
@@ -57,7 +58,7 @@ pub struct Preflight {
     pub reference_m: Option<Vector3<f32>>,
     /// Farthest start from it, m.
     pub start_max_m: f32,
-    /// What the law is certified for.
+    /// The law's certified range.
     pub law: Certified,
     /// The motors' lag, s, the mass, kg, and the steps a second of the craft.
     pub lag_s: f32,
@@ -97,7 +98,7 @@ pub enum ArmError {
     TooFar {
         /// Distance, m.
         distance_m: f32,
-        /// What the law is good for, m.
+        /// The most that the law can bridge, m.
         most_m: f32,
     },
     /// No certificate says that the law flies motors that lag.

@@ -1,4 +1,4 @@
-//! The way of a flight that does not go on as asked: a verdict and what can be flown on in; what is to be flown instead, until the
+//! The way of a flight that does not go on as asked: a verdict and the state to fly on in; the order instead, until the
 //! craft is down, out.
 
 use nalgebra::Vector3;
@@ -23,7 +23,7 @@ pub enum Asked {
     Rates,
 }
 
-/// What is to be done in a step.
+/// The order for a step.
 #[derive(Clone, Copy, Debug)]
 pub enum Order<'a> {
     /// Zero forces.
@@ -36,7 +36,7 @@ pub enum Order<'a> {
     Level(Levelled),
 }
 
-/// What levelling takes.
+/// The inputs of a flight by attitude alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Levelled {
     /// The attitude, of norm 1.
@@ -69,7 +69,7 @@ impl Way {
         self.hit || self.grounded.is_some_and(|since| now.wrapping_sub(since) > GROUNDED_TICKS)
     }
 
-    /// Brakes from what a step was flown on, whatever has been done before.
+    /// Brakes from the state that a step was flown on, and forgets an earlier way.
     #[cold]
     pub(super) fn brake_anew(&mut self, looked: &Looked<'_>, now: Tick, tick_s: f32) -> (&FifthOrderSample, Heading) {
         *self = Self::NONE;
@@ -78,7 +78,8 @@ impl Way {
         (braking.at(now, tick_s, looked.state.position_m.z), heading)
     }
 
-    /// What is done instead of what was asked: at a tick, with ticks of a length (s), and a specific force that is felt, m/s^2.
+    /// The order in the place of the flight asked for: at a tick, with ticks of a length (s), and a specific force that
+    /// is felt, m/s^2.
     #[cold]
     #[inline(never)]
     pub(super) fn instead<'a>(
@@ -124,7 +125,7 @@ impl Way {
 }
 
 impl Levelled {
-    /// Of what a step was given, at ticks of a length (s).
+    /// Of the state that a step is flown on, at ticks of a length (s).
     pub fn of(looked: &Looked<'_>, tick_s: f32) -> Self {
         Self {
             attitude: unit(looked.state.attitude),

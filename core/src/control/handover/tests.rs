@@ -118,7 +118,7 @@ fn a_command_and_motor_forces_are_mixed_as_forces_and_both_laws_are_given_what_w
         for part in 1..4_u8 {
             let before = memory.forces_n();
             let [from, to] = [old, new].map(|controller| {
-                // What has been integrated so far is next to nothing in three steps of 2 ms, 5 mm away.
+                // The integral is next to nothing after three steps of 2 ms, 5 mm away.
                 controller.step_to_motors(&mut Memory::new(before).unwrap(), measured, target).unwrap().forces_n[0]
             });
             let Ok(Output::Forces(step)) = way.step((old, new), &mut memory, measured, target) else {

@@ -80,7 +80,7 @@ impl<'t> AcceptedTable<'t> {
     }
 
     /// The factor by which each channel of the feedback may be off behind motors of a lag (s) and a body-rate loop that fits
-    /// it: half of what the lag leaves of the certified one, on its way to the longest lag that is stable.
+    /// it: half of the certified one that the lag leaves, on its way to the longest lag that is stable.
     ///
     /// # Errors
     /// [`AcceptError::MotorLag`] for a lag that is longer than certified: the table is not to be flown there.
@@ -103,7 +103,7 @@ impl<'t> AcceptedTable<'t> {
         self.content.gains.kind()
     }
 
-    /// What it says beside the gains.
+    /// Its head: all but the gains.
     pub const fn head(&self) -> &'t TableHead {
         &self.content.head
     }
@@ -113,7 +113,7 @@ impl<'t> AcceptedTable<'t> {
         self.content.head.rate
     }
 
-    /// What it says that the vehicle can be asked for.
+    /// Its limits of commands.
     pub const fn limits(&self) -> Limits {
         self.content.head.limits
     }
@@ -128,7 +128,7 @@ impl<'t> AcceptedTable<'t> {
         }
     }
 
-    /// What it says of the cascade, if that is its kind: [`CascadeTable::flown`] makes the law of it, which
+    /// The cascade's fields, if that is its kind: [`CascadeTable::flown`] makes the law of it, which
     /// [`Self::controller`] takes in its settings.
     #[cfg(feature = "cascade")]
     pub const fn cascade(&self) -> Option<&'t CascadeTable> {
@@ -144,8 +144,8 @@ impl<'t> AcceptedTable<'t> {
     }
 }
 
-/// What is left of a certified gain margin of all channels behind motors that lag, through a body-rate loop that fits them:
-/// half of what the lag leaves on its way to the longest that is stable.
+/// The certified gain margin of all channels, reduced for motors that lag behind a body-rate loop that fits them:
+/// half of the rest on the lag's way to the longest that is stable.
 ///
 /// # Errors
 /// [`AcceptError::MotorLag`] for a lag beyond that.

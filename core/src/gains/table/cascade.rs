@@ -1,4 +1,4 @@
-//! A table of the cascade: gains, the motor lag and the air that they are flown with, and what they are certified for.
+//! A table of the cascade: gains, the motor lag and the air that they are flown with, and their certified range.
 
 use super::certificate::{Margins, Vehicle};
 use super::error::{CascadeFigure, TableError};
@@ -15,7 +15,8 @@ pub(super) const FIELDS_BYTES: usize = 16 * 4 + 1;
 /// Bytes behind the head.
 pub(super) const BYTES: usize = FIELDS_BYTES + 4 * CascadeGains::COUNT;
 
-/// Gains of a [`Cascade`] with what belongs to them: from a file, or generated into the core ([`mod@crate::gains::cascade`]).
+/// Gains of a [`Cascade`] with their motor lag and air: from a file, or generated into the core
+/// ([`mod@crate::gains::cascade`]).
 ///
 /// ```
 /// use quatrack::cascade::{CascadeLimits, Air};
@@ -40,10 +41,10 @@ pub struct CascadeTable {
     pub certified: CascadeRange,
 }
 
-/// A table in the core, with what its certificate states of the craft as told in the identified air.
+/// A table in the core, with its certificate's figures for the craft as told in the identified air.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuiltInCascade {
-    /// Whom it is for.
+    /// The vehicle that it is for.
     pub vehicle: Vehicle,
     /// The table.
     pub table: CascadeTable,
@@ -184,7 +185,7 @@ impl CascadeTable {
         })
     }
 
-    /// What is between the head and the gains.
+    /// The bytes between the head and the gains.
     pub(super) fn fields(&self) -> [u8; FIELDS_BYTES] {
         let CascadeRange { motor_lag_s, mass_share, inertia_share, force_share, delay_s, drag_per_s, moment_n_s } =
             self.certified;

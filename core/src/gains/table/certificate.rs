@@ -1,4 +1,4 @@
-//! What stands in a table beside the gains: whose it is, and what has been proven about it.
+//! The head of a table, beside the gains: its vehicle, and the computed figures of its closed loop.
 
 use core::f32::consts::PI;
 use core::fmt;
@@ -10,7 +10,7 @@ use super::name::Name;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Vehicle {
-    /// What it is called.
+    /// Its name.
     pub name: Name,
     /// Which parameters it has (mass, inertia, motors): another number for other parameters.
     pub id: u32,
@@ -52,7 +52,7 @@ pub struct Margins {
     pub phase_rad: f32,
 }
 
-/// What has been computed from the gains as they stand in the table, for the closed loop at the table's rate.
+/// Figures computed from the gains as the table stores them, for the closed loop at the table's rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
     /// Of the certificate as a document.

@@ -1,4 +1,4 @@
-//! Why bytes are no table, and why a table is not flown here: one variant for each reason, with what was found.
+//! Why bytes are no table, and why a table is not flown here: one variant for each reason, with the value found.
 
 use core::fmt;
 
@@ -17,7 +17,7 @@ use crate::law::ScheduleError;
 pub enum TableError {
     /// The first four bytes are not [`super::MAGIC`].
     Magic {
-        /// What they are.
+        /// The bytes found.
         found: [u8; 4],
     },
     /// Cut off, or with bytes behind the end.
@@ -29,9 +29,9 @@ pub enum TableError {
     },
     /// The bytes are not those that were written.
     Checksum {
-        /// As it stands in the table.
+        /// As the table states it.
         stated: u32,
-        /// Of what is there.
+        /// Of the bytes received.
         found: u32,
     },
     /// Written by a later or an earlier format.
@@ -46,7 +46,7 @@ pub enum TableError {
     },
     /// The matrix has other dimensions than its kind.
     Dimensions {
-        /// What the table is said to be.
+        /// The kind that the table states.
         kind: TableKind,
         /// Rows found.
         rows: u8,
@@ -61,7 +61,7 @@ pub enum TableError {
         row: u8,
         /// Column, from 0.
         column: u8,
-        /// What stands there.
+        /// The value found.
         value: f32,
     },
     /// The table's own name is none.
@@ -70,7 +70,7 @@ pub enum TableError {
     VehicleName(NameError),
     /// No control rate.
     Rate {
-        /// What stands there, Hz.
+        /// The value found, Hz.
         hz: u32,
     },
     /// The vehicle's limits are none.
@@ -87,7 +87,7 @@ pub enum TableError {
         /// The limit, rad/s.
         max_rad_s: f32,
     },
-    /// The design's hash is zero: nobody knows what the gains come from.
+    /// The design's hash is zero: the origin of the gains is unknown.
     NoDesign,
     /// The certificate's hash is zero.
     NoCertificate,
@@ -95,7 +95,7 @@ pub enum TableError {
     Uncertified {
         /// Which.
         figure: Figure,
-        /// What stands there.
+        /// The value found.
         value: f32,
     },
     /// Gains over time with fewer than 2 knots or more than [`super::KNOTS_MAX`].
@@ -107,26 +107,26 @@ pub enum TableError {
     KnotSpacing,
     /// The motor lag that a table was designed for is shorter than two control periods, longer than certified, or no number.
     MotorLag {
-        /// What stands there, s.
+        /// The value found, s.
         lag_s: f32,
     },
-    /// What is wrong with the gain at one knot of gains over time.
+    /// A fault of the gain at one knot of gains over time.
     Knot {
         /// The knot, from 0.
         knot: u16,
-        /// What, within its gain.
+        /// The fault, within its gain.
         fault: KnotFault,
     },
     /// A figure that a table of the cascade has beside the head has no sense.
     Cascade {
         /// Which.
         figure: CascadeFigure,
-        /// What is there.
+        /// The value found.
         value: f32,
     },
 }
 
-/// What a table of the cascade says beside the head.
+/// The fields of a table of the cascade beside the head.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -164,7 +164,7 @@ pub enum CascadeFigure {
     Learn,
 }
 
-/// What is wrong with a gain at a knot; rows and columns are counted from 0.
+/// A fault of a gain at a knot; rows and columns are counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -178,7 +178,7 @@ pub enum KnotFault {
         row: u8,
         /// Column.
         column: u8,
-        /// What stands there.
+        /// The value found.
         value: f32,
     },
 }

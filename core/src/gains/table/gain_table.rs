@@ -92,7 +92,7 @@ impl<'b> GainTable<'b> {
         self.content.gains.kind()
     }
 
-    /// What it says beside the gains.
+    /// Its head: all but the gains.
     pub const fn head(&self) -> &TableHead {
         &self.content.head
     }
@@ -107,7 +107,7 @@ impl<'b> GainTable<'b> {
         }
     }
 
-    /// What it says of the cascade, if that is its kind.
+    /// The cascade's fields, if that is its kind.
     #[cfg(feature = "cascade")]
     pub const fn cascade(&self) -> Option<&CascadeTable> {
         match &self.content.gains {
@@ -136,7 +136,7 @@ impl<'b> GainTable<'b> {
         }
     }
 
-    /// What it was written from, if that is one matrix.
+    /// The rows that it was written from, if that is one matrix.
     pub const fn rows(&self) -> Option<Rows> {
         Some(match self.gain() {
             Some(ConstantGain::Equilibrium(gain)) => Rows::Equilibrium(*gain.gain().rows()),

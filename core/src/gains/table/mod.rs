@@ -1,9 +1,9 @@
 //! Gain tables as bytes: a file or an upload in; gains with their vehicle, rate, limits and certificate out, or the
 //! reason for none.
 //!
-//! A table goes through two gates, whichever law it is for. [`GainTable::from_bytes`] refuses what is no sound, certified
-//! table at all; [`GainTable::accept_for`] what is not for this vehicle or this control rate. Only the [`AcceptedTable`]
-//! behind the second one becomes a controller.
+//! A table goes through two gates, whichever law it is for. [`GainTable::from_bytes`] refuses bytes that are no sound,
+//! certified table at all; [`GainTable::accept_for`] one that is not for this vehicle or this control rate. Only the
+//! [`AcceptedTable`] behind the second one becomes a controller.
 //!
 //! Gains along a trajectory are too many to copy: a table borrows them from its bytes.
 //!
@@ -53,17 +53,17 @@ use crate::clock::Rate;
 use crate::command::Limits;
 use crate::flatness::GRAVITY_M_S2;
 
-/// Largest entry of a gain, in the units of its row and column: ten times what the stiffest design so far asks.
+/// Largest entry of a gain, in the units of its row and column: ten times that of the stiffest design so far.
 pub const ENTRY_MAX: f32 = 1e4;
 
-/// Smallest entry that is not zero. What is smaller is left over from a solver, and would hide that a design falls apart
+/// Smallest entry that is not zero. A smaller one is left over from a solver, and would hide that a design decouples
 /// into chains: it is to be written as zero.
 pub const ENTRY_MIN: f32 = 1e-9;
 
 /// Largest thrust limit, m/s^2: twenty times the weight.
 pub const THRUST_MAX_M_S2: f32 = 200.0;
 
-/// Largest body rate limit, rad/s: almost three times what a gyroscope of 2000 degrees a second measures.
+/// Largest body rate limit, rad/s: almost three times the range of a gyroscope of 2000 degrees a second.
 pub const BODY_RATE_MAX_RAD_S: f32 = 100.0;
 
 /// Most knots along a trajectory: with as many, a table is about as long as the longest trajectory that is uploaded.
@@ -97,7 +97,7 @@ pub enum TableKind {
     Cascade,
 }
 
-/// What a table of one gain is written from: its entries by rows. One of the cascade is written from a `CascadeTable`.
+/// The entries of one gain by rows, from which its table is written. One of the cascade is written from a `CascadeTable`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Rows {
@@ -129,7 +129,7 @@ impl Rows {
     }
 }
 
-/// What a table of gains along a trajectory is written from.
+/// The gains along a trajectory from which a table is written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScheduleRows<'a> {
     /// [`crate::Trajectory::checksum`] of the trajectory that they are for.
@@ -141,20 +141,20 @@ pub struct ScheduleRows<'a> {
     pub gains: &'a [[[f32; 9]; 4]],
 }
 
-/// What a table says beside its gains.
+/// The head of a table: all but its gains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableHead {
     /// The table's own name.
     pub name: Name,
-    /// Whom it is for.
+    /// The vehicle that it is for.
     pub vehicle: Vehicle,
     /// The control rate that it was certified at.
     pub rate: Rate,
-    /// What the vehicle can be asked for.
+    /// Limits of the vehicle's commands.
     pub limits: Limits,
     /// Of the design that the gains were computed from.
     pub design_hash: Hash,
-    /// What was proven.
+    /// The computed figures of its closed loop.
     pub certificate: Certificate,
 }
 
@@ -199,7 +199,7 @@ impl TableHead {
 }
 
 impl TableKind {
-    /// The kind of a table in a whole frame of this version, to choose who reads it; nothing else is looked at.
+    /// The kind of a table in a whole frame of this version, to choose the reader; nothing else is looked at.
     ///
     /// # Errors
     /// [`TableError`] about the frame, the kind and its dimensions.

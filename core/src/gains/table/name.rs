@@ -29,7 +29,7 @@ pub enum NameError {
     Character {
         /// Where, from 0.
         position: u8,
-        /// What stands there.
+        /// The byte found.
         byte: u8,
     },
 }
@@ -63,7 +63,7 @@ impl Name {
     /// For names in the source: a bad one does not compile when it initialises a constant.
     ///
     /// # Panics
-    /// At compile time, on what [`Name::new`] refuses.
+    /// At compile time, on text that [`Name::new`] refuses.
     pub const fn literal(text: &str) -> Self {
         match Self::new(text) {
             Ok(name) => name,
@@ -71,7 +71,7 @@ impl Name {
         }
     }
 
-    /// Checks the bytes as they stand in a table, zeros included.
+    /// Checks the bytes as a table stores them, zeros included.
     ///
     /// # Errors
     /// [`NameError`].
@@ -89,7 +89,7 @@ impl Name {
         Ok(Self { padded })
     }
 
-    /// The bytes as they stand in a table, zeros included.
+    /// The bytes as a table stores them, zeros included.
     pub const fn padded(&self) -> [u8; Self::BYTES] {
         self.padded
     }

@@ -1,7 +1,7 @@
 //! The bytes of a table: a frame around a payload, a payload of fields of fixed width. The page docs/gain-tables.md has
 //! every offset.
 //!
-//! The payload is what postcard makes of its fields, all of types that postcard writes at one width (bytes, `f32`,
+//! The payload is postcard's encoding of its fields, all of types that postcard writes at one width (bytes, `f32`,
 //! integers as arrays of bytes): one table has one encoding, and its length tells whether it is whole. It is taken apart
 //! by hand here: a derived reader takes several times the code on the target.
 
@@ -15,7 +15,7 @@ use crate::checksum::crc32c;
 use crate::clock::Rate;
 use crate::command::Limits;
 
-/// What every table starts with, in every version.
+/// The first bytes of every table, in every version.
 pub const MAGIC: [u8; 4] = *b"QTGT";
 
 /// Version of the payload. The frame (magic, version, length, checksum) is the same in all of them.
@@ -24,7 +24,7 @@ pub const FORMAT_VERSION: u16 = 2;
 /// Magic, version and length before the payload.
 pub(super) const PAYLOAD_OFFSET: usize = 4 + 2 + 2;
 
-/// What is around the payload: the checksum is behind it.
+/// Bytes around the payload: the checksum is behind it.
 pub(super) const FRAME_BYTES: usize = PAYLOAD_OFFSET + 4;
 
 /// Bytes of the payload before the gains: kind and dimensions, names, id and rate, limits, hashes, figures.
@@ -33,7 +33,7 @@ pub(super) const HEAD_BYTES: usize = 3 + 2 * Name::BYTES + 2 * 4 + 5 * 4 + 2 * 3
 /// Takes fields from the start of a payload. Inlined into one place, where the length is known and no field can be cut.
 pub(super) struct Reader<'b> {
     rest: &'b [u8],
-    /// What to say where the payload ends before a field.
+    /// The error where the payload ends before a field.
     ended: TableError,
 }
 
@@ -182,13 +182,13 @@ pub(super) fn open(bytes: &[u8]) -> Result<&[u8], TableError> {
     }
 }
 
-/// What to say of `bytes` that should have a payload of another length.
+/// The error for `bytes` that should have a payload of another length.
 pub(super) fn wrong_length(bytes: &[u8], payload: usize) -> TableError {
     TableError::Length { bytes: count(bytes.len()), wanted: count(payload.saturating_add(FRAME_BYTES)) }
 }
 
-/// Writes a table over the start of `buffer` and returns that part; nothing if it is too short. `fields` are what a kind
-/// has between the head and the gains.
+/// Writes a table over the start of `buffer` and returns that part; nothing if it is too short. `fields` are a kind's
+/// own, between the head and the gains.
 pub(super) fn write<'b>(
     buffer: &'b mut [u8],
     kind: TableKind,

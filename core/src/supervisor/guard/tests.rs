@@ -18,7 +18,7 @@ struct Bench {
     felt: Vector3<f32>,
 }
 
-/// An order without what it borrows.
+/// An order without its borrowed parts.
 #[derive(Debug, PartialEq)]
 enum Given {
     Off,
@@ -59,7 +59,7 @@ impl Bench {
         }
     }
 
-    /// So many ticks of the same; what is given at the last.
+    /// So many ticks of the same; the order at the last.
     fn pass(&mut self, ticks: Tick, around: &Circumstances) -> Given {
         (0..ticks / 2).map(|_| self.step(around)).last().unwrap()
     }
@@ -107,7 +107,7 @@ fn by_hand_it_comes_down_level_whatever_its_velocity_over_ground() {
         let mut bench = Bench::flying();
         bench.state.velocity_m_s = Vector3::new(3.0, -2.0, 0.0);
         assert_eq!(bench.pass(100, &Circumstances { asked, ..WELL }), Given::Fly);
-        // Downwards the velocity is held to 0.3 m/s: 2 1/s times what is missing.
+        // Downwards the velocity is held to 0.3 m/s: 2 1/s times the velocity that is missing.
         let level = Given::Level(Vector3::new(0.0, 0.0, -0.6));
         assert_eq!(bench.pass(100, &Circumstances { asked, ..BAD }), level);
         assert_eq!(bench.guard.mode(), Mode::Holding(Reason::BadReference));

@@ -96,7 +96,7 @@ fn at_once_in_the_air() {
 fn after_a_time_in_the_air() {
     let upright = |cosine: f32| with(|c| c.upright = cosine);
     let still = |c: &mut Conditions| (c.velocity_m_s, c.limited, c.limited_thrust) = (Vector3::zeros(), true, true);
-    // Ticks that it is borne, and what follows on the next.
+    // Ticks that it is borne, and the mode on the next.
     let rows = [
         (upright(0.49), 1000, Mode::Tumbled(Tumble::Tilted)),
         (upright(-0.1), 600, Mode::Tumbled(Tumble::UpsideDown)),

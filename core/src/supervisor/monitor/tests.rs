@@ -50,7 +50,7 @@ impl Bench {
         (looked.soundness, *looked.state, *looked.body_rates_rad_s)
     }
 
-    /// The same change of every state for so many ticks; what the last look said, and how far it is from the truth.
+    /// The same change of every state for so many ticks; the last look's soundness, and its distance from the truth.
     fn spoilt(&mut self, ticks: Tick, spoil: impl Fn(Tick, &mut State, &mut Vector3<f32>)) -> (Soundness, f32, f32) {
         let mut last = (Soundness::Sound, 0.0, 0.0);
         for _ in 0..ticks {

@@ -94,7 +94,7 @@ fn another_key_none_or_one_too_many_is_named() {
         connect(image, equipment).err().expect("no session").to_string()
     };
     let without = said(&image, None);
-    assert!(without.contains("it talks to those who have its key alone"), "{without}");
+    assert!(without.contains("it answers holders of its key alone"), "{without}");
     for (image, key) in [(&image, random_key()), (&pipes_image(), key)] {
         let other = said(image, Some(key));
         assert!(other.contains("with this key; it has another one, or none"), "{other}");
