@@ -1,11 +1,11 @@
-//! Gains for a quadcopter and what they promise, in f64: Riccati and Lyapunov equations, continuous and sampled, solved to
-//! the last digits and checked; the model of the craft; certificates.
+//! Gains for a quadcopter and their certificates, in f64: Riccati and Lyapunov equations, continuous and sampled, solved
+//! to the last digits and checked; the model of the craft; certificates.
 //!
 //! In flow a pair (A, B) and weights, or a vehicle; out flow gains, the solutions of their equations with residuals, and
 //! margins. Nothing is read from files here and nothing is drawn. The layers import only downwards:
 //!
 //! ```text
-//! certify       what a gain as flown promises: poles, margins, delay and lag
+//! certify       certificates of a gain as flown: poles, margins, delay and lag
 //!   design      Section IV: Lyapunov and Riccati equations, the four gains, gains for a control rate
 //!   analysis    Section III: poles, Jordan blocks, controllability
 //!     vehicle   mass, inertia, motors and limits of a craft

@@ -55,7 +55,7 @@ pub struct Judged {
     pub asked: Option<f64>,
 }
 
-/// A figure of the certificate below what the design asks for.
+/// A figure of the certificate below the design's minimum.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{figure} is {}; the design asks for at least {}", .quantity.told(*.found), .quantity.told(*.asked))]
 pub struct MarginTooSmall {
@@ -130,7 +130,7 @@ pub fn judge(certificate: &Certificate, minimum: &Minimum) -> Vec<Judged> {
         add(format!("phase margin of {name}"), Quantity::Phase, disk.phase_rad, minimum.phase_each_rad);
     }
     let all = &sampled.margins.all.balanced;
-    let of_all = |what: &str| format!("{what} of all channels at once");
+    let of_all = |figure: &str| format!("{figure} of all channels at once");
     add(of_all("disk margin"), Quantity::Number, all.alpha, minimum.disk_all);
     add(of_all("gain margin"), Quantity::Number, all.gain_max.unwrap_or(f64::INFINITY), minimum.gain_factor_all);
     add(of_all("phase margin"), Quantity::Phase, all.phase_rad, minimum.phase_all_rad);

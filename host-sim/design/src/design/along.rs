@@ -13,7 +13,7 @@
 //!
 //! At hover this is (E-LTI). Over each control period the pair at its middle is held and discretised exactly, in the digits
 //! of an f64: there are thousands of periods, and the gain is not solved for but run towards. The Riccati recursion
-//! then runs backwards from the end, where the stationary solution for the last pair stands in for the rest:
+//! then runs backwards from the end, where the stationary solution for the last pair is used for the rest:
 //! trajectories end at rest.
 
 use nalgebra::{DMatrix, Matrix3, Rotation3, SMatrix, Vector3};
@@ -140,7 +140,7 @@ pub fn gains_along(
         let driven = pb.transpose() * &held.a + cost.s.transpose();
         let inverse = middle.cholesky().ok_or(DesignError::NotPositiveDefinite { row: 0, pivot: 0.0 })?;
         let gain = inverse.solve(&driven);
-        // The cost of the closed loop as a sum of squares: P stays positive whatever the rounding (Joseph's form).
+        // The cost of the closed loop as a sum of squares: P stays positive under any rounding (Joseph's form).
         let closed = &held.a - &held.b * &gain;
         let crossed = &cost.s * &gain;
         let stage = &cost.q - &crossed - crossed.transpose() + gain.transpose() * &cost.r * &gain;

@@ -205,7 +205,7 @@ impl Problem {
 
     /// The best P that was found, stabilising or not.
     fn stabilising(&self) -> Result<Refined, DesignError> {
-        // S is a feedback given beforehand: what it reaches is the same, what Q sees is what is left of it.
+        // S acts as a feedback given beforehand: the reachable modes are the same, and Q sees the rest of them.
         let a = self.a.minus(&self.factor.times(&self.cross.transposed()));
         let q = self.reduced_q();
         require_stabilisable(&a.hi, &self.factor.hi)?;

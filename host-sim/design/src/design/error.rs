@@ -179,7 +179,7 @@ fn complex(value: &Complex64) -> String {
     }
 }
 
-/// Six digits, whatever the size.
+/// Six digits, at any size.
 fn real(value: f64) -> String {
     // Adding zero makes -0 a plain 0.
     let value = value + 0.0;

@@ -109,7 +109,7 @@ pub fn decay_rate_design(a: &DMatrix<f64>, b: &DMatrix<f64>, mu: f64) -> Result<
         return Err(inaccurate(relative_residual));
     }
     let gain = given.factor.transposed().times(&p).hi * 0.5;
-    // A - B K is (A + mu I - B B' P + A - mu I) / 2, but forming it from K keeps what is reported what is flown.
+    // A - B K is (A + mu I - B B' P + A - mu I) / 2, but forming it from K gives the poles of the gain as it is flown.
     let poles = eigenvalues(&(a - b * &gain))?;
     Ok(DecayRateDesign { p: p.hi, gain, poles, relative_residual })
 }

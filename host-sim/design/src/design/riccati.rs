@@ -1,7 +1,7 @@
 //! The continuous algebraic Riccati equation `A' P + P A + Q - P B R^-1 B' P = 0` and its stabilising solution.
 //!
-//! In flow A (n x n), B (n x m), Q (n x n), R (m x m); out flow P, `K = R^-1 B' P`, the poles of `A - B K` and what is
-//! known about their accuracy.
+//! In flow A (n x n), B (n x m), Q (n x n), R (m x m); out flow P, `K = R^-1 B' P`, the poles of `A - B K` and bounds on
+//! their accuracy.
 //!
 //! **Method.**
 //! 1. R is factorised in 32 digits and only `F = B R^-1/2` is kept, so that an R that is nearly singular costs none.

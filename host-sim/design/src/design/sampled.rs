@@ -1,7 +1,7 @@
 //! Gains for a control rate: a continuous pair, its weights and a sampling in; the optimal held feedback out.
 //!
-//! The plant is discretised exactly ([`super::discretise`]). The cost is by default what the continuous weights cost
-//! between the samples too, `int_0^h x' Q x + u' R u dt` with u held, which is
+//! The plant is discretised exactly ([`super::discretise`]). The cost is by default the cost of the continuous weights,
+//! integrated between the samples too, `int_0^h x' Q x + u' R u dt` with u held, which is
 //! `x' Q_d x + 2 x' S_d u + u' R_d u` with the blocks of one exponential (Van Loan 1978); so the gain tends to the
 //! continuous one as the rate grows.
 //!

@@ -7,8 +7,8 @@
 //! - F: `z = [x y z vx vy vz ax ay az q3]`, `v = [a j q3']`, gain 7 x 10.
 //! - E: `e = [x y z q1 q2 q3 vx vy vz]`, `u = [T p q r]`, gain 4 x 9.
 //!
-//! Both models decouple into chains, so most entries of a gain are zero by structure. What rounding leaves there is
-//! below 1e-12 of the largest entry and is set to exactly zero, so that the flown table has no noise in it; the poles
+//! Both models decouple into chains, so most entries of a gain are zero by structure. The rest that rounding leaves there
+//! is below 1e-12 of the largest entry and is set to exactly zero, so that the flown table has no noise in it; the poles
 //! are those of the gain after that.
 
 use nalgebra::{DMatrix, SMatrix};

@@ -18,7 +18,7 @@ const LONGEST_NAME: usize = 64;
 /// `name`; `body` with `mass_kg` and `inertia_kg_m2`, by rows; `motors` with `arm_m`, `thrust_min_n`, `thrust_max_n`,
 /// `torque_per_thrust_m`, `lag_s` and `published_lag_s`; `limits` with `body_rates_rad_s`; and its figures in flight,
 /// each where somebody has measured it: `air`, `motors.flown`, `motors.force`, `propeller`, `battery`, with the keys of
-/// [`super::FlightFigures`]; and `identified`, the intervals of what was identified from its flights.
+/// [`super::FlightFigures`]; and `identified`, the intervals of figures identified from its flights.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleFile {

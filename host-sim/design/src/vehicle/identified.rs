@@ -1,4 +1,4 @@
-//! Intervals of figures that were identified from flights: what a design may take for its region.
+//! Intervals of figures that were identified from flights: a design may take them for its region.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ pub struct Interval {
 
 pub(super) fn sound(identified: &Identified) -> Result<(), VehicleError> {
     for (name, Interval { low, high, .. }) in identified {
-        // What is printed stays on one line.
+        // A printed name stays on one line.
         let plain: String = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
         let field = format!("identified.{plain}");
         check(low.is_finite(), &format!("{field}.low"), *low, "a number")?;

@@ -1,8 +1,8 @@
 //! Vehicles: figures in; mass, inertia, motors and limits out, every one in range.
 //!
-//! Rotors are numbered as in the Crazyflie's firmware and stand in an X: 1 front right, 2 rear right, 3 rear left, 4 front
-//! left; 1 and 3 turn anticlockwise seen from above, so that the air turns the body clockwise. Body frame: x forwards, y
-//! left, z up.
+//! Rotors are numbered as in the Crazyflie's firmware and placed in an X: 1 front right, 2 rear right, 3 rear left, 4
+//! front left; 1 and 3 turn anticlockwise seen from above, so that the air turns the body clockwise. Body frame: x
+//! forwards, y left, z up.
 
 mod check;
 mod error;
@@ -19,7 +19,7 @@ pub use identified::{Identified, Interval};
 
 use crate::model::GRAVITY_M_S2;
 
-/// Where the rotors stand, in units of the half arm: x forwards, y left.
+/// Places of the rotors, in units of the half arm: x forwards, y left.
 pub const ROTOR_SIDES: [[f64; 2]; 4] = [[1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0], [1.0, 1.0]];
 
 /// Torque about body z of each rotor, in units of thrust times torque per thrust.

@@ -1,4 +1,4 @@
-//! An extra check where the folder `shared` stands beside the repository: the CAREX cases it holds.
+//! An extra check where the folder `shared` is beside the repository: the CAREX cases it holds.
 
 use std::path::{Path, PathBuf};
 

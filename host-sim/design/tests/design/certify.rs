@@ -26,8 +26,8 @@ fn certified(plant: &Plant, controller: &Controller, timing: Timing) -> Certific
     certify(plant, controller, &timing, None).expect("stable")
 }
 
-fn assert_near(got: f64, want: f64, tolerance: f64, what: &str) {
-    assert!((got - want).abs() <= tolerance * want.abs(), "{what}: {got} is not {want}");
+fn assert_near(got: f64, want: f64, tolerance: f64, figure: &str) {
+    assert!((got - want).abs() <= tolerance * want.abs(), "{figure}: {got} is not {want}");
 }
 
 #[test]
@@ -310,7 +310,7 @@ fn a_design_for_a_delay_keeps_the_poles_that_the_delay_free_one_has() {
     let unprepared = certified(&Plant::equilibrium(), &Controller::from(&plain), timing);
     let alpha = |certificate: &Certificate| certificate.sampled.margins.all.balanced.alpha;
     assert!(alpha(&unprepared) < alpha(&for_delay), "{} {}", alpha(&unprepared), alpha(&for_delay));
-    // What is left of its delay limit is what it had, less the two samples.
+    // The rest of its delay limit is the whole limit less the two samples.
     let (left_s, had_s) = (unprepared.delay.last().expect("all"), without.delay.last().expect("all"));
     assert!((left_s.stable_to_s + 0.02 - had_s.stable_to_s).abs() < 1e-8, "{left_s:?} {had_s:?}");
 }

@@ -55,7 +55,7 @@ fn opposite_eigenvalues_are_refused_by_name() {
 #[test]
 fn one_input_of_a_chain_places_every_pole_at_the_rate() {
     // (s + mu)^n has coefficients mu^n binomial(n, k) only if all poles are real; here only the real part is given, so
-    // what is checked is that, and the sum of the poles, trace(A - B K) = -n mu.
+    // that is checked, and the sum of the poles, trace(A - B K) = -n mu.
     for n in [1_usize, 3, 6] {
         let a = DMatrix::from_fn(n, n, |i, j| if j == i + 1 { 1.0 } else { 0.0 });
         let b = DMatrix::from_fn(n, 1, |i, _| if i == n - 1 { 1.0 } else { 0.0 });

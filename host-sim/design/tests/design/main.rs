@@ -1,4 +1,4 @@
-//! Section III and Section IV of the paper, and what lies past them: equations solved, gains designed and certified.
+//! Section III and Section IV of the paper, and more beyond them: equations solved, gains designed and certified.
 
 mod analysis_section_three;
 mod analysis_structure;

@@ -1,4 +1,4 @@
-//! The Riccati solver on cases with a known answer, on random pairs by property, and on what it must refuse.
+//! The Riccati solver on cases with a known answer, on random pairs by property, and on problems that it must refuse.
 
 use nalgebra::DMatrix;
 use proptest::prelude::*;

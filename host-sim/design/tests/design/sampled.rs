@@ -22,9 +22,9 @@ fn chain_gains(gain: &DMatrix<f64>) -> [f64; 6] {
     [gain[(0, 2)], gain[(0, 8)], gain[(2, 0)], gain[(2, 4)], gain[(2, 6)], gain[(3, 5)]]
 }
 
-fn assert_close(got: &[f64], want: &[f64], tolerance: f64, what: &str) {
+fn assert_close(got: &[f64], want: &[f64], tolerance: f64, figure: &str) {
     for (got, want) in got.iter().zip(want) {
-        assert!((got - want).abs() <= tolerance * want.abs(), "{what}: {got} is not {want}");
+        assert!((got - want).abs() <= tolerance * want.abs(), "{figure}: {got} is not {want}");
     }
 }
 

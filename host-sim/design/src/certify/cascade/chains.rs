@@ -22,7 +22,7 @@ pub(super) trait Chain {
     /// accelerometer is looked at.
     fn advance(&self, x: &mut [f64], added: f64, looks: bool) -> f64;
 
-    /// The matrices of a period: of the states, of what is added to the command, and the command's row.
+    /// The matrices of a period: of the states, of an addition to the command, and the command's row.
     fn matrices(&self, looks: bool) -> (DMatrix<f64>, DVector<f64>, DVector<f64>) {
         let n = self.states();
         let (mut a, mut row) = (DMatrix::zeros(n, n), DVector::zeros(n));

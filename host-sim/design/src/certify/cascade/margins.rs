@@ -10,7 +10,7 @@ use crate::certify::CertifyError;
 use crate::certify::margins::{Disk, DiskMargin, sampled_grid};
 use crate::certify::sweep::peak;
 
-/// What a chain tolerates at the plant's input.
+/// The factors and delays that a chain tolerates at the plant's input.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ChainMargins {
     /// The balanced disk.
@@ -33,7 +33,7 @@ pub struct ChainLoop {
 }
 
 impl ChainLoop {
-    /// The sensitivity at a frequency, rad/s: from what is added to the command to command and addition. Nothing on a pole.
+    /// The sensitivity at a frequency, rad/s: from an addition to the command to the sum of both. Nothing on a pole.
     pub fn sensitivity(&self, frequency_rad_s: f64) -> Option<Complex64> {
         let z = Complex64::from_polar(1.0, frequency_rad_s * self.period_s);
         let mut pencil = -self.a.clone();

@@ -76,16 +76,16 @@ impl CascadeCraft {
     }
 }
 
-/// How a craft, its air and its link differ from what the controller is told.
+/// How a craft, its air and its link differ from those that the controller is told.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CascadeVariation {
     /// Time constant of the motors, s.
     pub lag_s: f64,
     /// Mass over that told.
     pub mass_factor: f64,
-    /// Inertia over that told; over mass, where the craft has seen what its motors give.
+    /// Inertia over that told; over mass, where the craft has learned its motors' share.
     pub inertia_factor: f64,
-    /// Force of the motors over their command; of torques over what the craft has seen of it.
+    /// Force of the motors over their command; of torques over the share that the craft has learned.
     pub command_factor: f64,
     /// How late a command acts, s.
     pub delay_s: f64,

@@ -18,12 +18,12 @@ pub struct CascadeRegion {
     pub lags_s: Vec<f64>,
     /// Masses over that told.
     pub mass_factors: Vec<f64>,
-    /// Inertias over those told; of roll, pitch and yaw over what the craft has seen of its motors, which is inertia
+    /// Inertias over those told; of roll, pitch and yaw over the motors' learned share, which is inertia
     /// over mass.
     pub inertia_factors: Vec<f64>,
     /// Forces over commands, of the thrust.
     pub command_factors: Vec<f64>,
-    /// Forces over commands of roll, pitch and yaw, over what the craft has seen of its motors: 1 after some seconds of
+    /// Forces over commands of roll, pitch and yaw, over the motors' learned share: 1 after some seconds of
     /// flight.
     pub torque_factors: Vec<f64>,
     /// How late commands act, s.
@@ -55,7 +55,7 @@ impl CascadeRegion {
     /// Motors between two lags, in five even steps of ratio, and all that a Crazyflie in air may have otherwise: mass
     /// off by 20 %, inertia over mass by 30 %, 70 to 105 % of the force told, up to 10 ms of delay, drag to 0.6 1/s,
     /// moment to 1.2 times the identified one, any air believed that the bounds of the core allow. The craft has flown
-    /// for some seconds and seen what its motors give.
+    /// for some seconds and learned its motors' share.
     pub fn in_air(shortest_s: f64, longest_s: f64) -> Self {
         Self {
             mass_factors: vec![0.8, 1.0, 1.2],
@@ -71,7 +71,7 @@ impl CascadeRegion {
         }
     }
 
-    /// The same before the craft has seen what its motors give: torques are 70 to 105 % of what is asked, the inertia
+    /// The same before the craft has learned its motors' share: torques are 70 to 105 % of their command, the inertia
     /// is as told.
     pub fn before_its_motors_are_seen(&self) -> Self {
         Self { inertia_factors: vec![1.0], torque_factors: vec![0.7, 0.85, 1.05], ..self.clone() }

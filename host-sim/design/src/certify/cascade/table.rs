@@ -59,7 +59,7 @@ pub struct CascadeAir {
 pub struct CascadeRegionCertificate {
     /// The region.
     pub bounds: CascadeBounds,
-    /// Each chain's least stable point, after the craft has seen in some seconds of flight what its motors give.
+    /// Each chain's least stable point, after the craft has learned its motors' share in some seconds of flight.
     pub seen: [CascadeCertificate; 4],
     /// The same in the seconds before, at the inertia that is told.
     pub unseen: [CascadeCertificate; 4],
@@ -87,7 +87,7 @@ impl CascadeBounds {
         }
     }
 
-    /// The same before the craft has seen what its motors give.
+    /// The same before the craft has learned its motors' share.
     fn region_unseen(&self) -> CascadeRegion {
         CascadeRegion { torque_factors: self.force_share.to_vec(), ..self.region().before_its_motors_are_seen() }
     }
