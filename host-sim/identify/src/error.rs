@@ -16,7 +16,7 @@ pub enum IdentifyError {
     Format {
         /// The file.
         path: String,
-        /// What is wrong and what would help.
+        /// The fault and the remedy.
         reason: String,
     },
     /// A map of columns that says something without sense.
@@ -24,7 +24,7 @@ pub enum IdentifyError {
     Map {
         /// The map's name or file.
         map: String,
-        /// What is wrong and what would help.
+        /// The fault and the remedy.
         reason: String,
     },
     /// A column that the map names and the log does not have.
@@ -34,7 +34,7 @@ pub enum IdentifyError {
         path: String,
         /// The column.
         column: String,
-        /// What it was to hold.
+        /// The quantity that it was to hold.
         quantity: &'static str,
         /// The first of those that are there.
         present: String,
@@ -49,7 +49,7 @@ pub enum IdentifyError {
         field: &'static str,
         /// As given.
         value: f64,
-        /// What it must be.
+        /// Its required range, in words.
         must: &'static str,
     },
 }

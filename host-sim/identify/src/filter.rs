@@ -72,7 +72,7 @@ pub(crate) fn shifted(signal: &[f64], steps: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The same by the cubic through the four nearest points, which keeps what lies below a quarter of the rate.
+/// The same by the cubic through the four nearest points, which keeps frequencies below a quarter of the rate.
 pub(crate) fn shifted_smoothly(signal: &[f64], steps: f64) -> Vec<f64> {
     let last = signal.len().saturating_sub(1) as isize;
     let whole = steps.floor();

@@ -2,9 +2,9 @@
 //! inertia, each with a 95 % interval or a reason why it is not known, out.
 //!
 //! ```text
-//! report          from logs to all that is told
+//! report          from logs to the report
 //!   vehicle_file  the figures as a vehicle that designs take
-//!   regions       whether the craft is inside what built-in tables are certified over
+//!   regions       whether the craft is inside the certified regions of built-in tables
 //!     predict     the flights again from commands, on a part held out
 //!     fit         inverse dynamics, priors, block bootstrap
 //!       flight    one even grid: checked, cleaned, aligned
@@ -12,9 +12,10 @@
 //!           error, filter  why there is nothing; low-pass, derivative, shift, lag
 //! ```
 //!
-//! Why not output error: its input, the logged commands, is noisy, and it inflates the inertia two- to threefold. What is maximised is the
-//! likelihood of what Kalman filters do not foresee, with process noise, where the filters' model explains a flight; where it does not, as
-//! on real crafts, the balance of torques and of forces along the flight as it was, below 6 Hz, is what is fitted.
+//! Why not output error: its input, the logged commands, is noisy, and it inflates the inertia two- to threefold. The
+//! maximised quantity is the likelihood of the innovations of Kalman filters, with process noise, where the filters'
+//! model explains a flight; where it does not, as on real crafts, the balance of torques and of forces along the flight
+//! as it was, below 6 Hz, is fitted.
 
 #![allow(
     clippy::needless_range_loop,

@@ -1,8 +1,9 @@
-//! The flights once more, from commands alone, on a part that was held out: what is predicted half a second ahead, beside two
+//! The flights once more, from commands alone, on a part that was held out: predictions half a second ahead, beside two
 //! predictions that know less.
 //!
-//! What is known at a start is what the past tells: pose and velocity as measured, body rates and a disturbing torque by a Kalman
-//! filter on the gyroscope, a disturbing force by the accelerometer. Disturbances fade as they do on the flights that were learned from.
+//! The state at a start comes from the past alone: pose and velocity as measured, body rates and a disturbing torque by a
+//! Kalman filter on the gyroscope, a disturbing force by the accelerometer. Disturbances fade as they do on the flights
+//! that were learned from.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -17,7 +18,7 @@ use quatrack_design::vehicle::{ROTOR_SIDES, ROTOR_TORQUE_SIGNS};
 pub const HORIZON: usize = 50;
 /// From one start to the next, in steps.
 const BETWEEN: usize = 10;
-/// What the filters have to see before a start, in steps.
+/// Steps that the filters take before a start.
 const BEFORE: usize = 100;
 /// Share of each flight that is held out, at its end.
 const HELD_OUT: f64 = 0.25;
@@ -49,11 +50,11 @@ pub struct Prediction {
     pub no_change: Course,
     /// How many starts.
     pub starts: usize,
-    /// What was left out, for pictures: one stretch of a flight, predicted from its every half second.
+    /// A part that was held out, for pictures: one stretch of a flight, predicted from its every half second.
     pub example: Option<Example>,
 }
 
-/// A stretch of flight with what was predicted of it.
+/// A stretch of flight with its prediction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Example {
     /// Its file.
@@ -87,11 +88,11 @@ struct Habits {
     force_s: f64,
     /// Share of the angular acceleration by the figures that is believed: logged commands are noisy, and a flight is smooth.
     share: f64,
-    /// How fast a flown craft stops turning, whatever its figures say, 1/s.
+    /// How fast a flown craft stops turning, beside the damping of its figures, 1/s.
     rest_per_s: f64,
 }
 
-/// A section with what its motors did, and what was known when.
+/// A section with its motors' thrusts, and the filters' estimates at each point.
 struct Track<'a> {
     section: &'a Section,
     thrusts_n: [Vec<f64>; 4],
@@ -287,12 +288,12 @@ fn halves(flight: &Flight) -> (Flight, Flight) {
     (with(first), with(second))
 }
 
-/// The habits that predict best what was learned from, one after the other from a grid, twice.
+/// The habits that predict the learned flights best, one after the other from a grid, twice.
 fn habits(learned: &[Flight], fit: &Fit) -> Habits {
     let start = Habits { gain: 10.0, torque_s: 0.5, force_s: 1.0, share: 0.7, rest_per_s: 0.5 };
     let cost = |habits: &Habits| {
         let last = errors(learned, fit, habits, 4 * BETWEEN, true).0[HORIZON - 1];
-        // Each in what it comes to on small craft, so that none goes unseen.
+        // Each over its usual size on small craft, so that none goes unseen.
         last.position_m / 0.06 + last.velocity_m_s / 0.35 + last.rotation_rad / 0.18 + last.body_rate_rad_s / 0.5
     };
     let mut best = (cost(&start), start);

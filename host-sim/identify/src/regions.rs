@@ -17,7 +17,7 @@ const DESIGNS: [(&str, &str); 9] = [
     ("cascade-kit-63ms", include_str!("../../../gains/cascade-kit-63ms.toml")),
 ];
 
-/// What of a design is needed here.
+/// The part of a design file that is needed here.
 #[derive(Deserialize)]
 struct Design {
     vehicle: String,
@@ -48,7 +48,7 @@ struct RegionEntry {
 /// Without a figure of its own, a table is certified up to this much of the moment that was identified.
 const CASCADE_MOMENT: f64 = 1.2;
 
-/// A built-in table for the craft's vehicle, and what of the craft is outside its region.
+/// A built-in table for the craft's vehicle, and the craft's figures that are outside its region.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standing {
     /// The table.

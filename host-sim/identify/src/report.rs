@@ -1,4 +1,4 @@
-//! From logs to all that is told of them.
+//! From logs to the report: figures, intervals, predictions, regions and notes.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -22,7 +22,7 @@ pub struct Report {
     pub fit: Fit,
     /// On the quarter held out; why not, where the flights are too short for it.
     pub prediction: Result<Prediction, String>,
-    /// What was found in the logs.
+    /// Findings about the logs.
     pub notes: Vec<String>,
     /// Each built-in table of the vehicle.
     pub standings: Vec<Standing>,
@@ -33,7 +33,7 @@ pub struct Report {
 /// Identifies a craft from logs: the base vehicle's arm, limits and torque per thrust, and the mass flown, are believed.
 ///
 /// # Errors
-/// [`IdentifyError`] for a log that cannot be used, unless others can; what is wrong with it is a note then.
+/// [`IdentifyError`] for a log that cannot be used, unless others can; its fault is a note then.
 pub fn identify(
     paths: &[impl AsRef<Path>],
     map: &ColumnMap,
@@ -245,7 +245,9 @@ impl Report {
             let unknown = one.unknown.join(", ");
             let _ = match (one.outside.is_empty(), one.unknown.is_empty()) {
                 (true, true) => writeln!(text, "table {}: the craft is inside its certified region", one.table),
-                (true, false) => writeln!(text, "table {}: inside by what is known; {unknown} not told", one.table),
+                (true, false) => {
+                    writeln!(text, "table {}: inside by the known figures; {unknown} not known", one.table)
+                }
                 (false, _) => {
                     writeln!(text, "table {}: outside its certified region: {}", one.table, one.outside.join("; "))
                 }

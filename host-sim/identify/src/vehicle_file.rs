@@ -1,4 +1,5 @@
-//! The figures as a vehicle file: each with its interval and source; what was not told is the base vehicle's.
+//! The figures as a vehicle file: each with its interval and source; a figure that was not identified is the base
+//! vehicle's.
 
 use std::fmt::Write as _;
 
@@ -25,7 +26,7 @@ pub fn vehicle_toml(fit: &Fit, vehicle: &Vehicle, logs: &[String]) -> String {
     let base = vehicle.inertia_kg_m2();
     let motors = vehicle.motors();
     line(&format!("# Identified from {}.", logs.join(", ")));
-    line(&format!("# What the flights did not tell is of {}.", vehicle.name()));
+    line(&format!("# Figures that the flights do not show are those of {}.", vehicle.name()));
     line(&format!("name = \"{}\"", name(vehicle.name())));
     line("\n[body]");
     line("# As it was given: weigh it as it flies, with battery and decks.");
@@ -45,7 +46,7 @@ pub fn vehicle_toml(fit: &Fit, vehicle: &Vehicle, logs: &[String]) -> String {
                     figure(estimate.high)
                 ));
             }
-            None => line(&format!("# About {axis}: that of {}, in proportion to what is known.", vehicle.name())),
+            None => line(&format!("# About {axis}: that of {}, in proportion to the known axes.", vehicle.name())),
         }
     }
     inertia[2] = inertia[2].min(most);

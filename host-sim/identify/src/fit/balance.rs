@@ -1,4 +1,5 @@
-//! The balance of torques along a stretch of flight, for pictures: what the motors give, what explains it, what is left.
+//! The balance of torques along a stretch of flight, for pictures: the motors' torque, the part that rotation and air
+//! explain, and the rest.
 
 use super::prior::Base;
 use super::problem::Prepared;
@@ -14,7 +15,7 @@ pub struct Balance {
     pub times_s: Vec<f64>,
     /// About x and y: of the motors.
     pub motors: [Vec<f64>; 2],
-    /// What turning and air account for.
+    /// The part that rotation and air explain.
     pub explained: [Vec<f64>; 2],
 }
 

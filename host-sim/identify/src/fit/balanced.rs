@@ -1,9 +1,9 @@
 //! Maximum a posteriori below the corner: thrust by command and voltage, the torque balance, lag and delay together, from a start near by.
 //! For flights whose noise is not that of the filters' model, as on a real craft: see [`super::refine`].
 //!
-//! What the balances leave over is process noise: its power, and how long it remembers, are had from the flights themselves, and
-//! weigh the data against the priors. The balance of torques is taken relative to the torque that is commanded, since a long lag
-//! would make both small.
+//! The residual of the balances is process noise: its power, and its correlation time, are estimated from the flights
+//! themselves, and weigh the data against the priors. The balance of torques is taken relative to the torque that is
+//! commanded, since a long lag would make both small.
 
 use std::collections::BTreeSet;
 
@@ -32,7 +32,7 @@ const KINDS: usize = 3;
 /// battery and a motor do.
 const MISTRUST: [f64; KINDS] = [1.0, 1.0, 2.0];
 
-/// The estimate with what intervals are made of.
+/// The estimate with the residuals that intervals are made of.
 pub(super) struct Refined {
     pub(super) values: DVector<f64>,
     pub(super) priors: Vec<Prior>,
@@ -41,7 +41,7 @@ pub(super) struct Refined {
     pub(super) blocks: Vec<Block>,
 }
 
-/// Where the parameters begin and what is believed of them.
+/// Start values of the parameters and their priors.
 pub(super) struct Start {
     pub(super) values: DVector<f64>,
     pub(super) priors: Vec<Prior>,
@@ -195,7 +195,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Steps of a difference, and what parameters are measured in.
+/// Steps of a difference, and units of the parameters.
 fn units(base: &Base, flights: usize) -> Vec<f64> {
     let damping = 0.1 * base.damping_scale();
     let mut units = vec![0.1, 0.1, 1e-3, 0.05, 0.05, 0.1, 0.02];
@@ -258,7 +258,7 @@ fn variances(residuals: &Residuals) -> [f64; KINDS] {
     })
 }
 
-/// Minus the logarithm of the posterior, the powers of the noises being what fits best.
+/// Minus the logarithm of the posterior, at the powers of the noises that fit best.
 fn cost(values: &DVector<f64>, residuals: &Residuals, priors: &[Prior], memory: &[f64; KINDS]) -> f64 {
     let variance = variances(residuals);
     let count: usize = residuals.rows.iter().map(|rows| rows[0].len()).sum();
@@ -300,7 +300,7 @@ fn total(
                 (0..count).filter(|j| changed[*j].as_ref().is_some_and(|there| there.rows[s][k] != *rows)).collect();
             let mut from = 0;
             while from < rows.len() {
-                // The last block takes what is too short for one of its own.
+                // The last block takes a rest that is too short for one of its own.
                 let to = if from + 2 * span > rows.len() { rows.len() } else { from + span };
                 let mut own =
                     Block { flight: one.flight, matrix: DMatrix::zeros(count, count), score: DVector::zeros(count) };

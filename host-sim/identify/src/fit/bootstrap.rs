@@ -6,7 +6,7 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
 /// How often flights and blocks are drawn.
 pub(super) const DRAWS: usize = 400;
-/// From this many flights on, flights are drawn, and blocks in them: what differs from flight to flight counts.
+/// From this many flights on, flights are drawn, and blocks in them: differences from flight to flight count.
 const FLIGHTS_DRAWN_FROM: usize = 4;
 const SEED: u64 = 0x5157_4944;
 

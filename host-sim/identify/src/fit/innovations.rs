@@ -1,9 +1,9 @@
-//! What a Kalman filter that knows the figures does not foresee: of the body rates with the accelerometer across them, about x and
-//! about y, and of the accelerometer along the thrust. Figures and noise in; innovations with their covariance out.
+//! Innovations of a Kalman filter that knows the figures: of the body rates with the accelerometer across them, about x
+//! and about y, and of the accelerometer along the thrust. Figures and noise in; innovations with their covariance out.
 //!
 //! About x (about y alike): `J w' = M + c (v - a) - d w + b + n`, `f = -D (v - a) + l w' + y`, with the motors' mixture M, the velocity v
 //! over ground, moving air a, a disturbing torque n and force y, which fade, and white noise on rate, gyroscope and accelerometer.
-//! Along the thrust: `f = F m - D_z v_z + lift (v_x^2 + v_y^2) + n`. What is constant in a section is had as its mean.
+//! Along the thrust: `f = F m - D_z v_z + lift (v_x^2 + v_y^2) + n`. Constants of a section are taken as its mean.
 
 use nalgebra::{DVector, Matrix1, Matrix2, Matrix2x4, Matrix4, Vector1, Vector2, Vector4};
 
@@ -46,7 +46,7 @@ impl Innovations {
     }
 }
 
-/// What does not depend on figures.
+/// The signals that do not depend on the figures.
 pub(super) struct Balances<'a> {
     pub(super) sections: &'a [Prepared],
     base: &'a Base,
@@ -67,7 +67,7 @@ impl<'a> Balances<'a> {
         self.sections.iter().map(|one| one.thrusts_between(&drive)).collect()
     }
 
-    /// Logarithm of the thrust per mass of a full command by flight: what carries the craft on average.
+    /// Logarithm of the thrust per mass of a full command by flight: it carries the craft on average.
     pub(super) fn full(&self, values: &DVector<f64>, thrusts: &[Thrusts]) -> Vec<f64> {
         (0..self.flights)
             .map(|flight| {

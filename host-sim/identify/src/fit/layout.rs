@@ -1,4 +1,4 @@
-//! Where each parameter is among the values, its unit, where it begins, and what is believed of it.
+//! Where each parameter is among the values, its unit, its start value, and its prior.
 
 use nalgebra::DVector;
 
@@ -34,7 +34,7 @@ pub(super) const JUMP: usize = 40;
 /// Parameters before those of each flight, which are logarithms of the thrust per mass at full command.
 pub(super) const SHARED: usize = 41;
 
-/// Of a balance about x or y: what disturbs it, and what its sensors add.
+/// Of a balance about x or y: its process noise, and that of its sensors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Noise {
     /// A disturbing angular acceleration: memory, s, and deviation, rad/s^2.
@@ -62,7 +62,7 @@ impl Noise {
     }
 }
 
-/// Steps of a difference, and what parameters are measured in.
+/// Steps of a difference, and units of the parameters.
 pub(super) fn units(base: &Base) -> Vec<f64> {
     let moment = 3e-3 * base.half_arm_m.max(0.01);
     let damping = 0.05 * base.damping_scale();
@@ -74,7 +74,7 @@ pub(super) fn units(base: &Base) -> Vec<f64> {
     units
 }
 
-/// What the motors' command becomes.
+/// The motors' answer to a command.
 pub(super) fn drive_of(values: &DVector<f64>) -> Drive {
     let (lag_s, half) = (values[LAG].exp(), 0.5 * values[ASYMMETRY]);
     Drive {
@@ -86,7 +86,7 @@ pub(super) fn drive_of(values: &DVector<f64>) -> Drive {
     }
 }
 
-/// What regressions found, to begin from.
+/// Results of regressions, to begin from.
 pub(super) struct Found {
     pub(super) lag_s: f64,
     pub(super) inertia: [f64; 2],

@@ -2,17 +2,17 @@
 //!
 //! ```text
 //! whole            all figures of some flights
-//!   posterior      which of two is believed, and draws of it
+//!   posterior      the choice of one of two, and draws of it
 //!   refine         maximum a posteriori by filters: thrust, torque balance, lag, delay and noise together
-//!     innovations  what a Kalman filter that knows the figures does not foresee
-//!       layout     the parameters: where they are, begin, and what is believed of them
+//!     innovations  of a Kalman filter that knows the figures
+//!       layout     the parameters: their places, start values and priors
 //!         steady   the steady Kalman filter of a model
 //!   balanced       the same by the balances of torques and thrust below the corner
 //!   drag, yaw      regressions by themselves
 //!   balance        torques along a stretch of flight, for pictures
 //!     lag_curve    how much of the torques a lag explains
 //!       problem    signals of the balances, as logged and low-passed
-//!       normal_equations  steps and draws with what is believed beforehand
+//!       normal_equations  steps and draws with priors
 //!         bootstrap, prior
 //! ```
 
@@ -42,5 +42,5 @@ pub use whole::{Estimate, Fit, FlightFit, fit};
 pub(crate) const CORNER_HZ: f64 = 6.0;
 /// Left out at either end of a section, s: the lag and the low-pass begin there.
 pub(crate) const MARGIN_S: f64 = 0.5;
-/// Length of a block, s: longer than what disturbances remember.
+/// Length of a block, s: longer than the correlation time of disturbances.
 pub(crate) const BLOCK_S: f64 = 3.0;

@@ -1,4 +1,4 @@
-//! Normal equations with what is believed beforehand: a step towards the most probable figures, and estimates anew of drawn blocks.
+//! Normal equations with priors: a step towards the most probable figures, and estimates anew of drawn blocks.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -10,7 +10,7 @@ const FIXED: f64 = 1e12;
 /// No further than that many units at once: neither balances nor innovations are linear in lag and delay.
 const LONGEST: f64 = 10.0;
 
-/// Parameters where they are, and what is believed of them.
+/// Parameters at their present values, and their priors.
 pub(super) struct Believed<'a> {
     pub(super) values: &'a DVector<f64>,
     pub(super) priors: &'a [Prior],
@@ -59,7 +59,7 @@ impl Believed<'_> {
         (prior.precision(value) * unit * unit, (value - prior.centre) / unit)
     }
 
-    /// With what is fixed left where it is; nothing where the matrix has no Cholesky factor.
+    /// With fixed parameters left as they are; nothing where the matrix has no Cholesky factor.
     fn solved(&self, mut matrix: DMatrix<f64>, mut slope: DVector<f64>) -> DVector<f64> {
         for j in (0..slope.len()).filter(|j| self.fixed.contains(j)) {
             (matrix[(j, j)], slope[j]) = (FIXED, 0.0);

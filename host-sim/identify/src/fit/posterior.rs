@@ -1,7 +1,8 @@
-//! Which of two posteriors is believed, and draws of it.
+//! The choice between two posteriors, and draws of the chosen one.
 //!
 //! Filters that know how a craft moves take out of a log all that is in it, as long as the craft moves as they think. A real one does
-//! more: its torques are explained to 0.9. There the balances below the corner, which do not look at what is faster, are believed.
+//! more: its torques are explained to 0.9. There the balances below the corner, which leave out faster motions, are
+//! believed.
 
 use nalgebra::DVector;
 

@@ -1,4 +1,4 @@
-//! What is believed before a flight: the vehicle's own figures, loosely, and physics.
+//! Priors before a flight: the vehicle's own figures, loosely, and physics.
 
 use quatrack_design::vehicle::Vehicle;
 
@@ -46,7 +46,7 @@ impl Base {
         }
     }
 
-    /// Mass times the square of the rotors' distance, kg m^2: what damping of rates is a share of, per second.
+    /// Mass times the square of the rotors' distance, kg m^2: the damping of rates is a share of it, per second.
     pub(super) fn damping_scale(&self) -> f64 {
         self.mass_kg * self.half_arm_m * self.half_arm_m
     }

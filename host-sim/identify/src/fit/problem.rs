@@ -16,7 +16,7 @@ use quatrack_design::vehicle::{ROTOR_SIDES, ROTOR_TORQUE_SIGNS};
 const JUMP_SPREADS: f64 = 8.0;
 const JUMP_LEAST: f64 = 0.05;
 
-/// What the motors' command becomes.
+/// The motors' answer to a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Drive {
     pub(crate) rise_s: f64,
@@ -46,9 +46,9 @@ pub(super) struct Prepared {
     pub(super) products: [Vec<f64>; 2],
     /// Square of the velocity across the thrust.
     pub(super) across: Vec<f64>,
-    /// What the accelerometer shows too much, by the velocity's change over the section.
+    /// Bias of the accelerometer, by the velocity's change over the section.
     pub(super) force_bias: Vector3<f64>,
-    /// What the gyroscope does, by the attitude's.
+    /// Bias of the gyroscope, by the attitude's change.
     pub(super) gyro_bias: Vector3<f64>,
     /// Points that count.
     pub(super) inner: std::ops::Range<usize>,
@@ -133,7 +133,7 @@ impl Prepared {
             .map(|asked| lagged(&shifted(&asked, -drive.delay_s / STEP_S), drive.rise_s, drive.fall_s, STEP_S))
     }
 
-    /// What is asked of each motor at each point of the log.
+    /// The force asked of each motor at each point of the log.
     fn asked(&self, drive: &Drive) -> [Vec<f64>; 4] {
         let [p, q] = drive.powers;
         self.commands.each_ref().map(|command| {
@@ -145,7 +145,7 @@ impl Prepared {
         })
     }
 
-    /// The part of a signal that jumps, beyond what it changes by around.
+    /// The part of a signal that jumps, beyond its change around the jump.
     fn stairs(&self, asked: &[f64]) -> Vec<f64> {
         let mut stairs = vec![0.0; asked.len()];
         for &k in &self.jumps {
@@ -159,7 +159,8 @@ impl Prepared {
         stairs
     }
 
-    /// Thrusts without a low-pass. A command is a smooth curve through its samples: what it does between them is not in the log.
+    /// Thrusts without a low-pass. A command is a smooth curve through its samples: its course between them is not in the
+    /// log.
     pub(super) fn thrusts_between(&self, drive: &Drive) -> Thrusts {
         let count = self.commands[0].len();
         let steps = -drive.delay_s / STEP_S;
@@ -231,7 +232,7 @@ fn jumps(commands: &[Vec<f64>; 4]) -> Vec<usize> {
         .collect()
 }
 
-/// Whatever the accelerometer shows on average beyond gravity and the change of the velocity: in the world frame the mean of the
+/// The accelerometer's mean beyond gravity and the change of the velocity: in the world frame the mean of the
 /// specific force is known from the velocity at both ends.
 fn force_bias(section: &Section) -> Vector3<f64> {
     let count = section.len();
@@ -249,7 +250,7 @@ fn force_bias(section: &Section) -> Vector3<f64> {
     (turn / inner.len() as f64).lu().solve(&over).unwrap_or_default()
 }
 
-/// What the gyroscope shows on average beyond the turning of the attitude.
+/// The gyroscope's mean beyond the turning of the attitude.
 fn gyro_bias(section: &Section) -> Vector3<f64> {
     let count = section.len();
     let turned = (1..count).fold(Vector3::zeros(), |sum, i| {

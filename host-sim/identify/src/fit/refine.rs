@@ -25,7 +25,7 @@ const ROUNDS: usize = 40;
 /// Gain of the logarithm at which it is enough: a parameter that is off by a tenth of its deviation costs 0.005.
 const ENOUGH: f64 = 0.03;
 
-/// The estimate with what intervals are made of.
+/// The estimate with the innovations that intervals are made of.
 pub(super) struct Refined {
     /// The shared ones, then the logarithm of each flight's thrust per mass.
     pub(super) values: DVector<f64>,
@@ -37,7 +37,7 @@ pub(super) struct Refined {
     full_slopes: DMatrix<f64>,
 }
 
-/// Where the parameters begin and what is believed of them.
+/// Start values of the parameters and their priors.
 pub(super) struct Start {
     pub(super) values: DVector<f64>,
     pub(super) priors: Vec<Prior>,
@@ -113,7 +113,7 @@ pub(super) fn refine(sections: &[Prepared], base: &Base, flights: usize, start: 
             if weighed {
                 break;
             }
-            // What the filter does not foresee should be news at every point; as far as it is not, it counts for less.
+            // Innovations should be independent from point to point; as far as they are not, they count for less.
             let (_, memory) = self::blocks(&balances, &values, &now, &units, &fixed, &[1.0; KINDS]);
             weights = memory.map(|memory| 1.0 / memory);
             least = cost(&values, &now, &weights);

@@ -2,7 +2,7 @@
 //! covariance out.
 //!
 //! Chu, Fan, Lin, Wang, "Structure-preserving algorithms for periodic discrete-time algebraic Riccati equations", Int. J. Control
-//! 77 (2004): each round squares the closed loop, so that 30 rounds reach what 10^9 steps of the filter would.
+//! 77 (2004): each round squares the closed loop, so that 30 rounds go as far as 10^9 steps of the filter.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -15,7 +15,7 @@ pub(super) struct Linear<const N: usize, const M: usize> {
     pub(super) r: SVector<f64, M>,
 }
 
-/// What is steady: `x += K (y - H x)`, and the covariance of what is in the brackets.
+/// The steady gain of `x += K (y - H x)`, and the covariance of the innovation in the brackets.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Steady<const N: usize, const M: usize> {
     pub(super) gain: SMatrix<f64, N, M>,

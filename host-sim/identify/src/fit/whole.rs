@@ -33,7 +33,7 @@ pub struct Estimate {
     pub high: f64,
 }
 
-/// What differs from flight to flight.
+/// Figures that differ from flight to flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightFit {
     /// Thrust over mass that a full command gives at the reference voltage, m/s^2.
@@ -61,7 +61,7 @@ pub(crate) struct Model {
 /// All that was found.
 #[derive(Clone, Debug)]
 pub struct Fit {
-    /// What it was found with.
+    /// The vehicle's figures that it was found with.
     pub base: Base,
     /// By name; where one is not known, why and which manoeuvre would tell.
     pub figures: BTreeMap<&'static str, Result<Estimate, String>>,
@@ -160,7 +160,7 @@ fn explained(sections: &[Prepared], base: &Base, model: &Model, full: &[f64]) ->
     std::array::from_fn(|kind| 1.0 - rest[kind] / whole[kind].max(1e-12))
 }
 
-/// What follows from the values.
+/// Figures that follow from the values.
 struct Summary {
     full: Vec<f64>,
     drive: Drive,
@@ -229,7 +229,7 @@ fn model(values: &DVector<f64>, drags: &[Regression; 2], yaws: &Regression) -> M
     }
 }
 
-/// Biases of each flight: what the balances leave on average.
+/// Biases of each flight: the mean residuals of the balances.
 fn flight_fits(sections: &[Prepared], base: &Base, model: &Model, full: &[f64]) -> Vec<FlightFit> {
     full.iter()
         .enumerate()
@@ -254,7 +254,7 @@ fn flight_fits(sections: &[Prepared], base: &Base, model: &Model, full: &[f64]) 
         .collect()
 }
 
-/// Torque that a section needs beyond what its motors give, N m.
+/// Torque that a section needs beyond that of its motors, N m.
 fn section_bias(one: &Prepared, base: &Base, model: &Model, full: f64) -> Vector3<f64> {
     let driven = one.drive(&model.drive);
     let newton = 0.25 * base.mass_kg * full;
@@ -275,8 +275,9 @@ struct Figures<'a> {
     spread: f64,
 }
 
-/// What figures are off by, as a share and at 95 %, on simulated crafts whose flights are as long as one likes: attitude and velocity are of an
-/// estimator that does not know of drag, and a log does not say what a command did between its samples.
+/// Systematic errors of figures, as a share and at 95 %, on simulated crafts whose flights are as long as one likes:
+/// attitude and velocity are of an estimator that does not know of drag, and the course of a command between its samples
+/// is not in the log.
 const SYSTEMATIC: [(&str, f64); 6] = [
     ("lag_", 0.07),
     ("inertia_", 0.08),
@@ -317,7 +318,7 @@ impl Figures<'_> {
         self.put("lag_ms", lag, &all, 0.3 * lag, STEPS);
         let (delay, all) = of(&|v| 1e3 * v[DELAY]);
         self.put("delay_ms", delay, &all, 8.0, STEPS);
-        // What a command did between two samples is not in the log: half a sample to either side.
+        // The course of a command between two samples is not in the log: half a sample to either side.
         if let Some(Ok(delay)) = self.all.get_mut("delay_ms") {
             delay.low -= 500.0 * STEP_S;
             delay.high += 500.0 * STEP_S;
@@ -361,7 +362,7 @@ impl Figures<'_> {
         }
     }
 
-    /// Batteries and motors differ from flight to flight: what the mean of all of them is uncertain by.
+    /// Batteries and motors differ from flight to flight: the uncertainty of the mean of all of them.
     fn between_flights(&self, values: &DVector<f64>, draws: &mut [f64]) {
         let logs: Vec<f64> = values.iter().skip(SHARED).copied().collect();
         let deviation = (variance(&logs) / (logs.len().max(2) - 1) as f64).sqrt();
@@ -424,7 +425,7 @@ impl Figures<'_> {
     }
 
     fn biases(&mut self, flights: &[FlightFit], sections: &[Prepared]) {
-        // By sections where there is one flight; each with what it has of its own.
+        // By sections where there is one flight; each with its own.
         let _ = sections;
         let of = |f: &dyn Fn(&FlightFit) -> f64| -> Estimate {
             let all: Vec<f64> = flights.iter().map(f).collect();
@@ -432,7 +433,7 @@ impl Figures<'_> {
             let deviation = (variance(&all) * all.len() as f64 / (all.len().max(2) - 1) as f64).sqrt();
             Estimate { value, low: value - 1.96 * deviation, high: value + 1.96 * deviation }
         };
-        let one = "one flight does not tell a bias from what it changes by: give more flights";
+        let one = "one flight does not tell a bias from its change: give more flights";
         for (axis, names) in [
             ["torque_bias_x_n_m", "gyro_bias_x_rad_s", "accelerometer_bias_x_m_s2"],
             ["torque_bias_y_n_m", "gyro_bias_y_rad_s", "accelerometer_bias_y_m_s2"],

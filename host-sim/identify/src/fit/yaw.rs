@@ -1,4 +1,4 @@
-//! About z: inertia over what the air's torque is, the lead that the rotors' own inertia gives, damping.
+//! About z: inertia over the air's torque, the lead that the rotors' own inertia gives, damping.
 
 use super::drag::Regression;
 use super::prior::Base;

@@ -11,10 +11,11 @@ use crate::filter::{LowPass, mean, shifted};
 const LONGEST_S: f64 = 0.15;
 /// Of the fine grid, s.
 const FINE_S: f64 = 0.001;
-/// Corner of what is compared, Hz.
+/// Corner frequency of the compared signals, Hz.
 const CORNER_HZ: f64 = 6.0;
 
-/// By how much the pose comes later than the on-board streams, s: `gyro(t)` is what the attitude turns by at `t + shift`.
+/// By how much the pose comes later than the on-board streams, s: `gyro(t)` is the attitude's rate of turn at `t +
+/// shift`.
 pub(super) fn pose_shift_s(grid: &Grid, flying: &[bool]) -> f64 {
     let low = LowPass::new(CORNER_HZ, RATE_HZ);
     let turned = turning(&grid.attitude);

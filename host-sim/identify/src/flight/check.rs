@@ -1,4 +1,4 @@
-//! Units, order of the quaternion and signs: each against what the other signals say. What is wrong is named and put right.
+//! Units, order of the quaternion and signs: each against the other signals. A wrong one is named and put right.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;
@@ -9,7 +9,7 @@ use crate::IdentifyError;
 use crate::filter::{LowPass, derivative, median};
 use crate::log::ColumnMap;
 
-/// Corner of what is compared, Hz.
+/// Corner frequency of the compared signals, Hz.
 const CORNER_HZ: f64 = 4.0;
 /// By how much another reading of the columns has to fit better, in sums of five correlations.
 const CLEARLY: f64 = 0.8;
@@ -149,7 +149,7 @@ fn velocity(grid: &mut Grid, map: &ColumnMap, name: &str, notes: &mut Notes) {
     if let Some(factor) = right {
         let unit = map.velocity.as_ref().map_or("", |v| v.unit.as_str());
         notes.0.push(format!(
-            "{name}: velocity: {gain:.3} times what the position changes by: not in {unit} as the map has it; divided by {factor}"
+            "{name}: velocity: {gain:.3} times the position's rate of change: not in {unit} as the map has it; divided by {factor}"
         ));
         grid.velocity.iter_mut().for_each(|v| *v /= factor);
     }
@@ -172,7 +172,7 @@ fn gyroscope(grid: &mut Grid, map: &ColumnMap, name: &str, notes: &mut Notes) {
     for (factor, unit) in [(degree, "deg/s"), (1.0 / degree, "rad/s"), (1e-3, "mrad/s"), (1e3, "rad/s")] {
         if (0.3..3.0).contains(&(gain * factor)) && !(0.3..3.0).contains(&gain) {
             notes.0.push(format!(
-                "{name}: gyroscope: {gain:.3} times what the attitude turns by: its columns are in {unit}, not in {} as the map has it; taken so",
+                "{name}: gyroscope: {gain:.3} times the attitude's rate of turn: its columns are in {unit}, not in {} as the map has it; taken so",
                 map.gyroscope.unit
             ));
             grid.gyro.iter_mut().for_each(|w| *w *= factor);
@@ -181,7 +181,7 @@ fn gyroscope(grid: &mut Grid, map: &ColumnMap, name: &str, notes: &mut Notes) {
     }
 }
 
-/// Air slows a craft down: what the accelerometer shows across the thrust is against the velocity.
+/// Air slows a craft down: the specific force across the thrust is against the velocity.
 fn drag(grid: &mut Grid, name: &str, notes: &mut Notes) {
     let low = LowPass::new(CORNER_HZ, RATE_HZ);
     let world: Vec<Vector3<f64>> = if grid.has_velocity {

@@ -9,7 +9,7 @@ pub(super) struct Stream {
     pub(super) channels: Vec<Vec<f64>>,
 }
 
-/// What was taken out.
+/// Counts of the values taken out.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Removed {
     pub(super) missing: usize,
@@ -19,7 +19,7 @@ pub(super) struct Removed {
     pub(super) of: usize,
 }
 
-/// Values that loggers write for what they do not have.
+/// Values that loggers write for missing ones.
 const CODES: [f64; 6] = [-999.0, -9999.0, 999_999.0, -999_999.0, 4_294_967_295.0, -2_147_483_648.0];
 /// A repeat of more samples than this is a value that rests.
 const LONGEST_REPEAT: usize = 2;
@@ -78,7 +78,7 @@ impl Stream {
                     (channel[i] - median(near)).abs()
                 })
                 .collect();
-            // What 98 of 100 samples stay within, tenfold: a flight's own jumps are part of that.
+            // Ten times the bound of 98 of 100 samples: a flight's own jumps are part of that.
             let most = (10.0 * crate::filter::quantile(&stray, 0.98)).max(0.3 * spread(channel));
             for (keep, stray) in keep.iter_mut().zip(&stray) {
                 *keep &= *stray <= most;

@@ -1,4 +1,4 @@
-//! Streams with their own times in; all of them on one grid of 100 Hz, with what is missing marked, out.
+//! Streams with their own times in; all of them on one grid of 100 Hz, with missing values marked, out.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
@@ -227,7 +227,7 @@ impl Grid {
     }
 }
 
-/// Quaternions `x, y, z, w` without jumps of sign, whatever the map's form.
+/// Quaternions `x, y, z, w` without jumps of sign, from any form of the map.
 fn attitude_stream(stream: Stream, map: &ColumnMap) -> Stream {
     let Stream { times_s, channels } = stream;
     let angle = map.attitude.unit.as_deref().map_or(1_f64.to_radians(), si);
@@ -311,6 +311,6 @@ mod tests {
         let noise = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
         let stream = Stream { channels: vec![(0..1000).map(noise).collect()], times_s };
         let (values, _) = sampled(&stream, 0.0, 190, BRIDGED_S);
-        assert!(values[0][50].abs() <= 0.21, "a fifth of what five samples sum to: {}", values[0][50]);
+        assert!(values[0][50].abs() <= 0.21, "a fifth of the sum of five samples: {}", values[0][50]);
     }
 }

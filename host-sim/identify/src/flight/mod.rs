@@ -1,7 +1,7 @@
 //! A flight on one even grid: a log's series in; checked, cleaned and aligned signals in SI, cut where the craft flies, out.
 //!
 //! ```text
-//! sections   where it flies, and what is missing nowhere
+//! sections   the parts in which it flies and nothing is missing
 //!   align    the shift between the on-board streams and the pose
 //!     check  units and signs against each other
 //!       grid   one grid of 100 Hz
@@ -21,12 +21,12 @@ use nalgebra::{UnitQuaternion, Vector3};
 pub use copies::without_copies;
 pub use sections::prepare;
 
-/// Step of the grid, s. What is identified lies below 6 Hz.
+/// Step of the grid, s. Identification uses frequencies below 6 Hz.
 pub const STEP_S: f64 = 0.01;
 /// Of the same.
 pub const RATE_HZ: f64 = 100.0;
 
-/// What is done to a log, or doubtful in it, in words for its owner.
+/// Corrections of a log and doubts about it, in words for its owner.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Notes(pub Vec<String>);
 
@@ -41,7 +41,7 @@ pub struct Flight {
     pub pose_shift_s: f64,
     /// Root mean square of the on-board position against the pose, after the shift, m; where a log has both.
     pub estimate_rms_m: Option<f64>,
-    /// What was found in the log.
+    /// Findings about the log.
     pub notes: Notes,
     /// Whether the log has a voltage.
     pub has_voltage: bool,

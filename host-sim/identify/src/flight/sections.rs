@@ -66,7 +66,7 @@ pub fn prepare(log: &RawLog, map: &ColumnMap) -> Result<Flight, IdentifyError> {
 }
 
 /// Velocity by the position, as far as a low-pass lets it through; above, that of the log where it has one. An estimator that does not know of drag is
-/// 5 to 15 % too fast, and the position is what it is corrected by.
+/// 5 to 15 % too fast, and it is corrected by the position.
 fn velocity(grid: &mut Grid) {
     if grid.position.is_empty() {
         return;
@@ -85,8 +85,8 @@ fn velocity(grid: &mut Grid) {
     }
 }
 
-/// Turns the attitude so that the accelerometer, low-passed, shows in the world frame what the velocity changes by, and gravity. An
-/// estimator that does not know of drag is off by as much as the drag is of g: 7 degrees at 2 m/s.
+/// Turns the attitude so that the accelerometer, low-passed, shows in the world frame the velocity's rate of change, and
+/// gravity. An estimator that does not know of drag is off by as much as the drag is of g: 7 degrees at 2 m/s.
 fn tilt(grid: &mut Grid) {
     let low = LowPass::new(TILT_HZ, RATE_HZ);
     let felt: Vec<Vector3<f64>> = grid.attitude.iter().zip(&grid.specific_force).map(|(q, f)| q * f).collect();
@@ -131,7 +131,7 @@ fn flying(grid: &Grid) -> Vec<bool> {
         })
         .collect();
     if floor_m.is_finite() {
-        // What follows a start and what goes before a landing.
+        // The time after a start and the time before a landing.
         let ends = |forward: bool, span_s: f64, flying: &[bool]| -> Vec<bool> {
             let span = (span_s * RATE_HZ) as usize;
             (0..count)

@@ -94,7 +94,7 @@ pub(super) fn parse(bytes: &[u8], name: &str) -> Result<RawLog, IdentifyError> {
         by_id.insert(id, Kind { variables });
     }
     let mut series: BTreeMap<String, Series> = BTreeMap::new();
-    // The card may have been taken out in the middle of an event: what is whole counts.
+    // The card may have been taken out in the middle of an event: whole events count.
     while let Some((id, time_ms)) = head(&mut cursor, version) {
         let Some(kind) = by_id.get(&id) else { break };
         for (variable, letter) in &kind.variables {

@@ -1,4 +1,4 @@
-//! Which columns of a log hold what, and in which unit: three maps that are built in, and anybody's own in TOML.
+//! The map of a log's columns to quantities and their units: three maps that are built in, and anybody's own in TOML.
 
 use serde::Deserialize;
 

@@ -1,7 +1,7 @@
 //! A log as it was recorded: named series of times and values out of a file; by a map of columns, the quantities of a flight in SI.
 //!
 //! ```text
-//! map         which columns hold what, in which unit; three that are built in
+//! map         columns to quantities and their units; three that are built in
 //! record      a log out of rows
 //! table       CSV, plain or compressed      deck   the micro SD deck's binary log
 //!   series    times and values by name

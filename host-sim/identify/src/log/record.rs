@@ -1,4 +1,4 @@
-//! A log in the columns of the `cflib` map, out of rows: what a simulated flight looks like to [`crate::identify`].
+//! A log in the columns of the `cflib` map, out of rows: the form in which a simulated flight enters [`crate::identify`].
 
 use std::fmt::Write as _;
 

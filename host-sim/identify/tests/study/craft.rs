@@ -12,7 +12,7 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 
 use super::Conditions;
 
-/// What a craft is.
+/// The true figures of a craft.
 pub(super) struct Craft {
     pub(super) scenario: Scenario,
     pub(super) flown: Flown,

@@ -1,4 +1,4 @@
-//! How far `quatrack identify` is to be believed: random crafts fly in simulation, and their figures are looked for in their logs.
+//! The accuracy of `quatrack identify`: random crafts fly in simulation, and their figures are looked for in their logs.
 //!
 //! ```sh
 //! cargo test --release -p quatrack-identify --test study -- --nocapture                        # 12 crafts
@@ -17,7 +17,7 @@ use quatrack_identify::identify;
 use quatrack_identify::log::ColumnMap;
 use quatrack_simulation::vehicles;
 
-/// What is between a craft and its log.
+/// The errors between a craft and its log.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Conditions {
     /// The core's Kalman filter instead of the truth.
@@ -147,7 +147,7 @@ fn study(name: &str, seeds: std::ops::Range<u64>, conditions: &Conditions) -> BT
 fn hold(tallies: &BTreeMap<&'static str, Tally>) {
     for (figure, tally) in tallies {
         let error = median(tally.errors.iter().map(|e| e.abs()).collect());
-        // A delay is in units of 0.1 s; the full thrust is what a power makes of the thrust at hover.
+        // A delay is in units of 0.1 s; the full thrust is a power of the thrust at hover.
         let most = match *figure {
             "delay_ms" => 0.02,
             "thrust_full_n" => 0.03,
