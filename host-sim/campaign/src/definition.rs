@@ -1,4 +1,4 @@
-//! What a campaign flies: a scenario with distributions and laws in; the scenario of run k out.
+//! The flights of a campaign: a scenario with distributions and laws in; the scenario of run k out.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::vary::{self, Varied};
 /// Makes a trajectory of a name or a path.
 pub type Trajectories<'a> = &'a dyn Fn(&str) -> Result<PiecewisePolynomial, String>;
 
-/// What goes before the file.
+/// Choices that go before those of the file.
 #[derive(Clone, Debug, Default)]
 pub struct Asked {
     /// The campaign's seed; the scenario's own, or 1, where absent.
@@ -45,7 +45,7 @@ pub struct Campaign {
 
 /// One run: its scenario and the numbers that were drawn for it.
 pub struct Run {
-    /// What is flown by every law.
+    /// The scenario that every law flies.
     pub scenario: Result<Scenario, ScenarioError>,
     /// In the campaign's order.
     pub drawn: Vec<f64>,
@@ -57,7 +57,7 @@ impl Campaign {
     /// From a scenario's file.
     ///
     /// # Errors
-    /// [`CampaignError`], also for a distribution that reaches beyond what a scenario takes.
+    /// [`CampaignError`], also for a distribution that reaches beyond a scenario's range.
     pub fn read(path: &Path, asked: &Asked, trajectories: Trajectories<'_>) -> Result<Self, CampaignError> {
         let origin = path.display().to_string();
         let text = fs::read_to_string(path).map_err(|error| CampaignError::file(path, "cannot be read", &error))?;
@@ -102,7 +102,7 @@ impl Campaign {
         Ok(campaign)
     }
 
-    /// Every figure at both its ends, the others as they are: what can be drawn is then what a scenario takes.
+    /// Every figure at both its ends, the others as they are: so that every drawn figure is one that a scenario takes.
     fn look_at_bounds(&self) -> Result<(), CampaignError> {
         for varied in &self.varied {
             for end in varied.kind.bounds() {
@@ -193,7 +193,7 @@ impl Campaign {
         self.seed
     }
 
-    /// What is flown, where that is a trajectory.
+    /// The trajectory that is flown, where there is one.
     pub fn trajectory(&self) -> Option<&PiecewisePolynomial> {
         self.trajectory.as_ref()
     }

@@ -5,7 +5,7 @@ use rand_chacha::rand_core::{Rng as _, SeedableRng as _};
 use rand_distr::{Distribution as _, StandardNormal};
 
 /// The numbers of one name in one run: ChaCha with eight rounds, whose key is the seed, whose nonce is the run, and whose
-/// counter begins at a place that the name gives. A figure that is added leaves the others what they were.
+/// counter begins at a place that the name gives. A figure that is added leaves the others unchanged.
 pub struct Draws(ChaCha8Rng);
 
 impl Draws {

@@ -1,4 +1,4 @@
-//! Why there is no campaign, in one line that names what, where and the remedy.
+//! Why there is no campaign, in one line that names the fault, its place and the remedy.
 
 use std::path::PathBuf;
 
@@ -35,13 +35,13 @@ pub enum CampaignError {
     #[error("{0}")]
     Asked(String),
     /// The system refuses a file.
-    #[error("{}: {what} ({reason})", path.display())]
+    #[error("{}: {failure} ({reason})", path.display())]
     File {
         /// Which.
         path: PathBuf,
-        /// What was tried.
-        what: &'static str,
-        /// What the system says.
+        /// The failed access, in words.
+        failure: &'static str,
+        /// The system's message.
         reason: String,
     },
     /// A folder that holds something else.
@@ -49,15 +49,15 @@ pub enum CampaignError {
     Folder {
         /// Which.
         path: PathBuf,
-        /// What is wrong with it, with the remedy.
+        /// The fault, with the remedy.
         reason: String,
     },
 }
 
 impl CampaignError {
     /// Of a system's refusal.
-    pub(crate) fn file(path: &std::path::Path, what: &'static str, reason: &dyn std::fmt::Display) -> Self {
-        Self::File { path: path.to_owned(), what, reason: reason.to_string() }
+    pub(crate) fn file(path: &std::path::Path, failure: &'static str, reason: &dyn std::fmt::Display) -> Self {
+        Self::File { path: path.to_owned(), failure, reason: reason.to_string() }
     }
 
     /// Of a folder's contents.

@@ -20,10 +20,10 @@ use crate::shard::Shard;
 
 /// Runs that are written, and reach the disk, at once.
 const BLOCK: u64 = 16;
-/// Blocks that a core may be ahead of the oldest that is still flown: what waits in memory is bounded.
+/// Blocks that a core may be ahead of the oldest that is still flown: the rows that wait in memory are bounded.
 const AHEAD: u64 = 8;
 
-/// What the cores share.
+/// The state that the cores share.
 #[derive(Default)]
 struct Shared {
     /// The next block that nobody flies.
@@ -61,10 +61,10 @@ impl Drop for Over<'_> {
     }
 }
 
-/// Flies what of a shard is not flown yet. `progress` is told how many of its runs are on the disk.
+/// Flies the runs of a shard that are not flown yet. `progress` is told how many of its runs are on the disk.
 ///
 /// # Errors
-/// [`CampaignError`] where the file cannot be written; what was written stays.
+/// [`CampaignError`] where the file cannot be written; the rows written stay.
 pub fn fly(
     campaign: &Campaign,
     folder: &Folder,

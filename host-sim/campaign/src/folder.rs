@@ -1,4 +1,4 @@
-//! A campaign on disk: what is flown, rows as CSV by shard, and all rows as Parquet.
+//! A campaign on disk: its definition, rows as CSV by shard, and all rows as Parquet.
 //!
 //! ```text
 //! campaign.json     quatrack/campaign/1: seed, runs, laws, drawn figures, digest
@@ -20,10 +20,10 @@ use crate::error::CampaignError;
 use crate::row::{self, Row};
 use crate::shard::Shard;
 
-/// What the file says that it is.
+/// The schema that the file states.
 pub const SCHEMA: &str = "quatrack/campaign/1";
 
-/// What is known of a campaign without its scenario.
+/// The definition of a campaign without its scenario.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Card {
     /// [`SCHEMA`].
@@ -122,7 +122,7 @@ impl Folder {
         Ok(Self { path: path.to_owned(), card: read_card(&card)? })
     }
 
-    /// What it flies.
+    /// The campaign that it flies.
     ///
     /// # Errors
     /// [`CampaignError`], also where the scenario was changed since.
@@ -130,13 +130,13 @@ impl Folder {
         let path = self.path.join("scenario.toml");
         let campaign = Campaign::read(&path, &Asked::default(), trajectories)?;
         if campaign.digest() != self.card.digest {
-            let reason = "is no longer what was flown; put back what it was, or fly another campaign";
+            let reason = "has changed since the first run; put back the old file, or fly another campaign";
             return Err(CampaignError::folder(&path, reason));
         }
         Ok(campaign)
     }
 
-    /// What is known of it.
+    /// Its definition without the scenario.
     pub fn card(&self) -> &Card {
         &self.card
     }
@@ -226,7 +226,7 @@ impl Folder {
     pub fn rows(&self, shard: Shard) -> Result<impl Iterator<Item = Result<Row, CampaignError>>, CampaignError> {
         let path = self.path.join(shard.file_name());
         let mut file = File::open(&path).map_err(|error| CampaignError::file(&path, "cannot be read", &error))?;
-        // What a writer that was killed left behind is not read.
+        // A part line that a killed writer left behind is not read.
         let (next_run, kept) = self
             .whole_runs(&file, shard.runs(self.card.runs).start)
             .and_then(|whole| file.rewind().map(|()| whole))
@@ -272,7 +272,7 @@ impl Growing {
     /// Appends whole runs; they are on the disk when this returns.
     ///
     /// # Errors
-    /// [`CampaignError::File`]: what is there stays whole.
+    /// [`CampaignError::File`]: the rows there stay whole.
     pub fn append(&mut self, rows: &[u8], next_run: u64) -> Result<(), CampaignError> {
         let written = self.file.write_all(rows).and_then(|()| self.file.sync_data());
         written.map_err(|error| CampaignError::file(&self.path, "cannot be written", &error))?;

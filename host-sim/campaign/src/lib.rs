@@ -1,19 +1,19 @@
-//! Campaigns: a scenario with distributions over its figures and a number of runs in; a row for each flight, what the rows
-//! say of each law, and a page to look at, out.
+//! Campaigns: a scenario with distributions over its figures and a number of runs in; a row for each flight, a
+//! summary of each law, and a page to look at, out.
 //!
 //! ```text
 //! report, picture    a folder -> a page to look at; success over every drawn figure
 //!   mcap             a flight for Foxglove and PlotJuggler
-//!   summary          rows -> success, percentiles, worst flights, what matters most
+//!   summary          rows -> success, percentiles, worst flights, the figures that matter most
 //!     statistics     intervals, quantiles, ranks
 //!   merge            shards -> one folder; which shard is missing
 //!     fly            runs on all cores -> rows in order, resumed where they end
-//!       folder       what is on disk: the definition, rows as CSV, the same as Parquet
+//!       folder       the files on disk: the definition, rows as CSV, the same as Parquet
 //!         definition  a file -> scenarios by number
 //!           vary     distributions over the figures of a file
 //!             draws  random numbers by seed, run and figure
 //!         row        one flight of one law
-//!         shard      which runs are whose
+//!         shard      the runs of each shard
 //!           error    why there is no campaign
 //! ```
 //!

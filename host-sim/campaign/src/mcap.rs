@@ -1,4 +1,4 @@
-//! A flight as an MCAP file: a recording in; what Foxglove shows as a 3D scene and PlotJuggler as curves out.
+//! A flight as an MCAP file: a recording in; messages that Foxglove shows as a 3D scene and PlotJuggler as curves out.
 //!
 //! Messages are JSON. `/scene` has schema `foxglove.SceneUpdate`, `/tf` `foxglove.FrameTransform`, `/pose` and `/reference`
 //! `foxglove.PoseInFrame`, and `/flight` `quatrack.FlightSample`: plain numbers by name, SI. A row every 10 ms.

@@ -39,7 +39,7 @@ pub fn look(folders: &[Folder]) -> Result<Found<'_>, CampaignError> {
         }
         shards.extend(folder.shard_files()?.into_iter().map(|shard| (shard, folder)));
     }
-    // What an earlier merge has made is not one of the shards.
+    // The result of an earlier merge is not one of the shards.
     if shards.iter().any(|(shard, _)| *shard != Shard::WHOLE) {
         shards.retain(|(shard, _)| *shard != Shard::WHOLE);
     }
@@ -99,7 +99,7 @@ pub fn join(shards: &[(Shard, &Folder)], out: &Folder) -> Result<u64, CampaignEr
 /// Rows in memory at a time.
 const BLOCK: usize = 4096;
 
-/// A folder for the campaign of another: what it is merged into.
+/// A folder for the campaign of another, to merge into.
 ///
 /// # Errors
 /// [`CampaignError`].

@@ -40,7 +40,7 @@ pub struct Paper {
     pub figures: Vec<(String, String)>,
 }
 
-/// What the page's script is given.
+/// The data of the page's script.
 #[derive(Serialize)]
 struct Data<'a> {
     schema: &'static str,

@@ -1,8 +1,8 @@
-//! One flight of one law: what came of it, and the same as a line of a table.
+//! One flight of one law: its outcome and figures, and the same as a line of a table.
 
 use quatrack_simulation::scenario::Law;
 
-/// What came of a flight.
+/// The outcome of a flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// Flown to its end.
@@ -37,7 +37,7 @@ pub struct Row {
     pub law: Law,
     /// Of its noise and gusts.
     pub seed: u64,
-    /// What came of it.
+    /// Its outcome.
     pub outcome: Outcome,
     /// Position error's norm over samples of 10 ms, times 10 ms, m s; of a flight to its end.
     pub iae_m_s: Option<f64>,
@@ -57,7 +57,7 @@ pub struct Row {
 pub const FIXED: [&str; 9] =
     ["run", "law", "seed", "outcome", "iae_m_s", "max_error_m", "saturated_steps", "lost_s", "reason"];
 
-/// The header: what every row has, and the drawn figures by name.
+/// The header: the columns of every row, and the drawn figures by name.
 pub fn header(drawn: &[String]) -> Vec<String> {
     FIXED.iter().map(|name| (*name).to_owned()).chain(drawn.iter().cloned()).collect()
 }

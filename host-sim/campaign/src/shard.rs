@@ -1,4 +1,4 @@
-//! Which runs are whose: a campaign in equal parts, one after the other.
+//! Shards: a campaign's runs in equal parts, one after the other.
 
 use std::fmt;
 use std::ops::Range;

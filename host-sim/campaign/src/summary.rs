@@ -1,5 +1,5 @@
-//! What rows say of each law: success with its interval, percentiles, the worst flights and how to see them again, and which
-//! figure matters most.
+//! A summary of the rows of each law: success with its interval, percentiles, the worst flights and how to see them
+//! again, and which figure matters most.
 
 mod text;
 
@@ -13,12 +13,12 @@ use crate::row::{Outcome, Row};
 use crate::shard::Shard;
 use crate::statistics::{quantile, ranks, spearman, wilson};
 
-/// What the file says that it is.
+/// The schema that the file states.
 pub const SCHEMA: &str = "quatrack/campaign-summary/1";
 /// Percentiles of errors.
 pub const PERCENT: [f64; 3] = [50.0, 95.0, 99.0];
 
-/// What counts, and how much is shown.
+/// The bounds of a success, and how many flights are shown.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     /// Largest position error of a flight that succeeded, m; any where absent.
@@ -82,7 +82,7 @@ pub struct Worst {
     pub lost_s: Option<f64>,
     /// Largest position error, m.
     pub max_error_m: Option<f64>,
-    /// What flies it again and plots it.
+    /// The command that flies it again and plots it.
     pub replay: String,
 }
 
@@ -135,7 +135,7 @@ impl Summary {
     }
 }
 
-/// What is kept of the rows of one law: 8 bytes for each number.
+/// The numbers kept of the rows of one law, 8 bytes each.
 struct Gathered {
     successes: u64,
     lost: u64,

@@ -14,7 +14,7 @@ use toml::{Table, Value};
 
 use crate::draws::Draws;
 
-/// Farthest that a normal draw lies from its mean, in deviations; what lies beyond, two in a billion, is drawn again.
+/// Farthest that a normal draw lies from its mean, in deviations; a draw beyond, two in a billion, is taken again.
 const FARTHEST: f64 = 6.0;
 /// How often a draw beyond its bounds is repeated before it is put on the nearer one.
 const TRIES: u32 = 1000;
@@ -43,7 +43,7 @@ pub struct Varied {
     pub index: Option<usize>,
     /// How it is drawn.
     pub kind: Kind,
-    /// Whether it is a factor of what the file says.
+    /// Whether it is a factor of the figure in the file.
     pub relative: bool,
 }
 
@@ -89,7 +89,7 @@ impl Varied {
         self.index.map_or_else(|| path.clone(), |index| format!("{path}.{index}"))
     }
 
-    /// What it is in a run of a campaign: the drawn number.
+    /// Its value in a run of a campaign: the drawn number.
     pub fn drawn(&self, seed: u64, run: u64) -> f64 {
         self.kind.draw(&mut Draws::new(seed, run, &self.name()))
     }

@@ -1,4 +1,4 @@
-// The page: tables, pictures and the replay of what DATA has.
+// The page: tables, pictures and the replay of the flights in DATA.
 (() => {
   const get = (id) => document.getElementById(id);
   const { summary, laws, drawn } = DATA;
@@ -98,13 +98,13 @@
 
   get("worst").append(
     table(
-      ["law", "run", "seed", "what", "again"],
+      ["law", "run", "seed", "end", "again"],
       summary.laws.flatMap((law) =>
         law.worst.map((worst) => {
           const again = document.createElement("code");
           again.textContent = worst.replay;
-          const what = worst.lost_s === null ? `${number(worst.max_error_m)} m` : `lost at ${worst.lost_s.toFixed(2)} s`;
-          return [law.law, String(worst.run), String(worst.seed), what, again];
+          const end = worst.lost_s === null ? `${number(worst.max_error_m)} m` : `lost at ${worst.lost_s.toFixed(2)} s`;
+          return [law.law, String(worst.run), String(worst.seed), end, again];
         }),
       ),
     ),

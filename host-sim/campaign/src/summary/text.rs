@@ -50,12 +50,12 @@ fn write_law(f: &mut fmt::Formatter<'_>, law: &LawSummary) -> fmt::Result {
         }
     }
     for worst in &law.worst {
-        let what = match (worst.lost_s, worst.max_error_m) {
+        let end = match (worst.lost_s, worst.max_error_m) {
             (Some(lost_s), _) => format!("lost at {lost_s:.2} s"),
             (None, Some(error_m)) => format!("{error_m:.4} m"),
             (None, None) => String::new(),
         };
-        write!(f, "\n  worst: run {}, {what}\n    {}", worst.run, worst.replay)?;
+        write!(f, "\n  worst: run {}, {end}\n    {}", worst.run, worst.replay)?;
     }
     writeln!(f)
 }
