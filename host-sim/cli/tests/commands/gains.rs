@@ -385,6 +385,13 @@ fn a_table_of_the_cascade_says_what_it_is_certified_for_and_flies_its_vehicle() 
     for extension in ["svg", "png"] {
         assert!(pictures.join(format!("cascade-brushless-50ms.{extension}")).is_file());
     }
+    // A law of the paper is drawn as well, by its four commands.
+    let paper = format!("{GAINS}/lqr-e.toml");
+    assert_done(&quatrack(&["gains", "show", &paper, "--plot", pictures.to_str().unwrap()]));
+    let drawn = fs::read_to_string(pictures.join("lqr-e.svg")).unwrap();
+    for label in ["in vacuum", "thrust_m_s2", "yaw"] {
+        assert!(drawn.contains(label), "{label} is not in the picture");
+    }
     assert_refused(&quatrack(&["gains", "show", &table, "--plot", "out"]), 2, &[&table, "--plot takes a design"]);
     let json = dir.join("table.json");
     assert_done(&quatrack(&["gains", "show", &table, "--json", json.to_str().unwrap()]));

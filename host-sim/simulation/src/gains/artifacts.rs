@@ -11,7 +11,7 @@ use quatrack_design::certify::{Judged, judge};
 use serde_json::{Value, json};
 
 use super::certified::Certified;
-use super::designed::Gains;
+use super::kinds::Gains;
 use super::names::signals;
 use super::rounding::{rounded, without_dust};
 use super::table::Table;

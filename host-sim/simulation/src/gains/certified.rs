@@ -11,7 +11,8 @@ use serde::Serialize;
 use super::GainsError;
 use super::board_certificate::{BoardCertificate, sha256};
 use super::design::{Design, Problem};
-use super::designed::{Designed, Gains, TableRows};
+use super::designed::Designed;
+use super::kinds::{Gains, TableRows};
 use super::table::Table;
 use crate::vehicles;
 

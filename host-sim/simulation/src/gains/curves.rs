@@ -1,14 +1,16 @@
-//! What a design of the cascade does, as curves: loop gain and sensitivity by frequency, and the answer to a step.
+//! What a design does, as curves: loop gain and sensitivity by frequency, and the answer to a step.
 
-use quatrack_design::certify::CertifyError;
+use num_complex::Complex64;
 use quatrack_design::certify::cascade::{
-    CascadeChain, CascadeCraft, CascadeVariation, ChainMargins, cascade_craft, in_identified_air,
+    CascadeChain, CascadeCraft, CascadeVariation, cascade_craft, in_identified_air,
 };
+use quatrack_design::certify::{CertifyError, LoopResponse};
 
 use super::GainsError;
 use super::certified::Certified;
 use super::design::Problem;
-use super::designed::Gains;
+use super::designed::Designed;
+use super::kinds::Gains;
 
 /// Frequencies a curve, from the lowest (rad/s) to the Nyquist frequency.
 const POINTS: usize = 400;
@@ -18,71 +20,132 @@ const STEP_S: f64 = 4.0;
 /// The accelerometer is looked at once in so many seconds.
 const LOOK_S: f64 = 0.01;
 
-/// A design of the cascade in curves, in the identified air.
+/// A design in curves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoopCurves {
+    /// The air and the motors of the loop, in words.
+    pub conditions: &'static str,
     /// rad/s.
     pub frequencies_rad_s: Vec<f64>,
     /// Of the steps, s.
     pub times_s: Vec<f64>,
-    /// The four chains.
-    pub chains: Vec<ChainCurves>,
+    /// Each cut at one command.
+    pub loops: Vec<CutLoop>,
+    /// x, y, z and yaw.
+    pub steps: Vec<StepResponse>,
 }
 
-/// One chain.
+/// The loop cut at one command, the others closed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ChainCurves {
-    /// What it moves.
-    pub name: &'static str,
-    /// Size of the open loop's gain, cut at the command.
+pub struct CutLoop {
+    /// The command, or the chain that it drives.
+    pub name: String,
+    /// Size of the open loop's gain.
     pub gain: Vec<f64>,
     /// Distance of the sensitivity from one half: the disk margin is one over its peak.
     pub from_half: Vec<f64>,
-    /// What it tolerates.
-    pub margins: ChainMargins,
-    /// The way after a step of 1 of its reference, over the times.
-    pub step: Vec<f64>,
+    /// The disk margin.
+    pub alpha: f64,
+}
+
+/// A step of 1 m, or of 1 rad.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StepResponse {
+    /// The axis.
+    pub name: &'static str,
+    /// The way since the step, over the times.
+    pub way: Vec<f64>,
 }
 
 impl LoopCurves {
-    /// The curves of a design; none of one for another law.
+    /// The curves of a design: of the cascade in the identified air, of any other in vacuum, behind no actuators but those that the
+    /// design itself knows.
     ///
     /// # Errors
     /// [`GainsError::Certify`] where eigenvalues are not found.
-    pub fn of(certified: &Certified) -> Result<Option<Self>, GainsError> {
+    pub fn of(certified: &Certified) -> Result<Self, GainsError> {
         let design = &certified.design;
-        let (Problem::Cascade { motor_lag_s, air, .. }, Gains::Cascade(gains)) =
-            (&design.problem, &certified.designed.gains)
-        else {
-            return Ok(None);
-        };
         let period_s = 1.0 / f64::from(design.rate.hz());
-        let craft = cascade_craft(&design.vehicle, **gains, *motor_lag_s, air, period_s)?;
-        let at = in_identified_air(&craft, air);
         let highest_rad_s = std::f64::consts::PI / period_s;
         let share = |k: usize| k as f64 / (POINTS - 1) as f64;
         let frequencies_rad_s: Vec<f64> =
             (0..POINTS).map(|k| LOWEST_RAD_S * (highest_rad_s / LOWEST_RAD_S).powf(share(k))).collect();
-        let steps = (STEP_S / period_s).round() as usize;
-        let chains =
-            [("x", CascadeChain::X), ("y", CascadeChain::Y), ("z", CascadeChain::Z), ("yaw", CascadeChain::Yaw)]
-                .into_iter()
-                .map(|(name, chain)| {
-                    let cut = chain.cut(&craft, &at)?;
-                    let sizes = |of: &dyn Fn(f64) -> Option<f64>| {
-                        frequencies_rad_s.iter().map(|frequency| of(*frequency).unwrap_or(f64::NAN)).collect()
-                    };
-                    Ok(ChainCurves {
-                        name,
-                        gain: sizes(&|frequency| Some(cut.gain(frequency)?.norm())),
-                        from_half: sizes(&|frequency| Some((cut.sensitivity(frequency)? - 0.5).norm())),
-                        margins: chain.margins(&craft, &at)?,
-                        step: stepped(chain, &craft, &at, steps),
-                    })
-                })
-                .collect::<Result<Vec<_>, CertifyError>>()?;
-        Ok(Some(Self { frequencies_rad_s, times_s: (0..steps).map(|k| k as f64 * period_s).collect(), chains }))
+        let count = (STEP_S / period_s).round() as usize;
+        let times_s = (0..count).map(|k| k as f64 * period_s).collect();
+        if let (Problem::Cascade { motor_lag_s, air, .. }, Gains::Cascade(gains)) =
+            (&design.problem, &certified.designed.gains)
+        {
+            let craft = cascade_craft(&design.vehicle, **gains, *motor_lag_s, air, period_s)?;
+            let at = in_identified_air(&craft, air);
+            let (loops, steps) = of_cascade(&craft, &at, &frequencies_rad_s, count)?;
+            let conditions = "the loop in the identified air";
+            return Ok(Self { conditions, frequencies_rad_s, times_s, loops, steps });
+        }
+        let conditions = match &certified.designed.gains {
+            Gains::Along(_) => "the hover behind the last knot, in vacuum",
+            Gains::ActuatorAware(_) => "the loop in vacuum, with its motors",
+            _ => "the loop in vacuum, its commands obeyed at once",
+        };
+        let (plant, controller, timing) = certified.designed.hover_loop(design);
+        let response = LoopResponse::new(&plant, &controller, &timing)?;
+        let sensitivities: Vec<_> =
+            frequencies_rad_s.iter().map(|frequency| response.sensitivities(*frequency)).collect();
+        let loops = plant.input_names().iter().enumerate().map(|(channel, name)| {
+            let at = |of: &dyn Fn(Complex64) -> f64| -> Vec<f64> {
+                sensitivities.iter().map(|found| found.as_ref().map_or(f64::NAN, |found| of(found[channel]))).collect()
+            };
+            let from_half = at(&|s| (s - 0.5).norm());
+            let alpha = 1.0 / from_half.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+            CutLoop { name: name.clone(), gain: at(&|s| (s.inv() - 1.0).norm()), from_half, alpha }
+        });
+        let loops = loops.collect();
+        let (yaw, rad) = yaw_state(&certified.designed);
+        let steps = [("x", 0, 1.0), ("y", 1, 1.0), ("z", 2, 1.0), ("yaw", yaw, rad)]
+            .map(|(name, state, unit)| {
+                let mut start = vec![0.0; state + 1];
+                start[state] = -unit;
+                let behind = response.from_state(&start, state, count);
+                StepResponse { name, way: behind.iter().map(|value| 1.0 + value / unit).collect() }
+            })
+            .into();
+        Ok(Self { conditions, frequencies_rad_s, times_s, loops, steps })
     }
+}
+
+/// Which state of the hover loop is the heading, and its size at 1 rad: an angle, or the quaternion's `q3`, half of it.
+fn yaw_state(designed: &Designed) -> (usize, f64) {
+    match designed.gains {
+        Gains::ActuatorAware(_) => (8, 1.0),
+        Gains::FlatOutput(_) => (9, 0.5),
+        _ => (5, 0.5),
+    }
+}
+
+type Curves = (Vec<CutLoop>, Vec<StepResponse>);
+
+fn of_cascade(
+    craft: &CascadeCraft,
+    at: &CascadeVariation,
+    frequencies_rad_s: &[f64],
+    count: usize,
+) -> Result<Curves, CertifyError> {
+    let (mut loops, mut steps) = (Vec::new(), Vec::new());
+    for (name, chain) in
+        [("x", CascadeChain::X), ("y", CascadeChain::Y), ("z", CascadeChain::Z), ("yaw", CascadeChain::Yaw)]
+    {
+        let cut = chain.cut(craft, at)?;
+        let sizes = |of: &dyn Fn(f64) -> Option<f64>| {
+            frequencies_rad_s.iter().map(|frequency| of(*frequency).unwrap_or(f64::NAN)).collect()
+        };
+        loops.push(CutLoop {
+            name: name.to_owned(),
+            gain: sizes(&|frequency| Some(cut.gain(frequency)?.norm())),
+            from_half: sizes(&|frequency| Some((cut.sensitivity(frequency)? - 0.5).norm())),
+            alpha: chain.margins(craft, at)?.disk.alpha,
+        });
+        steps.push(StepResponse { name, way: stepped(chain, craft, at, count) });
+    }
+    Ok((loops, steps))
 }
 
 /// From 1 behind its reference, with its first estimates seen and nothing else remembered.
@@ -104,4 +167,41 @@ fn stepped(chain: CascadeChain, craft: &CascadeCraft, at: &CascadeVariation, ste
             way
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gains::Design;
+
+    fn certified(name: &str) -> Certified {
+        let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../gains"));
+        Design::from_file(&folder.join(name).with_extension("toml")).unwrap().certify().unwrap()
+    }
+
+    /// The certificate searches the peak, the curve has 400 points: it can only be larger, by its spacing of 2 % in frequency.
+    #[test]
+    fn the_disk_margins_are_those_of_the_certificate() {
+        for name in ["lqr-e", "lyap-e", "lqr-f", "lqi-e", "sampled-lqr-e", "actuator-aware"] {
+            let held = certified(name);
+            let curves = LoopCurves::of(&held).unwrap();
+            let margins = &held.certificate.sampled.margins.each;
+            assert_eq!(curves.loops.len(), margins.len(), "{name}");
+            for (cut, found) in curves.loops.iter().zip(margins) {
+                assert_eq!(cut.name, found.channel, "{name}");
+                let more = cut.alpha / found.balanced.alpha;
+                assert!((1.0 - 1e-6..1.01).contains(&more), "{name}, {}: {} for {more}", cut.name, cut.alpha);
+            }
+        }
+    }
+
+    #[test]
+    fn every_step_starts_at_nothing_and_of_a_quick_law_ends_at_its_reference() {
+        for name in ["lqr-e", "lqi-e", "actuator-aware"] {
+            for step in LoopCurves::of(&certified(name)).unwrap().steps {
+                let (first, last) = (step.way[0], step.way[step.way.len() - 1]);
+                assert!(first.abs() < 1e-12 && (last - 1.0).abs() < 0.1, "{name}, {}: {first} to {last}", step.name);
+            }
+        }
+    }
 }

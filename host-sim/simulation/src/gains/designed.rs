@@ -2,23 +2,19 @@
 
 use nalgebra::{DMatrix, SMatrix};
 use num_complex::Complex64;
-use quatrack::gains::table::{Rows, TableKind};
 use quatrack_design::certify::cascade::certify_cascade;
 use quatrack_design::certify::{Certificate, CertifyError, Controller, Plant, Timing, certify, certify_along};
 use quatrack_design::design::actuator_aware::{
     ERRORS, PLANT_STATES, actuator_aware, hover_pair, hover_pair_with_integral,
 };
-use quatrack_design::design::along::{GainsAlong, gains_along};
-use quatrack_design::design::cascade::{GAINS, cascade};
-use quatrack_design::design::codegen::{rounded, rounded_along};
-use quatrack_design::design::discretise::{Held, zero_order_hold};
-use quatrack_design::design::integral::{integral_pair, sampled_integral_problem, sampled_lqi};
+use quatrack_design::design::along::gains_along;
+use quatrack_design::design::cascade::cascade;
+use quatrack_design::design::integral::{sampled_integral_problem, sampled_lqi};
 use quatrack_design::design::sampled::{
-    SampledCost, SampledDesign, Sampling, equilibrium_pair, sampled_cost, sampled_equilibrium, sampled_flat, shaped,
+    SampledCost, SampledDesign, Sampling, sampled_equilibrium, sampled_flat, shaped,
 };
 use quatrack_design::design::synthesis::{
-    EquilibriumDesign, EquilibriumWeights, FlatDesign, FlatWeights, dense_flat_chain, diagonal, lqr_equilibrium,
-    lqr_flat, lyapunov_equilibrium, lyapunov_flat,
+    EquilibriumDesign, FlatDesign, diagonal, lqr_equilibrium, lqr_flat, lyapunov_equilibrium, lyapunov_flat,
 };
 use quatrack_design::model::flat::reference_point;
 use quatrack_design::vehicle::Vehicle;
@@ -26,10 +22,9 @@ use quatrack_plan::trajectory::Trajectory as _;
 
 use super::GainsError;
 use super::design::{Design, Method, Problem};
-use super::names::{
-    EQUILIBRIUM_INPUTS, EQUILIBRIUM_STATES, FLAT_INPUTS, FLAT_STATES, INTEGRAL_STATES, MOTOR_INPUTS, MOTOR_STATES,
-    PART_INPUTS, PART_STATES, Signal,
-};
+use super::kinds::Gains;
+use super::model::{LinearModel, SampledProblem, Weights, of_equilibrium, of_flat};
+use super::names::{MOTOR_INPUTS, MOTOR_STATES, PART_INPUTS, PART_STATES};
 use super::unsolved::blamed;
 
 /// A gain with all that it came from; of gains over time model, P and poles are those of the hover at their end.
@@ -57,37 +52,6 @@ pub struct Designed {
     pub sampled: Option<SampledProblem>,
 }
 
-/// A pair under held commands and its cost.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SampledProblem {
-    /// `x+ = A_d x + B_d u`, and the period.
-    pub held: Held,
-    /// The cost between the samples.
-    pub cost: SampledCost,
-}
-
-/// `x' = A x + B u`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LinearModel {
-    /// A, n x n, 1/s.
-    pub a: DMatrix<f64>,
-    /// B, n x m.
-    pub b: DMatrix<f64>,
-    /// The states in order.
-    pub states: &'static [Signal],
-    /// The inputs in order.
-    pub inputs: &'static [Signal],
-}
-
-/// Weights of the cost in continuous time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Weights {
-    /// Q, n x n.
-    pub q: DMatrix<f64>,
-    /// R, m x m.
-    pub r: DMatrix<f64>,
-}
-
 /// Poles, and in which time.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Poles {
@@ -95,85 +59,6 @@ pub enum Poles {
     Continuous(Vec<Complex64>),
     /// Per sample.
     Sampled(Vec<Complex64>),
-}
-
-/// Gains by the law that flies them; each kind is one of the table format's.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Gains {
-    /// 4 x 9.
-    Equilibrium(Box<SMatrix<f64, 4, 9>>),
-    /// 7 x 10.
-    FlatOutput(Box<SMatrix<f64, 7, 10>>),
-    /// 4 x 12, with the sums of the position error.
-    Integral(Box<SMatrix<f64, 4, 12>>),
-    /// 4 x 19, to the motors' forces.
-    ActuatorAware(Box<SMatrix<f64, 4, 19>>),
-    /// 16, of the four chains.
-    Cascade(Box<[f64; GAINS]>),
-    /// 4 x 9 at each knot, on the grid of [`GainsAlong::on_grid`].
-    Along(Box<GainsAlong>),
-}
-
-/// The entries of a table.
-#[derive(Debug, Clone, PartialEq)]
-pub enum TableRows {
-    /// One gain.
-    Fixed(Box<Rows>),
-    /// The gains of the cascade.
-    Chains([f32; GAINS]),
-    /// A gain at each knot.
-    OverTime(Vec<[[f32; 9]; 4]>),
-}
-
-impl Gains {
-    /// Which table it makes.
-    pub fn kind(&self) -> TableKind {
-        match self {
-            Self::Equilibrium(_) => TableKind::Equilibrium,
-            Self::FlatOutput(_) => TableKind::FlatOutput,
-            Self::Integral(_) => TableKind::Integral,
-            Self::ActuatorAware(_) => TableKind::ActuatorAware,
-            Self::Cascade(_) => TableKind::Cascade,
-            Self::Along(_) => TableKind::AlongTrajectory,
-        }
-    }
-
-    /// As one matrix; gains over time one below the other.
-    pub fn dense(&self) -> DMatrix<f64> {
-        match self {
-            Self::Equilibrium(gain) => DMatrix::from_column_slice(4, 9, gain.as_slice()),
-            Self::FlatOutput(gain) => DMatrix::from_column_slice(7, 10, gain.as_slice()),
-            Self::Integral(gain) => DMatrix::from_column_slice(4, 12, gain.as_slice()),
-            Self::ActuatorAware(gain) => DMatrix::from_column_slice(4, 19, gain.as_slice()),
-            Self::Cascade(gains) => DMatrix::from_row_slice(1, GAINS, &gains[..]),
-            Self::Along(along) => DMatrix::from_fn(4 * along.gains.len(), 9, |i, j| along.gains[i / 4][(i % 4, j)]),
-        }
-    }
-
-    /// As the core flies it, every entry the nearest f32.
-    ///
-    /// `motor_lag_s` is what gains for motor forces reckon with.
-    pub fn rows(&self, motor_lag_s: f32) -> TableRows {
-        TableRows::Fixed(Box::new(match self {
-            Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),
-            Self::FlatOutput(gain) => Rows::FlatOutput(rounded(gain)),
-            Self::Integral(gain) => Rows::Integral(rounded(gain)),
-            Self::ActuatorAware(gain) => Rows::ActuatorAware { motor_lag_s, rows: rounded(gain) },
-            Self::Cascade(gains) => return TableRows::Chains(gains.map(|gain| gain as f32)),
-            Self::Along(along) => return TableRows::OverTime(rounded_along(along)),
-        }))
-    }
-
-    /// The same, each row a list; of gains over time the rows of one knot after those of the other.
-    pub fn by_rows(&self) -> Vec<Vec<f32>> {
-        let rows = self.rows(0.0);
-        let entries = match &rows {
-            TableRows::Fixed(rows) => rows.entries(),
-            TableRows::Chains(gains) => gains,
-            TableRows::OverTime(knots) => knots.as_flattened().as_flattened(),
-        };
-        entries.chunks(usize::from(self.kind().dimensions().1)).map(<[f32]>::to_vec).collect()
-    }
 }
 
 impl Designed {
@@ -290,31 +175,43 @@ impl Designed {
     /// # Errors
     /// As [`certify`] and [`certify_along`].
     pub fn certify(&self, design: &Design) -> Result<Certificate, CertifyError> {
-        if let (Some(gain), Some((vehicle, lag_s))) = (&self.gain_in_parts, &self.motors) {
-            let timing = Timing::at_rate(design.rate.hz());
-            let plant = Plant::hover_with_motors(vehicle, *lag_s, 1.0, 1.0);
-            let controller = Controller::actuator_aware(gain, *lag_s, timing.period_s);
-            return certify(&plant, &controller, &timing, design.rate_loop_gain_1_s);
-        }
-        if let (Gains::Cascade(gains), Problem::Cascade { motor_lag_s, air, .. }) = (&self.gains, &design.problem) {
-            let period_s = Timing::at_rate(design.rate.hz()).period_s;
-            return certify_cascade(&design.vehicle, **gains, *motor_lag_s, air, period_s);
-        }
-        let plant = match (&self.gains, &design.problem) {
+        match (&self.gains, &design.problem) {
+            (Gains::Cascade(gains), Problem::Cascade { motor_lag_s, air, .. }) => {
+                let period_s = Timing::at_rate(design.rate.hz()).period_s;
+                certify_cascade(&design.vehicle, **gains, *motor_lag_s, air, period_s)
+            }
             (Gains::Along(along), Problem::Along { trajectory, .. }) => {
                 let reference = |time_s: f64| reference_point(&trajectory.trajectory().at(time_s));
-                return certify_along(reference, along, design.rate_loop_gain_1_s);
+                certify_along(reference, along, design.rate_loop_gain_1_s)
             }
-            (Gains::FlatOutput(_), _) => Plant::flat_chain(),
-            (Gains::Integral(_), _) => Plant::equilibrium_with_integral(),
-            (Gains::Equilibrium(_) | Gains::ActuatorAware(_) | Gains::Cascade(_) | Gains::Along(_), _) => {
-                Plant::equilibrium()
+            _ => {
+                let (plant, controller, timing) = self.hover_loop(design);
+                certify(&plant, &controller, &timing, design.rate_loop_gain_1_s)
+            }
+        }
+    }
+
+    /// The loop at hover of every design but the cascade's; of gains over time with that behind the last knot.
+    pub(super) fn hover_loop(&self, design: &Design) -> (Plant, Controller, Timing) {
+        let timing = Timing::at_rate(design.rate.hz());
+        if let (Some(gain), Some((vehicle, lag_s))) = (&self.gain_in_parts, &self.motors) {
+            let plant = Plant::hover_with_motors(vehicle, *lag_s, 1.0, 1.0);
+            return (plant, Controller::actuator_aware(gain, *lag_s, timing.period_s), timing);
+        }
+        let (plant, gain) = match &self.gains {
+            Gains::FlatOutput(_) => (Plant::flat_chain(), self.gains.dense()),
+            Gains::Integral(_) => (Plant::equilibrium_with_integral(), self.gains.dense()),
+            Gains::Along(along) => {
+                let last = along.gains.last().map_or_else(SMatrix::zeros, |gain| *gain);
+                (Plant::equilibrium(), DMatrix::from_column_slice(4, 9, last.as_slice()))
+            }
+            Gains::Equilibrium(_) | Gains::ActuatorAware(_) | Gains::Cascade(_) => {
+                (Plant::equilibrium(), self.gains.dense())
             }
         };
         let past_command_gains = self.past_command_gains.clone();
-        let timing = Timing { delay_samples: past_command_gains.len(), ..Timing::at_rate(design.rate.hz()) };
-        let controller = Controller { gain: self.gains.dense(), past_command_gains, predictor: None };
-        certify(&plant, &controller, &timing, design.rate_loop_gain_1_s)
+        let timing = Timing { delay_samples: past_command_gains.len(), ..timing };
+        (plant, Controller { gain, past_command_gains, predictor: None }, timing)
     }
 
     fn equilibrium(design: EquilibriumDesign, weights: Option<Weights>) -> Self {
@@ -369,73 +266,8 @@ impl Designed {
     }
 }
 
-impl LinearModel {
-    /// What a design is solved for; of gains over time the hover at their end.
-    fn with_weights(design: &Design) -> (Self, Option<Weights>) {
-        match &design.problem {
-            Problem::Equilibrium(Method::Lyapunov { .. }) => (Self::equilibrium(), None),
-            Problem::Equilibrium(Method::Lqr { weights } | Method::SampledLqr { weights, .. })
-            | Problem::Along { weights, .. } => (Self::equilibrium(), Some(of_equilibrium(weights))),
-            Problem::FlatOutput(Method::Lyapunov { .. }) => (Self::flat_chain(), None),
-            Problem::FlatOutput(Method::Lqr { weights } | Method::SampledLqr { weights, .. }) => {
-                (Self::flat_chain(), Some(of_flat(weights)))
-            }
-            Problem::Integral { weights } => {
-                let state: Vec<f64> = weights.equilibrium.state.iter().chain(&weights.integral).copied().collect();
-                let weights = Weights { q: diagonal(&state), r: diagonal(&weights.equilibrium.input) };
-                (Self::integral(), Some(weights))
-            }
-            Problem::ActuatorAware { motor_lag_s, weights, .. } => {
-                let (a, b) = hover_pair_with_integral(&design.vehicle, *motor_lag_s);
-                let weights = Weights { q: diagonal(&weights.state()), r: diagonal(&[weights.command; 4]) };
-                (Self { a, b, states: &MOTOR_STATES, inputs: &MOTOR_INPUTS }, Some(weights))
-            }
-            Problem::Cascade { motor_lag_s, weights, .. } => {
-                let (a, b) = hover_pair(&design.vehicle, *motor_lag_s, 1.0, 1.0);
-                let weights = Weights { q: diagonal(&weights.state()), r: diagonal(&[weights.command; 4]) };
-                (Self { a, b, states: &PART_STATES, inputs: &PART_INPUTS }, Some(weights))
-            }
-        }
-    }
-
-    /// Hover, without q0, which no input moves.
-    pub fn equilibrium() -> Self {
-        let (a, b) = equilibrium_pair();
-        Self { a, b, states: &EQUILIBRIUM_STATES, inputs: &EQUILIBRIUM_INPUTS }
-    }
-
-    /// Hover with the integrals of the position error.
-    pub fn integral() -> Self {
-        let (a, b) = integral_pair();
-        Self { a, b, states: &INTEGRAL_STATES, inputs: &EQUILIBRIUM_INPUTS }
-    }
-
-    /// The flat chain.
-    pub fn flat_chain() -> Self {
-        let (a, b) = dense_flat_chain();
-        Self { a, b, states: &FLAT_STATES, inputs: &FLAT_INPUTS }
-    }
-}
-
-impl SampledProblem {
-    fn new(model: &LinearModel, weights: &Weights, period_s: f64) -> Result<Self, GainsError> {
-        Ok(Self {
-            held: zero_order_hold(&model.a, &model.b, period_s)?,
-            cost: sampled_cost(&model.a, &model.b, &weights.q, &weights.r, period_s)?,
-        })
-    }
-}
-
 fn sampling(rate_hz: u32, delay_samples: usize) -> Sampling {
     Sampling { delay_samples, ..Sampling::at_rate(rate_hz) }
-}
-
-fn of_equilibrium(weights: &EquilibriumWeights) -> Weights {
-    Weights { q: diagonal(&weights.state), r: diagonal(&weights.input) }
-}
-
-fn of_flat(weights: &FlatWeights) -> Weights {
-    Weights { q: diagonal(&weights.state), r: diagonal(&weights.input) }
 }
 
 /// A gain of the shape that its solver gives.

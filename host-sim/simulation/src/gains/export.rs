@@ -14,7 +14,9 @@ use serde_json::{Map, Value, json};
 use super::GainsError;
 use super::artifacts::by_rows;
 use super::design::{Design, Problem};
-use super::designed::{Designed, Gains, Poles, SampledProblem};
+use super::designed::{Designed, Poles};
+use super::kinds::Gains;
+use super::model::SampledProblem;
 use super::names::{MODEL_STATES, Signal};
 
 /// A matrix with the meaning of its rows and columns.

@@ -7,11 +7,14 @@
 //!     certified  gains, certificate, the table; the design's own minimum
 //!       board_certificate  the figures that a table carries, the same on every processor
 //!       table      of any kind, as bytes
-//!       designed   model and gain, in f64
+//!       designed   the gain in f64, and the loop it is certified in
+//!         kinds    gains by the law that flies them
+//!         model    the linear model, and the weights
 //!         unsolved why there is none: the states to blame
 //!         design   what belongs together and is in range
 //!           file   TOML
 //!           course the trajectory of gains over time, as the board stores it
+//! curves         loop gain, sensitivity and steps, to be drawn
 //! export         A, B, Q, R, K, P, poles, T_e for other tools
 //! ```
 //!
@@ -29,6 +32,8 @@ mod designed;
 mod error;
 mod export;
 mod file;
+mod kinds;
+mod model;
 mod names;
 mod rounding;
 mod table;
@@ -41,10 +46,12 @@ pub use certified::Certified;
 pub(crate) use check::Comparison;
 pub use check::{Checked, Failed, check_design, check_folder, designs};
 pub use course::OnBoardTrajectory;
-pub use curves::{ChainCurves, LoopCurves};
+pub use curves::{CutLoop, LoopCurves, StepResponse};
 pub use design::{Design, Method, Problem};
-pub use designed::{Designed, Gains, LinearModel, Poles, SampledProblem, TableRows, Weights};
+pub use designed::{Designed, Poles};
 pub use error::GainsError;
 pub use export::{Export, Matrix};
+pub use kinds::{Gains, TableRows};
+pub use model::{LinearModel, SampledProblem, Weights};
 pub use names::{Signal, signals};
 pub use table::Table;

@@ -4,7 +4,7 @@
 use nalgebra::{Complex, DMatrix};
 use quatrack_design::design::DesignError;
 
-use super::designed::{LinearModel, Weights};
+use super::model::{LinearModel, Weights};
 use super::names::Signal;
 
 /// What a singular value, or a part of a vector, is below that counts as zero, over the largest.
