@@ -23,7 +23,7 @@ pub trait ControlLaw {
     }
 
     /// One control step: the forces asked of the four motors, N, numbered as in [`quatrack_design::vehicle`]. The
-    /// motors then do what they can of them.
+    /// motors then give them as far as they can.
     ///
     /// # Errors
     /// One line that says why there is no answer. The flight ends there and counts as lost.

@@ -126,8 +126,8 @@ impl Latency {
     }
 }
 
-/// Flies `craft` from `start`. `target_m` is where it should be; `control` is given the tick and what is measured, and
-/// an error of it ends the flight. Before the first command acts, the motors are told to keep what they have.
+/// Flies `craft` from `start`. `target_m` is where it should be; `control` is given the tick and the measurements, and
+/// an error of it ends the flight. Before the first command acts, the motors keep their forces.
 pub fn fly_rigid(
     craft: &Craft,
     start: &RigidState,

@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 use super::design::Design;
 use super::designed::Designed;
 
-/// What is taken off a figure, as a share of it, before it is rounded down.
+/// Share of a figure that is taken off before it is rounded down.
 const GUARD: f64 = 1e-6;
 /// Unit of the distance from the f64 gain, which is rounded up.
 const DISTANCE_UNIT: f64 = 1e-10;

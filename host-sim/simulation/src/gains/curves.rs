@@ -1,4 +1,4 @@
-//! What a design of the cascade does, as curves: loop gain and sensitivity by frequency, and the answer to a step.
+//! The loops of a cascade's design as curves: loop gain and sensitivity by frequency, and the answer to a step.
 
 use quatrack_design::certify::CertifyError;
 use quatrack_design::certify::cascade::{
@@ -32,13 +32,13 @@ pub struct LoopCurves {
 /// One chain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChainCurves {
-    /// What it moves.
+    /// The motion of the chain.
     pub name: &'static str,
     /// Size of the open loop's gain, cut at the command.
     pub gain: Vec<f64>,
     /// Distance of the sensitivity from one half: the disk margin is one over its peak.
     pub from_half: Vec<f64>,
-    /// What it tolerates.
+    /// Its margins.
     pub margins: ChainMargins,
     /// The way after a step of 1 of its reference, over the times.
     pub step: Vec<f64>,

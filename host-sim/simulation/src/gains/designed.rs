@@ -1,4 +1,4 @@
-//! What a design computes: a validated problem in; the model, the gain in f64 and the plant it is certified on out.
+//! A design, solved: a validated problem in; the model, the gain in f64 and the plant it is certified on out.
 
 use nalgebra::{DMatrix, SMatrix};
 use num_complex::Complex64;
@@ -51,7 +51,7 @@ pub struct Designed {
     pub relative_residual: f64,
     /// An actuator-aware gain with forces in parts, in which it is certified.
     pub gain_in_parts: Option<DMatrix<f64>>,
-    /// What the gain was designed for, where that is a vehicle with its motors and their lag, s.
+    /// The object of the gain's design, where that is a vehicle with its motors and their lag, s.
     motors: Option<(Vehicle, f64)>,
     /// The problem per sample that P and the gain solve, if it is one.
     pub sampled: Option<SampledProblem>,
@@ -152,7 +152,7 @@ impl Gains {
 
     /// As the core flies it, every entry the nearest f32.
     ///
-    /// `motor_lag_s` is what gains for motor forces reckon with.
+    /// `motor_lag_s` is the lag for which gains for motor forces are flown.
     pub fn rows(&self, motor_lag_s: f32) -> TableRows {
         TableRows::Fixed(Box::new(match self {
             Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),
@@ -370,7 +370,7 @@ impl Designed {
 }
 
 impl LinearModel {
-    /// What a design is solved for; of gains over time the hover at their end.
+    /// The model that a design is solved for; of gains over time the hover at their end.
     fn with_weights(design: &Design) -> (Self, Option<Weights>) {
         match &design.problem {
             Problem::Equilibrium(Method::Lyapunov { .. }) => (Self::equilibrium(), None),

@@ -1,7 +1,7 @@
 //! Gain tables that somebody may fly: design files in; gains, certificates and tables out, or the figure that fails.
 //!
 //! ```text
-//! check          committed files against what their designs give today
+//! check          committed files against their designs' output today
 //!   built_in     the core's own tables of the cascade
 //!   artifacts    NAME.json, NAME.rs, NAME.bin
 //!     certified  gains, certificate, the table; the design's own minimum
@@ -9,7 +9,7 @@
 //!       table      of any kind, as bytes
 //!       designed   model and gain, in f64
 //!         unsolved why there is none: the states to blame
-//!         design   what belongs together and is in range
+//!         design   entries in range that fit together
 //!           file   TOML
 //!           course the trajectory of gains over time, as the board stores it
 //! export         A, B, Q, R, K, P, poles, T_e for other tools

@@ -11,7 +11,7 @@ use super::{Load, MotorBank, RigidState, Wrench};
 pub struct GroundEffect {
     /// Radius of a rotor, m.
     pub radius_m: f64,
-    /// Where the rotors stand, body frame, m.
+    /// Places of the rotors, body frame, m.
     pub rotors_m: [Vector3<f64>; 4],
 }
 

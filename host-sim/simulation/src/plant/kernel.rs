@@ -18,7 +18,7 @@ pub(super) use self::equations::{Figures, LANES};
 use super::craft::LinearWind;
 use super::{Craft, RigidState};
 
-/// What one step of one plant needs besides its figures and its state.
+/// The inputs of one step of one plant besides its figures and its state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
     pub(super) goals_n: Vector4<f64>,
@@ -160,7 +160,7 @@ impl SideBySide {
         self.state.iter_mut().zip(x).for_each(|(row, value)| row[lane] = value);
     }
 
-    /// What a lane flies next from where it is.
+    /// The next step of a lane, from its present state.
     #[inline]
     pub(super) fn put_step(&mut self, lane: usize, step: &Step) {
         for i in 0..4 {

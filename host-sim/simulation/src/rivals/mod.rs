@@ -52,7 +52,7 @@ impl Actuation {
     }
 
     /// The forces that make a force and a torque. Where one exceeds the most that a motor does, the excess is taken off all
-    /// four; what is then negative is 0 (`powerDistributionForceTorque` and `powerDistributionCap` in
+    /// four; a force that is then negative is 0 (`powerDistributionForceTorque` and `powerDistributionCap` in
     /// `power_distribution_quadrotor.c`, without their rounding to whole numbers).
     pub fn forces_n(&self, wanted: &ForceTorque) -> Vector4<f64> {
         let (torque, a) = (wanted.torque_n_m, self.half_arm_m);

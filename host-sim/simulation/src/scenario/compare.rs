@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::flight::rigid_loop::RigidFlight;
 
-/// What the file says that it is.
+/// The schema that the file states.
 pub const SCHEMA: &str = "quatrack/compare/1";
 
 /// One law's flight.

@@ -17,7 +17,7 @@ pub enum ScenarioError {
     Unreadable {
         /// Which file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's message.
         reason: String,
     },
     /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
@@ -27,9 +27,9 @@ pub enum ScenarioError {
         origin: String,
         /// Where, from 1.
         line: usize,
-        /// What is written there.
+        /// The text there.
         text: String,
-        /// What the parser says, in one line.
+        /// The parser's message, in one line.
         reason: String,
     },
     /// A value without sense.
@@ -41,7 +41,7 @@ pub enum ScenarioError {
         key: &'static str,
         /// The value as read.
         value: String,
-        /// What it must be.
+        /// Its required range, in words.
         must: String,
     },
     /// A vehicle or a trajectory that cannot be had.
@@ -78,7 +78,7 @@ pub enum StartError {
     /// The filter's figures or start.
     #[error("the filter does not start: {0}")]
     Filter(#[from] EstimatorError),
-    /// The start asks for what no thrust does.
+    /// No thrust gives the acceleration at the start.
     #[error("the course cannot be flown from its start: {0}")]
     Start(#[from] ReferenceError),
 }

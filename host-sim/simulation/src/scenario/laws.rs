@@ -41,7 +41,7 @@ pub enum Law {
     Pid,
 }
 
-/// What a law is told of the craft.
+/// The figures of the craft that a law is told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToldFigures {
     /// Mass, kg.
@@ -69,7 +69,7 @@ pub enum LawError {
     /// The Crazyflie controller has no table for it.
     #[error(
         "{law}: the Crazyflie controller has no table for {vehicle} told {mass_kg} kg; tell a mass within 20 % of a built-in \
-         vehicle's; of a vehicle file its own, and `quatrack gains craft` says what is wrong with it"
+         vehicle's; of a vehicle file its own, and `quatrack gains craft` names the fault"
     )]
     NoTable {
         /// Which law.
@@ -93,7 +93,7 @@ pub enum LawError {
 }
 
 impl Law {
-    /// All of them: ours, the rivals, and what came before.
+    /// All of them: ours, the rivals, and the older ones.
     pub const ALL: [Self; 10] = [
         Self::Quatrack,
         Self::Mellinger,

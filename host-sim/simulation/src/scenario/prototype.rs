@@ -10,7 +10,7 @@ use crate::control_law::ControlLaw;
 use crate::flight::motor_laws::FlightError;
 use quatrack::gains::paper as gains;
 
-/// A law at the start of a flight, and what it shares with others.
+/// A law at the start of a flight, and the parts that it shares with others.
 #[derive(Clone)]
 pub struct Prototype {
     law: Law,
@@ -49,7 +49,7 @@ impl Prototype {
         Ok(Self { law, made: made.map_err(refused)?, vehicle, told })
     }
 
-    /// With what it takes from a track, evaluated once for all flights along it.
+    /// With the setpoints of a track, evaluated once for all flights along it.
     pub fn along(mut self, track: &Track) -> Self {
         match &mut self.made {
             Made::Cascade(law) => law.share(track),

@@ -1,11 +1,11 @@
-//! A scenario with one more thing wrong at a time: the cases of the robustness flights on top of whatever it says.
+//! A scenario with one more deviation at a time: the cases of the robustness flights on top of its own.
 
 use crate::flight::robustness::{Case, NOISE, RATE_RAD_S};
 use crate::scenario::{CourseChoice, Scenario, SensorNoise};
 
 impl Scenario {
-    /// With what a case has different, over the scenario's own: factors multiply, delays add, and noise goes before a smaller
-    /// one. The case of a faster eight is absent where no eight is flown.
+    /// With the deviations of a case, on top of the scenario's own: factors multiply, delays add, and noise goes before a
+    /// smaller one. The case of a faster eight is absent where no eight is flown.
     pub fn varied(&self, case: &Case) -> Option<Self> {
         let mut scenario = self.clone();
         let faster = case.rate_rad_s / RATE_RAD_S;

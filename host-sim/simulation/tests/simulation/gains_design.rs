@@ -1,4 +1,5 @@
-//! Design files: what is read, and what is refused with a line that names the key, its value and the remedy.
+//! Design files: values that are read, and values that are refused with a line that names the key, its value and the
+//! remedy.
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
-//! The committed tables: Rust and binary hold the same gains, the board accepts them, and what they promise is what was
-//! certified, rounded to the safe side.
+//! The committed tables: Rust and binary hold the same gains, the board accepts them, and their stated figures are those
+//! of the certificate, rounded to the safe side.
 
 use quatrack::gains::paper;
 use quatrack::gains::table::{GainTable, Name, Rows, TableKind, Vehicle};

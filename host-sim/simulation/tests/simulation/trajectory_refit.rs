@@ -71,9 +71,9 @@ fn pieces_that_were_cut_in_two_are_joined_again() {
     assert!(off.velocity_m_s < 1e-6 && off.acceleration_m_s2 < 1e-5, "{off:?}");
 }
 
-/// What rounding may leave of a condition on a derivative at the end of a fitted piece. Hermite's formula multiplies what
-/// is left of the values by up to 35 + 84 + 70 + 20 in all, each product rounded by a share of the largest term; degree
-/// 7 makes each derivative at most 7 / duration times as large.
+/// The error that rounding may leave in a condition on a derivative at the end of a fitted piece. Hermite's formula
+/// multiplies the error of the values by up to 35 + 84 + 70 + 20 in all, each product rounded by a share of the largest
+/// term; degree 7 makes each derivative at most 7 / duration times as large.
 fn rounding(piece: &Piece, coordinate: Coordinate, order: usize) -> f64 {
     let coefficients = &piece.coefficients[coordinate as usize];
     let terms = coefficients.iter().rev().fold(0.0, |sum, c| sum * piece.duration_s + c.abs());

@@ -1,4 +1,4 @@
-//! What a design asks for: a linearisation, a method that is defined for it, and the method's numbers.
+//! The problem of a design: a linearisation, a method that is defined for it, and the method's numbers.
 
 use quatrack_design::certify::RegionBounds;
 use quatrack_design::certify::cascade::{CascadeAir, CascadeBounds};

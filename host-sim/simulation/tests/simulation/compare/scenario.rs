@@ -1,4 +1,4 @@
-//! Scenario files: what is read, what is refused and how, and that a flight repeats.
+//! Scenario files: values that are read, values that are refused and how, and that a flight repeats.
 
 use std::path::Path;
 
@@ -145,7 +145,7 @@ fn a_flight_is_the_same_to_the_bit_for_the_same_seed_and_another_for_another() {
     let last = |flight: &quatrack_simulation::flight::rigid_loop::RigidFlight| flight.samples.last().unwrap().state;
     assert_eq!(last(&first), last(&again));
     assert_ne!(last(&first), last(&other));
-    // Every 10 ms of what is measured, both ends.
+    // Every 10 ms of the measured part, both ends.
     assert_eq!((first.samples.len(), first.samples[0].time_s), (301, 5.0));
 }
 

@@ -1,4 +1,4 @@
-//! What the air does: energy, terminal velocity, the direction of the moment, wind.
+//! The air's action on a craft: energy, terminal velocity, the direction of the moment, wind.
 
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use quatrack_design::vehicle::Vehicle;
@@ -21,7 +21,7 @@ fn airflow() -> Airflow {
     }
 }
 
-/// A craft whose motors may stand still.
+/// A craft whose motors may be off.
 fn gliding(air: Airflow) -> Craft {
     let mut craft = Craft { air: Some(air), ..Craft::new(&vehicle()) };
     craft.motors.motors.iter_mut().for_each(|motor| motor.thrust_min_n = 0.0);
