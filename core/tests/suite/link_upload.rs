@@ -103,7 +103,7 @@ impl Board {
     }
 }
 
-/// A host that sends one request at a time, and on silence asks where it stands.
+/// A host that sends one request at a time, and on silence asks for its progress.
 struct Host {
     encoder: Encoder,
     decoder: Decoder<FromBoard>,

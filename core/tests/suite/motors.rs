@@ -1,5 +1,5 @@
-//! The way to the motors against its f64 twin: rate loop and mixer, the actuator-aware law; the memory, and what is
-//! refused.
+//! The way to the motors against its f64 twin: rate loop and mixer, the actuator-aware law; the memory, and
+//! refusals.
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector4};
 use quatrack::gains::paper;
@@ -59,7 +59,7 @@ fn a_command_comes_out_as_the_forces_whose_wrench_it_asks_for() {
             let mut memory = Memory::new(before).unwrap();
             let measured = Measured::new(&case.state).with_body_rates(&rates);
             let found = controller.carry(&mut memory, &Output::Command(step), measured).unwrap();
-            assert_eq!(found.limited.command().bits(), 0b0101, "what was cut before is told");
+            assert_eq!(found.limited.command().bits(), 0b0101, "an earlier cut is reported");
             let (min, max) = (f64::from(figures.force_min_n), f64::from(figures.force_max_n));
             if exact.iter().all(|force| (min..=max).contains(force)) {
                 within += 1;

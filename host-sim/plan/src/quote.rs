@@ -1,4 +1,4 @@
-//! What an error quotes of a file: never more than a line of a terminal or two holds.
+//! The part of a file that an error quotes: never more than a line of a terminal or two holds.
 
 /// Most characters of a file that an error quotes.
 pub const QUOTED_MAX: usize = 200;

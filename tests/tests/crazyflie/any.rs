@@ -1,5 +1,5 @@
-//! Whatever a firmware, a radio or an estimator may come up with: what the Crazyflie's controller puts out is finite and
-//! within what motors do.
+//! Any input of a firmware, a radio or an estimator: the Crazyflie's controller's output is finite and
+//! within the motors' range.
 
 use std::sync::atomic::Ordering::Relaxed;
 

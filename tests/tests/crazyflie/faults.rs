@@ -1,5 +1,5 @@
-//! Faults flown through the Crazyflie object: what is recoverable is not lost, what is not ends with the motors off, and the log says
-//! why.
+//! Faults flown through the Crazyflie object: a recoverable one is not lost, any other ends with the motors off, and the
+//! log says why.
 
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -13,8 +13,8 @@ use crate::setpoints::flight::{CRAFTS, DESCENDING, FLYING, Flight, mode};
 use crate::setpoints::sent::{alt_hold, full_state, hover, manual, position, velocity_world, z_distance};
 
 const STOPPED: u8 = 3;
-/// Longest time until the log has what a step has seen, ms: each call between control steps writes one part of four, or, four times in
-/// a row at most, none.
+/// Longest time until the log has the values of a step, ms: each call between control steps writes one part of four, or,
+/// four times in a row at most, none.
 const LOGGED_MS: u32 = 40;
 
 fn reason() -> u16 {
@@ -182,7 +182,7 @@ fn tumbled_it_stays_off_until_a_new_flight() {
         (flight.state.velocity_m_s, flight.state.body_rates_rad_s) =
             (Vector3::zeros(), Vector3::x() * 1e-2 * f64::from(step % 3));
         if mode() == STOPPED {
-            // 0.6 s upside down, and what the log takes to say so.
+            // 0.6 s upside down, and the log's delay.
             assert!((60..=65).contains(&step), "{step}");
             break;
         }

@@ -1,5 +1,5 @@
-//! What the Crazyflie's controller has to survive, through its C interface: far goals, turns, any tilt, weak motors, a wall, the
-//! ground, odd setpoints. In vacuum, told the craft's usual air: the wrong one.
+//! Trials that the Crazyflie's controller has to survive, through its C interface: far goals, turns, any tilt, weak
+//! motors, a wall, the ground, odd setpoints. In vacuum, told the craft's usual air: the wrong one.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use crate::setpoints::flight::{CRAFTS, DESCENDING, FLYING, Flight, MapInto as _,
 use crate::setpoints::orders::figure_eight;
 use crate::setpoints::sent::{full_state, position};
 
-/// What a way to a goal looked like.
+/// The extremes on a way to a goal.
 #[derive(Debug, Default)]
 struct Way {
     beyond_m: f64,

@@ -1,4 +1,4 @@
-//! Tables for the law that commands motor forces: where every field stands, each reason for a refusal, any bytes.
+//! Tables for the law that commands motor forces: the offset of every field, each reason for a refusal, any bytes.
 
 use proptest::collection::vec;
 use proptest::prelude::*;

@@ -57,5 +57,5 @@ fn a_buffer_that_is_too_short_gets_no_table() {
     }
     let mut longer = [0xAA; TABLE_BYTES_MAX];
     assert_eq!(table.to_bytes(&mut longer).map(<[u8]>::len), Some(bytes));
-    assert_eq!(longer[bytes..bytes + 3], [0xAA; 3], "what is behind the table is not written");
+    assert_eq!(longer[bytes..bytes + 3], [0xAA; 3], "bytes behind the table are not written");
 }

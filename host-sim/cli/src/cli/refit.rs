@@ -48,7 +48,7 @@ pub(crate) struct Args {
     /// planned first), or the Crazyflie's compressed form.
     #[arg(value_name = "mild|aggressive|FILE")]
     trajectory: String,
-    /// Most pieces, 1 to 31, which is what the memory holds.
+    /// Most pieces, 1 to 31, the most that the memory holds.
     #[arg(long, value_name = "N", default_value_t = PIECES_MAX, value_parser = pieces_parser())]
     pieces: usize,
     /// Write nothing and exit with 1 if the position is further off than this.
@@ -70,7 +70,7 @@ pub(crate) struct Args {
     json: Option<PathBuf>,
 }
 
-/// What is printed, and written as JSON.
+/// The figures that are printed, and written as JSON.
 #[derive(Serialize)]
 struct RefitReport {
     original_pieces: usize,
@@ -138,7 +138,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     if report.lost() {
         return Err(Failure::verdict(format!(
-            "{name}: LQR-E is lost on it; fly it slower (--time-scale 2), or look at what it asks for; nothing is written"
+            "{name}: LQR-E is lost on it; fly it slower (--time-scale 2), or lower its speed and acceleration; nothing is written"
         )));
     }
     let off_m = report.largest_difference.position_m;

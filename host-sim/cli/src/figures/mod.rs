@@ -1,5 +1,5 @@
 //! Figures in the manner of the paper's Figures 2 to 5: a reference and the flights that track it, or one flight with
-//! what its motors and the air did, in; SVG or PNG out.
+//! its motors' forces and the wind, in; SVG or PNG out.
 //!
 //! To the left the flight in space, to the right x, y and z over time; the reference dashed, flights solid. Plain data
 //! in, bytes out, the same bytes for the same data: nothing here knows controllers or writes files.

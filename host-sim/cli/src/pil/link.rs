@@ -13,7 +13,7 @@ use super::interrupt::Interrupt;
 /// Longest time for an emulator to count.
 const LIMIT: Duration = Duration::from_secs(60);
 
-/// What the image counts, in its order.
+/// The frames and tags that the image counts, in its order.
 const COUNTED: [&str; 5] =
     ["a hello and its answer", "an order", "a state with body rates", "a state and a reference", "an answer"];
 

@@ -84,7 +84,7 @@ fn a_campaign_that_was_killed_goes_on_where_it_was() {
         fly();
         assert_eq!(bench.bytes("out/rows.csv"), whole, "{kept}");
     }
-    // What a disk left behind of a block is no row.
+    // The part of a block that a disk left behind is no row.
     let mut torn = whole.clone();
     torn[lines[4]..].fill(0);
     fs::write(bench.0.join("out/rows.csv"), torn).unwrap();

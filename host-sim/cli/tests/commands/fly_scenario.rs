@@ -54,7 +54,7 @@ fn the_log_has_motors_their_limits_wind_and_estimate_and_the_same_bytes_for_the_
     };
     let first = log("first", &[]);
     assert!(first == log("again", &[]), "the same seed");
-    assert!(first == log("said", &["--seed", "5", "--speed-m-s", "1"]), "flags that say what the file says");
+    assert!(first == log("said", &["--seed", "5", "--speed-m-s", "1"]), "flags that repeat the file");
     assert!(first != log("other", &["--seed", "6"]), "another seed");
 
     let mut rows = first.lines();
@@ -66,7 +66,7 @@ fn the_log_has_motors_their_limits_wind_and_estimate_and_the_same_bytes_for_the_
     let mut squares = 0.0;
     for row in &rows {
         for motor in 1..=4 {
-            let of = |what: &str| row[column(&format!("{what}_{motor}_n"))];
+            let of = |column_of: &str| row[column(&format!("{column_of}_{motor}_n"))];
             assert!(of("thrust_min") <= of("thrust") && of("thrust") <= of("thrust_max"), "{row:?}");
         }
         squares += (row[column("est_x_m")] - row[column("x_m")]).powi(2);

@@ -1,4 +1,4 @@
-//! `quatrack gains` and what flies and exports its designs, as their user meets them.
+//! `quatrack gains` and the commands that fly and export its designs, as their user meets them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -156,7 +156,7 @@ fn a_changed_file_is_named_with_its_first_difference() {
     *entry = (entry.as_f64().unwrap() * (1.0 + 2e-9)).into();
     fs::write(&json, value.to_string()).unwrap();
     assert_refused(&check(), 1, &["mine.json: gain.k[0][0] is 4.5"]);
-    // What only looks different is not.
+    // A file that only looks different is not.
     let value: serde_json::Value = serde_json::from_str(&whole).unwrap();
     fs::write(&json, value.to_string()).unwrap();
     assert_done(&check());
@@ -169,7 +169,7 @@ fn a_changed_file_is_named_with_its_first_difference() {
     bytes[200] ^= 1;
     fs::write(&binary, &bytes).unwrap();
     fs::remove_file(&json).unwrap();
-    // The whole folder: everything that is wrong, and what no design gives.
+    // The whole folder: every file that is wrong, and one that no design gives.
     fs::write(made.join("older.bin"), bytes).unwrap();
     let named =
         ["mine.json: cannot be read", "mine.rs: line ", "mine.bin: byte 200 is", "older.bin: no design gives it"];
@@ -300,7 +300,7 @@ fn the_committed_gains_along_the_w_are_shown_listed_and_flown() {
     };
     assert_done(&fly("aggressive"));
     let flown: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
-    // What is left under a hold of 10 ms, a fiftieth of the paper's 0.11; no limit of the vehicle is reached.
+    // The error that remains under a hold of 10 ms, a fiftieth of the paper's 0.11; no limit of the vehicle is reached.
     assert!(flown["iae_m_s"].as_f64().unwrap() < 2.5e-3 && flown["saturated_steps"] == 0, "{flown}");
     assert_refused(&fly("mild"), 2, &["along-aggressive.bin: its gains are for another trajectory", "mild"]);
     let shown = |extension: &str| stdout(&quatrack(&["gains", "show", &table.replace("bin", extension)]));

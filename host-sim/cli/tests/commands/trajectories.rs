@@ -1,5 +1,5 @@
-//! Trajectories and plans as they are typed: what is read, moved and written, how a flight that is lost ends, and what is said of a
-//! reference that cannot be followed.
+//! Trajectories and plans as they are typed: files read, moved and written, the end of a flight that is lost, and the
+//! message about a reference that cannot be followed.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Why a plan gives no curve: what was found wrong in, one line that names it and the remedy out.
+//! Why a plan gives no curve: a fault in, one line that names it and the remedy out.
 
 use std::fmt;
 
@@ -21,7 +21,7 @@ pub enum PlanError {
     Syntax {
         /// Where, from 1.
         line: usize,
-        /// What the parser says, in one line.
+        /// The parser's message, in one line.
         reason: String,
     },
     /// A value out of range.
@@ -31,7 +31,7 @@ pub enum PlanError {
         field: String,
         /// The value as read.
         value: f64,
-        /// What it must be.
+        /// Its required range, in words.
         must: String,
     },
     /// Fewer than a start and an end.
@@ -121,7 +121,7 @@ pub enum PlanError {
     Vehicle {
         /// As written.
         name: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
     /// A heading that turns too fast for its bound.
@@ -171,7 +171,7 @@ pub enum PlanError {
     },
     /// The solver stopped without an answer.
     #[error(
-        "the solver stopped without an answer ({0}): the plan is at the edge of what its bounds allow, or its numbers \
+        "the solver stopped without an answer ({0}): the plan is at the edge of its bounds, or its numbers \
          differ too much in size; loosen a bound or take fewer spans"
     )]
     NotConverged(String),

@@ -3,7 +3,7 @@
 //! The method of the paper's reference \[10\], "virtual control points". The flat output `sigma(t) = (x, y, z)` is a
 //! clamped uniform B-spline with control points `P_j`; its `k`-th derivative is a B-spline too, of degree `degree - k`,
 //! whose control points `Pk_j` are scaled differences of those of derivative `k - 1`, and so linear in `P`. In each span a
-//! B-spline is a mean of `degree - k + 1` consecutive control points with weights that are never negative: whatever
+//! B-spline is a mean of `degree - k + 1` consecutive control points with weights that are never negative: any
 //! convex set holds those points holds the curve, for all t and not only at samples. With `g` gravity and
 //! `h = a + g e3` the thrust vector, heading 0, the bounds are second-order cones in the control points:
 //!
@@ -67,7 +67,7 @@ pub struct Waypoint {
     pub heading_rad: Option<f64>,
 }
 
-/// What the flight must keep to for all t; `None` is no bound.
+/// The bounds of the flight for all t; `None` is no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// Speed, m/s.

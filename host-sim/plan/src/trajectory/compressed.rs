@@ -29,7 +29,7 @@ pub enum CompressedError {
     TooFar {
         /// Which piece, from 1.
         piece: usize,
-        /// What.
+        /// The coordinate.
         coordinate: Coordinate,
         /// Value of the control point, m or rad.
         value: f64,
@@ -89,7 +89,7 @@ fn polynomial(points: &[f64], duration_s: f64) -> [f64; COEFFICIENTS] {
 /// The bytes of a trajectory.
 ///
 /// # Errors
-/// [`CompressedError`] for what 16 bits do not hold.
+/// [`CompressedError`] for a number that 16 bits do not hold.
 pub fn to_bytes(trajectory: &PiecewisePolynomial) -> Result<Vec<u8>, CompressedError> {
     let mut bytes = Vec::new();
     let boundaries_s = trajectory.boundaries_s();
@@ -152,7 +152,7 @@ fn body(first: i16, points: &[f64; COEFFICIENTS]) -> Vec<i16> {
     }
 }
 
-/// The trajectory of bytes; what stands behind the piece of no duration must be nothing.
+/// The trajectory of bytes; nothing may be behind the piece of no duration.
 ///
 /// # Errors
 /// [`CompressedError`] for bytes that are none.

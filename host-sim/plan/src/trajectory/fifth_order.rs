@@ -1,4 +1,4 @@
-//! The flat output to its fifth derivative: what motor forces and their rates depend on.
+//! The flat output to its fifth derivative: motor forces and their rates depend on it.
 
 use nalgebra::Vector3;
 
@@ -78,7 +78,7 @@ impl FlatTrajectory for Rest {
     }
 }
 
-/// Rest at one place and, from a time on, at another: what no craft can follow.
+/// Rest at one place and, from a time on, at another: no craft can follow it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jump {
     /// Before, m.

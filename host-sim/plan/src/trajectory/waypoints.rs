@@ -47,7 +47,7 @@ pub enum WaypointsError {
     },
 }
 
-/// What a column holds.
+/// The quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Column {
     Time,
@@ -58,7 +58,7 @@ enum Column {
     Other,
 }
 
-/// What rows are by their columns.
+/// The kind of rows, by their columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Places to pass.
@@ -96,7 +96,7 @@ fn columns(table: &Table) -> Vec<Column> {
     }
 }
 
-/// What the rows of a table are; `None` if nothing of this.
+/// The kind of a table's rows; `None` if none of these.
 pub(super) fn recognise(table: &Table) -> Option<Kind> {
     let columns = columns(table);
     let has = |column| columns.contains(&column);

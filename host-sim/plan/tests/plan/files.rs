@@ -1,4 +1,4 @@
-//! Plan files that cannot be used: each is refused with a line that names what is wrong, its value and what it must be.
+//! Plan files that cannot be used: each is refused with a line that names the fault, its value and its range.
 
 use quatrack_plan::plan::{Plan, PlanError};
 

@@ -1,4 +1,4 @@
-//! Trajectory files are known by their content, and refused in one line that says what to do.
+//! Trajectory files are known by their content, and refused in one line that names the remedy.
 
 use std::path::{Path, PathBuf};
 

@@ -31,7 +31,7 @@ fn angles_by_hand_have_cflibs_signs() {
 
 #[test]
 fn rates_by_hand_have_the_signs_of_angles() {
-    // A stick that is pushed lowers the nose, whether it stands for an angle or for a rate.
+    // A stick that is pushed lowers the nose, whether it means an angle or a rate.
     for (rates, axis) in [([40.0, 0.0, 0.0], 0), ([0.0, 40.0, 0.0], 1), ([0.0, 0.0, 40.0], 2)] {
         let mut flight = Flight::hovering();
         let thrust = flight.hover_thrust();

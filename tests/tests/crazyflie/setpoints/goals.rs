@@ -1,4 +1,4 @@
-//! Positions, velocities and full states that a script sends, and what is left of them when it stops.
+//! Positions, velocities and full states that a script sends, and their effect after it stops.
 
 use std::f64::consts::PI;
 

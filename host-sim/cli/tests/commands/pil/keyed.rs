@@ -1,4 +1,4 @@
-//! The image on the emulated board with keys that it was given, and what it keeps while its power is off.
+//! The image on the emulated board with keys that it was given, and the uploads that it keeps while its power is off.
 
 use std::fs;
 use std::path::{Path, PathBuf};
