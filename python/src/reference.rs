@@ -1,4 +1,4 @@
-//! What is to be followed, for one craft or for many.
+//! References, for one craft or for many.
 
 use pyo3::prelude::*;
 use quatrack::nalgebra::Vector3;
