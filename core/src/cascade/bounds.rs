@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_stays_so() {
+    fn a_nan_stays_one() {
         assert!(is_beyond(f32::NAN, 1.0) && is_beyond(-1.1, 1.0) && !is_beyond(-1.0, 1.0));
         assert!(within(f32::NAN, 1.0).is_nan() && between(f32::NAN, 0.0, 1.0).is_nan());
         let [x, y] = shortened([f32::NAN, 0.0], 1.0);

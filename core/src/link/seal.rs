@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_covered() {
+    fn protections_cover_their_messages() {
         use Tagging::{Always, Greeting, Motion};
         let covered = |protection: Protection| [Greeting, Always, Motion].map(|tagging| protection.covers(tagging));
         assert_eq!(covered(Protection::CableOnly), [false; 3]);

@@ -213,7 +213,7 @@ fn the_actuator_aware_law_is_its_formula_in_both_forms() {
 }
 
 #[test]
-fn a_law_is_refused_by_name_what_it_lacks_and_remembers_nothing_of_it() {
+fn a_law_without_an_input_is_refused_by_its_name_and_remembers_nothing_of_it() {
     let airframe = Airframe::CRAZYFLIE_2_1;
     let actuation = Actuation::new(&airframe, rate()).unwrap();
     let gain = decoupled();
@@ -252,7 +252,7 @@ fn a_law_is_refused_by_name_what_it_lacks_and_remembers_nothing_of_it() {
 }
 
 #[test]
-fn a_law_of_forces_keeps_its_own_actuation_and_each_law_says_what_it_does() {
+fn a_law_of_forces_keeps_its_own_actuation_and_each_law_tells_its_output() {
     let [own, other] = AIRFRAMES.map(|airframe| Actuation::new(&airframe, rate()).unwrap())[..2] else {
         unreachable!("there are three")
     };
@@ -281,7 +281,7 @@ fn a_law_of_forces_keeps_its_own_actuation_and_each_law_says_what_it_does() {
 }
 
 #[test]
-fn what_is_remembered_of_the_motors_is_as_told() {
+fn remembered_motor_forces_are_as_told() {
     let airframe = Airframe::CRAZYFLIE_2_1;
     for bad in [f32::NAN, f32::INFINITY] {
         for motor in 0..4 {

@@ -80,7 +80,7 @@ fn an_estimate_that_is_lost_for_good_ends_on_the_ground() {
 }
 
 #[test]
-fn what_is_not_to_be_flown_ends_with_motors_off() {
+fn faults_that_cannot_be_flown_end_with_motors_off() {
     for (name, most_ms, end) in [
         ("state: attitude absent for good", 5100, "stopped (no attitude)"),
         ("gyro: NaN for good", 700, "stopped (no body rates)"),
@@ -119,7 +119,7 @@ fn figures(setpoint: &mut Setpoint) -> [&mut f32; 23] {
 }
 
 #[test]
-fn what_is_no_number_in_any_field_of_any_setpoint_is_bad() {
+fn a_nan_in_any_field_of_any_setpoint_is_bad() {
     let thrust = Flight::hovering().hover_thrust();
     let setpoints = [
         position([0.0, 0.0, 1.0], 10.0),

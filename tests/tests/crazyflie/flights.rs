@@ -230,7 +230,7 @@ fn the_supervisors_level_out_keeps_the_height() {
 }
 
 #[test]
-fn what_makes_no_sense_goes_level_and_slowly_down() {
+fn setpoints_without_sense_go_level_and_slowly_down() {
     let mixed = Modes { x: Mode::ABSOLUTE, y: Mode::VELOCITY, z: Mode::ABSOLUTE, ..Modes::default() };
     let mut not_a_number = Setpoint { mode: ANGLES, thrust: HOVER_THRUST, ..Setpoint::OFF };
     not_a_number.attitude.roll = f32::NAN;

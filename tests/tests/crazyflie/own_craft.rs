@@ -85,7 +85,7 @@ fn a_vehicle_file_flies_with_its_own_table() {
 }
 
 #[test]
-fn what_does_not_belong_together_is_refused_in_words() {
+fn figures_that_do_not_fit_together_are_refused_in_words() {
     let vehicle = file("crazyflie-2.1-legacy.toml");
     let own = own_craft(&certified(&vehicle)).unwrap();
     let built_for = platform(&vehicle);

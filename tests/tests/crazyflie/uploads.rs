@@ -189,7 +189,7 @@ fn a_table_with_an_integral_flies() {
 }
 
 #[test]
-fn what_is_damaged_uncertified_or_for_another_craft_is_refused_and_changes_nothing() {
+fn tables_damaged_uncertified_or_for_another_craft_are_refused_and_change_nothing() {
     let craft = vehicles::by_name("crazyflie-2.1").unwrap();
     let _firmware = Firmware::start(&craft, &Tune::new(5, LAG_S.into()), QUIET);
     let good = known_lag_table(KNOWN[0].vehicle);

@@ -102,7 +102,7 @@ fn to_motors() -> ActuatorAwareGain {
 }
 
 #[test]
-fn a_command_and_motor_forces_are_mixed_as_forces_and_both_laws_are_given_what_was_flown() {
+fn a_command_and_motor_forces_are_mixed_as_forces_and_both_laws_are_given_the_mixed_ones() {
     let airframe = Airframe::CRAZYFLIE_2_1.commanded_at(rate());
     let actuation = Actuation::new(&airframe, rate()).unwrap();
     let gain = to_motors();

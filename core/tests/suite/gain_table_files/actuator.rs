@@ -34,7 +34,7 @@ fn refusal(offset: usize, replacement: &[u8]) -> TableError {
 }
 
 #[test]
-fn every_field_stands_where_the_page_says_and_comes_back() {
+fn every_field_is_where_the_page_says_and_comes_back() {
     let bytes = actuator_bytes();
     assert_eq!((bytes.len(), CONSTANT_TABLE_BYTES_MAX), (505, 505));
     assert_eq!(bytes[8..11], [5, 4, 19]);

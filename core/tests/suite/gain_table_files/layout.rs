@@ -10,7 +10,7 @@ fn f32_at(bytes: &[u8], offset: usize) -> f32 {
 }
 
 #[test]
-fn every_field_stands_where_the_page_says() {
+fn every_field_is_where_the_page_says() {
     assert_eq!(FORMAT_VERSION, 2, "a new version has offsets of its own: write them down");
     for (name, rows) in tables() {
         let table = table(name);

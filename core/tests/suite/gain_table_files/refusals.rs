@@ -199,7 +199,7 @@ fn a_table_for_another_board_is_refused() {
 }
 
 #[test]
-fn a_refusal_names_what_is_wrong_and_what_to_do() {
+fn a_refusal_names_the_fault_and_the_remedy() {
     let texts = [
         (
             refusal("lqr-e", 0, b"QTTR"),

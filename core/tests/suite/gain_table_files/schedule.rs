@@ -27,7 +27,7 @@ fn refusal(offset: usize, replacement: &[u8]) -> TableError {
 }
 
 #[test]
-fn every_field_stands_where_the_page_says_and_comes_back() {
+fn every_field_is_where_the_page_says_and_comes_back() {
     for knots in [2, 33, KNOTS_MAX] {
         let gains = gains_over_time(knots);
         let bytes = schedule_bytes(&gains);

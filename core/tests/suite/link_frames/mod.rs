@@ -223,7 +223,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_sound_but_not_understood_is_told_apart() {
+fn sound_frames_that_are_not_understood_are_counted_apart() {
     // Version, session and sequence 0, then the message.
     let whole = |message: &[u8]| framed(&[&[PROTOCOL_VERSION, 0, 0], message].concat());
     let cases: [(Vec<u8>, Rejected); 9] = [

@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_a_circle_and_what_may_not_be_written_stay() {
+    fn a_folder_a_circle_and_a_protected_file_stay() {
         let folder = tempfile::tempdir().unwrap();
         assert!(write(folder.path(), b"new").is_err());
         let circle = folder.path().join("circle");

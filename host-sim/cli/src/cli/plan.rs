@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn summary_shows_what_is_flown_beside_its_bounds() {
+    fn summary_shows_the_flown_extremes_beside_their_bounds() {
         let (plan, flight) = planned(Path::new("mild"), paper::MILD_TOML, Overrides::default(), 60.0).unwrap();
         let text = summary(&plan, &flight);
         let row = |name: &str| -> Vec<String> {
@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_used_exits_2_with_the_files_name() {
+    fn a_plan_that_cannot_be_used_exits_2_with_the_files_name() {
         let folder = Folder::new("unusable");
         for plan in ["", "degree = ", "degree = 5\nspan = 3\n"] {
             let failure = folder.run(plan).unwrap_err();

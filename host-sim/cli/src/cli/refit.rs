@@ -138,7 +138,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     if report.lost() {
         return Err(Failure::verdict(format!(
-            "{name}: LQR-E is lost on it; fly it slower (--time-scale 2), or lower its speed and acceleration; nothing is written"
+            "{name}: LQR-E is lost on it; fly it slower (--time-scale 2), or check its accelerations; nothing is written"
         )));
     }
     let off_m = report.largest_difference.position_m;

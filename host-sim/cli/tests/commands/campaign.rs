@@ -151,7 +151,7 @@ fn message(said: &str) -> usize {
 }
 
 #[test]
-fn what_cannot_be_flown_is_refused_in_one_line() {
+fn inputs_that_cannot_be_flown_are_refused_in_one_line() {
     let bench = Bench::new("campaign-refuses");
     let refused = |name: &str, text: &str, arguments: &[&str], named: &str| {
         fs::write(bench.0.join(name), text).unwrap();

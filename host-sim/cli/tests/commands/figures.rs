@@ -206,7 +206,7 @@ fn a_flight_that_diverges_leaves_the_figure_readable() {
 }
 
 #[test]
-fn what_is_not_finite_breaks_the_line() {
+fn points_that_are_not_finite_break_the_line() {
     let mut flight = Data::wave(0.1);
     flight.position_m[400].x = f64::NAN;
     let svg = svg_of(&Data::wave(0.0), &[&flight]);

@@ -50,7 +50,7 @@ fn assert_refused(output: &Output, exit_code: i32, named: &[&str]) {
 }
 
 #[test]
-fn what_is_committed_is_what_the_designs_give() {
+fn committed_files_are_their_designs_output() {
     let json = folder("committed").join("checked.json");
     assert_done(&quatrack(&["gains", "check", GAINS, "--json", json.to_str().unwrap()]));
     let checked: serde_json::Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
@@ -78,7 +78,7 @@ const SOURCES: [&str; 5] = [
 ];
 
 #[test]
-fn what_is_missing_or_off_by_a_percent_is_named_and_written_again() {
+fn files_missing_or_off_by_a_percent_are_named_and_written_again() {
     let root = folder("checkout");
     let gains = root.join("gains");
     fs::create_dir_all(&gains).unwrap();
@@ -347,7 +347,7 @@ fn exports_name_every_row_and_column() {
 }
 
 #[test]
-fn the_page_on_own_designs_prints_what_the_command_does() {
+fn the_page_on_own_designs_prints_the_commands_output() {
     let page = fs::read_to_string(Path::new(GAINS).join("../docs/own-gains.md")).unwrap();
     let block = |after: &str, fence: &str| {
         let from = page.find(after).unwrap();
@@ -371,7 +371,7 @@ fn the_page_on_own_designs_prints_what_the_command_does() {
 }
 
 #[test]
-fn a_table_of_the_cascade_says_what_it_is_certified_for_and_flies_its_vehicle() {
+fn a_table_of_the_cascade_states_its_certified_region_and_flies_its_vehicle() {
     let dir = folder("cascade");
     let (design, table) =
         (format!("{GAINS}/cascade-brushless-50ms.toml"), format!("{GAINS}/generated/cascade-brushless-50ms.bin"));

@@ -33,7 +33,7 @@ const HOPS: &str = "duration,x^0,x^4,x^5,x^6,x^7,y^0,z^0\n2,0,2.1875,-2.625,1.09
                     2,1,2.1875,-2.625,1.09375,-0.15625,0,1\n";
 
 #[test]
-fn what_other_tools_write_flies_alike() {
+fn files_of_other_tools_fly_alike() {
     let dir = folder("alike");
     let iae = |name: &str, text: &str| {
         let path = file(&dir, name, text.as_bytes());

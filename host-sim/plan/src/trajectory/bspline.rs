@@ -434,7 +434,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_spline_is_named() {
+    fn numbers_that_make_no_spline_are_named() {
         let points = vec![Vector3::zeros(); 6];
         assert_eq!(BSpline::new(0, 1.0, points.clone()), Err(BSplineError::Degree(0)));
         assert_eq!(BSpline::new(8, 1.0, points.clone()), Err(BSplineError::Degree(8)));

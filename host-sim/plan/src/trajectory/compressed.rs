@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn what_sixteen_bits_do_not_hold_is_named() {
+    fn numbers_beyond_sixteen_bits_are_named() {
         let far = |value: f64, duration_s: f64| {
             let mut piece = Piece { duration_s, coefficients: [[0.0; COEFFICIENTS]; 4] };
             piece.coefficients[1][0] = value;

@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_32_bits_cannot_tell_apart_is_said_with_the_remedy() {
+    fn joints_that_32_bits_cannot_resolve_are_named_with_the_remedy() {
         assert!(checked(&hop(10.0)).is_ok());
         let line = checked(&hop(50_000.0)).unwrap_err().to_string();
         // Between 2^15 and 2^16 a number of 24 bits steps by 2^-8.

@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_recorded_is_not_a_row_of_waypoints() {
+    fn recorded_rows_are_not_waypoints() {
         let kind = |text: &str| recognise(&Table::of(text).unwrap());
         assert_eq!(kind("t,x,y,z\n0,0,0,1\n"), Some(Kind::Waypoints { timed: true }));
         assert_eq!(kind("t,x,y,z,vx,vy,vz\n0,0,0,1,0,0,0\n"), Some(Kind::Samples));

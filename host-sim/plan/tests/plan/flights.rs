@@ -142,7 +142,7 @@ fn rows_of_waypoints_are_plans() {
 }
 
 #[test]
-fn what_is_turned_slowed_and_reversed_is_planned_as_such() {
+fn plans_may_be_turned_slowed_and_reversed() {
     let over = |transform| Overrides { transform, ..Overrides::default() };
     let plan = |transform| {
         let plan = FlightPlan::from_toml(paper::MILD_TOML, &over(transform), &Budget::unlimited()).unwrap();

@@ -126,7 +126,7 @@ fn whole_turns_of_heading_are_taken_off() {
 }
 
 #[test]
-fn what_is_not_a_number_is_refused() {
+fn numbers_that_are_not_finite_are_refused() {
     assert_eq!(PiecewisePolynomial::new(vec![]), Err(PolynomialError::Empty));
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = PiecewisePolynomial::new(vec![line(1.0, 0.0, 0.0), line(value, 0.0, 0.0)]).expect_err("no time");

@@ -191,7 +191,7 @@ fn continuous_pieces() -> impl Strategy<Value = PiecewisePolynomial> {
 
 proptest! {
     #[test]
-    fn what_is_written_reads_back_equal(pieces in continuous_pieces()) {
+    fn written_pieces_read_back_equal(pieces in continuous_pieces()) {
         prop_assert_eq!(csv::parse(&csv::write(&pieces)), Ok(pieces));
     }
 

@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn cases_come_on_top_of_what_a_scenario_says() {
+    fn cases_come_on_top_of_a_scenario() {
         let own = scenario("vehicle = \"crazyflie-2.1\"\n[errors]\nmass_factor = 1.2\ndelay_ms = 3.0\nlag_ms = 80.0\n");
         let varied = CASES.map(|case| (case.name, own.varied(&case).unwrap()));
         let of = |name: &str| &varied.iter().find(|(known, _)| *known == name).unwrap().1;

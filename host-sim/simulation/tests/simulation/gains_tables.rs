@@ -84,7 +84,7 @@ fn the_board_accepts_every_table_for_its_vehicle_and_rate_alone() {
 }
 
 #[test]
-fn what_a_table_promises_is_just_below_what_was_found() {
+fn a_tables_figures_are_just_below_the_computed_ones() {
     for (name, ..) in FILES {
         let (table, document) = file(name);
         let stated = table.head().certificate;

@@ -327,7 +327,7 @@ fn a_piece_is_132_little_endian_bytes() {
 }
 
 #[test]
-fn what_cannot_be_stored_says_why() {
+fn a_trajectory_that_cannot_be_stored_is_refused_by_reason() {
     let many = StoredTrajectory::new(&wavy(5, 32)).unwrap_err();
     assert_eq!(many, StoreError::TooManyPieces(32));
     assert_eq!(many.to_string(), "32 pieces of 132 bytes: the Crazyflie's memory holds 31; fit them with fewer");
@@ -344,7 +344,7 @@ fn what_cannot_be_stored_says_why() {
 }
 
 #[test]
-fn deviations_are_what_was_put_in() {
+fn deviations_are_the_ones_put_in() {
     let hover = |x: f64, slope: f64, heading: f64| {
         let mut coefficients = [[0.0; 8]; 4];
         (coefficients[0][0], coefficients[1][1], coefficients[3][0]) = (x, slope, heading);

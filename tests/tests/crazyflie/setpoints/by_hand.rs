@@ -51,7 +51,7 @@ fn rates_by_hand_have_the_signs_of_angles() {
 }
 
 #[test]
-fn thrust_by_hand_is_a_share_of_what_four_motors_can_do() {
+fn thrust_by_hand_is_a_share_of_the_most_of_four_motors() {
     for name in CRAFTS {
         let mut flight = Flight::of(name, 0, 0.0);
         let share = 1.1 * flight.hover_thrust() / 65_535.0;

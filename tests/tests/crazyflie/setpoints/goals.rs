@@ -32,7 +32,7 @@ fn velocities_turn_with_the_craft_or_not() {
 }
 
 #[test]
-fn level_out_is_flown_whatever_was_flown_before() {
+fn level_out_is_flown_after_any_setpoint() {
     let hover_thrust = Flight::hovering().hover_thrust();
     let tilted = UnitQuaternion::from_euler_angles(0.1_f32, 0.0, 0.0);
     let q = tilted.quaternion();

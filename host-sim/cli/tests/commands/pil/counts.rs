@@ -73,7 +73,7 @@ fn every_part_stays_within_its_bound_when_everything_is_turned_fed_forward_and_l
 }
 
 #[test]
-fn every_call_of_the_crazyflies_stabilizer_stays_within_what_its_own_controllers_take() {
+fn every_call_of_the_crazyflies_stabilizer_stays_within_its_own_controllers_counts() {
     if !has_emulator() {
         return;
     }

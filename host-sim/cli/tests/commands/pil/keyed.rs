@@ -57,7 +57,7 @@ fn is_ack(answer: &FromBoard) -> bool {
 }
 
 #[test]
-fn with_a_key_every_bit_is_as_without_and_the_host_says_what_is_protected() {
+fn with_a_key_every_bit_is_as_without_and_the_host_names_its_protection() {
     if !has_emulator() {
         return;
     }

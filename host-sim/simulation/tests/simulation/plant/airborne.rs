@@ -29,7 +29,7 @@ fn gliding(air: Airflow) -> Craft {
 }
 
 #[test]
-fn what_the_air_takes_is_missing_from_the_energy() {
+fn the_airs_work_is_missing_from_the_energy() {
     let craft = gliding(airflow());
     let (mass_kg, inertia) = (craft.body.mass_kg(), *craft.body.inertia_kg_m2());
     let energy = |x: &RigidState| {

@@ -25,7 +25,7 @@ fn a_craft_that_leans_on_a_wall_is_held_by_it() {
 }
 
 #[test]
-fn friction_holds_what_is_pressed_against_a_wall() {
+fn friction_holds_a_craft_that_is_pressed_against_a_wall() {
     let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     let wall = Wall { point_m: Vector3::new(0.0, 0.0, 2.0), normal: Unit::new_normalize(-Vector3::z()), friction: 0.5 };
     // A ceiling; 1.4 weights of thrust press with 0.4 weights, which hold up to 0.2 g across.
