@@ -1,5 +1,5 @@
-//! The command: thrust and body rates in, the same within the vehicle's limits out, with a report of each limit that
-//! was met.
+//! The command: thrust over mass (m/s^2) and body rates (body frame, rad/s) in, the same within the vehicle's limits out,
+//! with a report of each limit that was met.
 
 use core::fmt;
 use core::hint::cold_path;

@@ -84,7 +84,7 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// How many are floats.
+    /// Number of those that are floats.
     pub const FLOATS: usize = 15;
 
     /// Sets all that are floats.

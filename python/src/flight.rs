@@ -224,7 +224,7 @@ impl Flight {
 
 #[pymethods]
 impl Flight {
-    /// Which law flew.
+    /// The law that flew.
     #[getter]
     fn law(&self) -> &str {
         &self.law

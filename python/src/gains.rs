@@ -155,7 +155,7 @@ impl GainTable {
         self.table.head().name.as_str()
     }
 
-    /// Which law it is for.
+    /// The law that it is for.
     #[getter]
     fn kind(&self) -> String {
         self.table.kind().to_string()

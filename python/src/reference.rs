@@ -31,7 +31,7 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// How many rows there are.
+    /// The number of rows.
     pub(crate) fn len(&self) -> usize {
         self.crafts.unwrap_or(1)
     }

@@ -58,7 +58,7 @@ impl Course {
         Ok(Reference::of_points(times.crafts, &points))
     }
 
-    /// When it ends, s.
+    /// Its end, s.
     #[getter]
     fn duration(&self) -> f64 {
         self.scenario.flown(self.trajectory.clone()).course.duration_s()

@@ -47,7 +47,7 @@ impl State {
         }
     }
 
-    /// How many rows there are.
+    /// The number of rows.
     pub(crate) fn len(&self) -> usize {
         self.crafts.unwrap_or(1)
     }

@@ -19,7 +19,7 @@ const HELD_WAY_M: f32 = 0.15;
 pub(super) const HELD_M_S: f32 = 0.15;
 /// Speed from which on it does, and below which it is at rest, m/s.
 const MOVING_M_S: f32 = 0.25;
-/// Time at rest with a disturbance on its bound after which it is held, s: less than a craft takes to lean against what it has
+/// Time at rest with a disturbance on its bound after which it is held, s: less than a craft takes to lean against the disturbance that it has
 /// learned.
 const HELD_S: f32 = 0.03;
 /// Push along the thrust, at rest, that only the ground gives, m/s^2.

@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-/// How many jerks are kept.
+/// Number of jerks that are kept.
 const KEPT: usize = 8;
 
 /// The last jerks, newest first, dated.

@@ -41,7 +41,7 @@ impl Nonce {
     pub const NONE: Self = Self([0; 16]);
 }
 
-/// Which frames carry a tag.
+/// The frames that carry a tag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Protection {

@@ -38,7 +38,7 @@ pub enum BlobError {
     },
     /// Bytes are left after the last piece.
     BytesLeft {
-        /// How many.
+        /// The number of bytes.
         bytes: u32,
     },
     /// The pieces are no trajectory.

@@ -37,7 +37,7 @@ pub struct Input {
     pub time_s: f64,
     /// Where the craft is, as far as anybody on board knows.
     pub estimate: Estimate,
-    /// Where it should be.
+    /// The setpoint.
     pub setpoint: Setpoint,
     /// Voltage of the battery, V.
     pub battery_v: f64,

@@ -1,3 +1,5 @@
+//! The handover against analytic mixtures: no jump at its ends, equal parts between, the memory of both laws.
+
 use super::*;
 use crate::clock::Rate;
 use crate::command::Limits;

@@ -93,7 +93,7 @@ pub enum TableError {
     NoCertificate,
     /// The certificate leaves no room for any error, or a figure of it is no such figure.
     Uncertified {
-        /// Which.
+        /// The figure.
         figure: Figure,
         /// The value found.
         value: f32,
@@ -119,7 +119,7 @@ pub enum TableError {
     },
     /// A figure that a table of the cascade has beside the head has no sense.
     Cascade {
-        /// Which.
+        /// The figure.
         figure: CascadeFigure,
         /// The value found.
         value: f32,

@@ -27,7 +27,7 @@ pub enum NameError {
     },
     /// A byte that is no printable ASCII character, or one behind the zeros that fill up.
     Character {
-        /// Where, from 0.
+        /// Its position, from 0.
         position: u8,
         /// The byte found.
         byte: u8,

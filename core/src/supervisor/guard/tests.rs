@@ -1,3 +1,5 @@
+//! The guard by its orders: flights that go on, brake, level and switch off, tick by tick.
+
 use nalgebra::Vector3;
 
 use super::super::mode::Tumble;

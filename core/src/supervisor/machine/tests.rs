@@ -1,3 +1,5 @@
+//! The state machine by its verdicts: every reason, its time and the mode after it.
+
 use super::super::mode::Fault;
 use super::*;
 

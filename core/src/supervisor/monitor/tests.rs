@@ -1,3 +1,5 @@
+//! The monitor on spoilt samples: each fault, how long it is bridged, and how far the bridge is from the truth.
+
 use super::*;
 
 const CONFIG: MonitorConfig = MonitorConfig::STANDARD;

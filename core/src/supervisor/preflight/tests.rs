@@ -1,3 +1,5 @@
+//! The checks before arming: each refusal, and a craft that passes.
+
 use super::*;
 use crate::quaternion::Quaternion;
 

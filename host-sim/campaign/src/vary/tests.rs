@@ -1,3 +1,5 @@
+//! Distributions: their draws, their bounds and their refusals.
+
 use super::*;
 
 fn vary(text: &str) -> Result<Vec<Varied>, (String, String)> {

@@ -168,7 +168,7 @@ struct DescribedFlight {
     law: String,
     /// The arithmetic and the rate.
     clock: String,
-    /// Whose limits.
+    /// The limits, in words.
     limits: String,
     duration_s: f64,
     flight: Flight,

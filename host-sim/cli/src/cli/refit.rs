@@ -60,7 +60,8 @@ pub(crate) struct Args {
     /// Write the pieces in Bitcraze's compressed form: control points of 1 mm and 0.1 degrees, in 2 bytes each.
     #[arg(long, value_name = "FILE")]
     compressed: Option<PathBuf>,
-    /// Whose limits the reference is compared with: a vehicle, none, or THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s.
+    /// Limits that the reference is compared with: those of a vehicle, none, or THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2
+    /// and rad/s.
     #[arg(long, value_name = "V", allow_hyphen_values = true, default_value = "crazyflie-2.1")]
     limits: LimitsChoice,
     #[command(flatten)]

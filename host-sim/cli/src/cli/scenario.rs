@@ -37,7 +37,7 @@ pub(crate) struct ScenarioArgs {
     /// Length of a step, m.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     step_m: Option<f64>,
-    /// How long is measured, s.
+    /// Duration of the measured part, s.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     duration_s: Option<f64>,
     /// 100hz, to the jerk and held; or exact, at every step.

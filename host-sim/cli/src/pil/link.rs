@@ -29,7 +29,7 @@ pub struct LinkReport {
 /// Instructions from a frame's first byte to its message, or from a message to its frame.
 #[derive(Clone, Debug, Serialize)]
 pub struct FrameCost {
-    /// Which.
+    /// The frame.
     pub frame: &'static str,
     /// Over a cable.
     pub without_tag: u32,

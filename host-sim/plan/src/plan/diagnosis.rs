@@ -60,7 +60,7 @@ pub enum Limit {
 /// A limit and the least value that would do instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remedy {
-    /// Which one.
+    /// The limit.
     pub limit: Limit,
     /// Its value, SI; 0 for corridors and waypoints.
     pub given: f64,

@@ -19,7 +19,7 @@ pub enum PlanError {
     /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
     #[error("line {line}: {reason}")]
     Syntax {
-        /// Where, from 1.
+        /// The line, from 1.
         line: usize,
         /// The parser's message, in one line.
         reason: String,
@@ -50,7 +50,7 @@ pub enum PlanError {
         "has no time_s: give it, or segment_shares for all, or no times at all to have them found from the bounds"
     })]
     WaypointTime {
-        /// Which one.
+        /// The waypoint.
         waypoint: WaypointName,
         /// Whether both were given.
         twice: bool,
@@ -107,7 +107,7 @@ pub enum PlanError {
     /// Rest and motion at one place.
     #[error("{waypoint}: has a velocity_m_s where the flight rests; leave out the one or the other")]
     MovingStop {
-        /// Which one.
+        /// The waypoint.
         waypoint: WaypointName,
     },
     /// A box that would not be one along the axes any more.
@@ -150,7 +150,7 @@ pub enum PlanError {
     /// A lower bound that is not below its upper one.
     #[error("{field}: lower {lower}, upper {upper}; the lower one must be below")]
     Crossed {
-        /// Which pair.
+        /// The pair.
         field: String,
         /// Lower bound, SI.
         lower: f64,

@@ -52,12 +52,12 @@ pub use file::{FindVehicle, Overrides};
 pub use flight::{FlightPlan, PlannedFlight, PlannedLeg};
 pub use realised::{Extremes, Realised};
 
-/// Where to be at a time.
+/// A position to pass at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Waypoint {
-    /// When, s.
+    /// The time, s.
     pub time_s: f64,
-    /// Where, m, world frame.
+    /// The position, m, world frame.
     pub position_m: Vector3<f64>,
     /// How far off the curve may pass, m; 0 is to be met exactly.
     pub tolerance_m: f64,

@@ -16,7 +16,7 @@ const LARGEST_OBJECTIVE_ENTRY: f64 = 1e4;
 /// Residuals and gap asked of the solver.
 #[derive(Clone, Copy)]
 pub(super) struct Accuracy {
-    /// Where it stops.
+    /// Tolerance at which it stops.
     asked: f64,
     /// Still taken for a solution where rounding ends the progress before that.
     accepted: f64,

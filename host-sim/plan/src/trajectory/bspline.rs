@@ -20,7 +20,7 @@ pub enum BSplineError {
     TooFewControlPoints {
         /// The spline's degree.
         degree: usize,
-        /// How many there are.
+        /// The number found.
         found: usize,
     },
     /// Zero, negative or not a number.
@@ -29,7 +29,7 @@ pub enum BSplineError {
     /// A control point that is not finite.
     #[error("control point {index} (from 0) has the coordinate {value}: must be a finite number of metres")]
     ControlPoint {
-        /// Which one, from 0.
+        /// Its number, from 0.
         index: usize,
         /// The first coordinate that is not finite.
         value: f64,
@@ -37,7 +37,7 @@ pub enum BSplineError {
     /// Another number of control points of the heading than of the position, or one that is not finite.
     #[error("heading_control_points_rad: must be {expected} finite numbers, one for each control point")]
     Heading {
-        /// How many there must be.
+        /// The number required.
         expected: usize,
     },
 }

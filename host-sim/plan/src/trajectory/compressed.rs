@@ -27,7 +27,7 @@ pub enum CompressedError {
          trajectory's origin or fly it by pieces of polynomials", coordinate.unit(), f64::from(i16::MAX) / units(*coordinate)
     )]
     TooFar {
-        /// Which piece, from 1.
+        /// The piece's number, from 1.
         piece: usize,
         /// The coordinate.
         coordinate: Coordinate,
@@ -39,17 +39,17 @@ pub enum CompressedError {
         "piece {piece}: lasts {duration_s} s; the compressed form holds 0.001 to 65.535 s a piece: split or join it"
     )]
     Duration {
-        /// Which piece, from 1.
+        /// The piece's number, from 1.
         piece: usize,
-        /// How long, s.
+        /// Its duration, s.
         duration_s: f64,
     },
     /// Bytes that end within a piece, or go on behind the end.
     #[error("no compressed trajectory: its {length} bytes end within piece {piece}, or go on behind its end")]
     Length {
-        /// How many bytes.
+        /// The number of bytes.
         length: usize,
-        /// Which piece, from 1.
+        /// The piece's number, from 1.
         piece: usize,
     },
     /// Its pieces make no trajectory.

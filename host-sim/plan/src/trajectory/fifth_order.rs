@@ -60,7 +60,7 @@ impl FlatTrajectory for Eight {
 /// Rest at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
-    /// Where, m.
+    /// The position, m.
     pub position_m: Vector3<f64>,
     /// Heading, rad.
     pub heading_rad: f64,
@@ -85,7 +85,7 @@ pub struct Jump {
     pub from_m: Vector3<f64>,
     /// After, m.
     pub to_m: Vector3<f64>,
-    /// When, s.
+    /// The time, s.
     pub at_s: f64,
     /// Length in time, s.
     pub duration_s: f64,

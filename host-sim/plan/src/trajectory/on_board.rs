@@ -15,7 +15,7 @@ pub enum OnBoardError {
          to 1 m{0} on board; move the origin", coordinate.unit()
     )]
     Coarse {
-        /// Which piece.
+        /// The piece's number.
         piece: usize,
         /// The coordinate.
         coordinate: Coordinate,
@@ -27,7 +27,7 @@ pub enum OnBoardError {
     /// Anything else that the board's own check finds.
     #[error("piece {piece}: {reason}")]
     Refused {
-        /// Which piece.
+        /// The piece's number.
         piece: usize,
         /// The fault.
         reason: &'static str,

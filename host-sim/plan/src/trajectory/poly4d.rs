@@ -28,7 +28,7 @@ pub const PIECES_MAX: usize = MEMORY_BYTES / PIECE_BYTES;
 pub struct Poly4d {
     /// Of x, y, z (m/s^k) and heading (rad/s^k); ascending powers of the seconds since the piece began.
     pub coefficients: [[f32; COEFFICIENTS]; 4],
-    /// How long it lasts, s.
+    /// Its duration, s.
     pub duration_s: f32,
 }
 

@@ -20,7 +20,7 @@ pub const COEFFICIENTS: usize = 8;
 
 /// Gap between the end of a piece and the start of the next that is not flown any more, m in position and rad in heading.
 ///
-/// The board refuses a larger step; 1 mm and 0.06 degrees are less than what any quadcopter can hold, so that a larger
+/// The board refuses a larger step; 1 mm and 0.06 degrees are less than any quadcopter can hold, so that a larger
 /// step was not meant to be flown. Files in the wild have 6 decimals: a piece of 1 s then meets its neighbour to `9 *
 /// 0.5e-6` at worst, the public figure8.csv to 1.1e-6; but a piece of 3 s to 1.6e-3, one of 5 s to 5e-2. The reader of
 /// files takes gaps up to that and closes them ([`PiecewisePolynomial::with_roundings`]).
@@ -114,7 +114,7 @@ pub enum PolynomialError {
     /// Zero, negative or not a number.
     #[error("piece {piece}: duration = {value} s; must be positive and finite")]
     Duration {
-        /// Which piece, from 1.
+        /// The piece's number, from 1.
         piece: usize,
         /// Its duration, s.
         value: f64,
@@ -125,11 +125,11 @@ pub enum PolynomialError {
     /// Not a number.
     #[error("piece {piece}: {coordinate}^{power} = {value}; must be a finite number")]
     Coefficient {
-        /// Which piece, from 1.
+        /// The piece's number, from 1.
         piece: usize,
-        /// Which polynomial.
+        /// The polynomial.
         coordinate: Coordinate,
-        /// Which power.
+        /// The power.
         power: usize,
         /// The coefficient.
         value: f64,

@@ -12,9 +12,9 @@ use super::table::{Row, Table, finite, shortened};
 pub struct WaypointRow {
     /// Where in the file, from 1.
     pub line: usize,
-    /// When, s.
+    /// The time, s.
     pub time_s: Option<f64>,
-    /// Where, m.
+    /// The position, m.
     pub position_m: Vector3<f64>,
     /// Heading, rad; turns count.
     pub yaw_rad: Option<f64>,
@@ -30,17 +30,17 @@ pub enum WaypointsError {
     /// A row that is too short or too long.
     #[error("line {line}: {found} columns where {expected} are expected")]
     Ragged {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
-        /// How many columns it has.
+        /// Its number of columns.
         found: usize,
-        /// How many the others have.
+        /// The others' number of columns.
         expected: usize,
     },
     /// A cell that is not a finite number.
     #[error("line {line}: {found:?} is not a finite number; write one such as 0.25")]
     Number {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// The text there, shortened.
         found: String,

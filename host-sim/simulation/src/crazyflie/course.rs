@@ -84,7 +84,7 @@ impl Course {
         if let Self::FigureEight(w) = self { Some(figure_eight(*w, t_s)) } else { None }
     }
 
-    /// Where it is at a time, m.
+    /// Its position at a time, m.
     pub fn position_m(&self, t_s: f64) -> Option<Vector3<f64>> {
         self.at(t_s).map(|[position_m, ..]| position_m)
     }
@@ -94,7 +94,7 @@ impl Course {
         if let Self::Septics(septics) = self { septics.fit_error_m() } else { 0.0 }
     }
 
-    /// How long it is flown, s.
+    /// Its duration, s.
     pub fn duration_s(&self) -> f64 {
         match self {
             Self::Hover(_) | Self::Step(..) => 5.0,

@@ -29,7 +29,7 @@ const COMMANDER_STEPS: u32 = 10;
 /// The firmware's numbers for all of a thrust.
 const FULL: f64 = 65_535.0;
 
-/// How setpoints are sent.
+/// The form in which setpoints are sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Setpoints {
     /// By the high-level commander: position to jerk, and yaw.

@@ -40,7 +40,7 @@ pub struct Case {
     pub noise: Option<Noise>,
     /// Sensors.
     pub sensors: Sensors,
-    /// How setpoints come.
+    /// The form of the setpoints.
     pub setpoints: Setpoints,
 }
 
@@ -59,7 +59,7 @@ impl Case {
     }
 }
 
-/// How a flight went.
+/// The errors of a flight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FlightErrors {
     /// Integral of the position error over time, m s; nothing where the craft was lost.

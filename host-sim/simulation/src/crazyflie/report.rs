@@ -39,7 +39,7 @@ pub struct Row {
     pub case: &'static str,
     /// The motors' true lag, ms.
     pub lag_ms: f64,
-    /// How it went.
+    /// Its errors.
     #[serde(flatten)]
     pub flown: FlightErrors,
 }

@@ -80,7 +80,7 @@ pub struct Row {
     pub vehicle: String,
     /// From its beginning until the supervisor bridges or does something else than flying on, ms; nothing where it never does.
     pub detected_ms: Option<u32>,
-    /// How it ended.
+    /// The supervisor's mode at the end.
     pub end_state: EndState,
     /// From its beginning until the motors are off, ms.
     pub motors_off_ms: Option<u32>,

@@ -57,9 +57,9 @@ pub(super) trait Flown {
 /// Deviations of the craft from the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Craft {
-    /// True mass and inertia over the told ones.
+    /// True mass over the told one.
     pub mass: f64,
-    /// See there.
+    /// True inertia over the told one.
     pub inertia: f64,
     /// True lag of the motors over the known one.
     pub lag: f64,

@@ -30,7 +30,7 @@ pub struct ReferenceCheck {
 /// A demand beyond a limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beyond {
-    /// When, s.
+    /// The time, s.
     pub time_s: f64,
     /// The quantity: thrust, m/s^2, or a body rate, rad/s.
     pub quantity: &'static str,

@@ -19,7 +19,7 @@ use super::table::Table;
 /// A file to be written or compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Artifact {
-    /// Where it belongs.
+    /// Its path.
     pub path: PathBuf,
     /// Its bytes.
     pub contents: Vec<u8>,

@@ -28,7 +28,7 @@ pub struct Checked {
     pub contents: Option<Vec<u8>>,
 }
 
-/// How a file is compared.
+/// The comparison of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Comparison {
     /// Byte for byte.
@@ -194,7 +194,7 @@ fn byte_difference(committed: &[u8], computed: &[u8]) -> Option<String> {
     })
 }
 
-/// How numbers are compared.
+/// The comparison of numbers.
 #[derive(Clone, Copy)]
 enum Rule {
     Figure,

@@ -126,7 +126,7 @@ pub enum TableRows {
 }
 
 impl Gains {
-    /// Which table it makes.
+    /// The kind of its table.
     pub fn kind(&self) -> TableKind {
         match self {
             Self::Equilibrium(_) => TableKind::Equilibrium,

@@ -43,7 +43,7 @@ pub enum GainsError {
         key: String,
         /// The entry that needs it.
         with: String,
-        /// How it is written.
+        /// An example of the entry.
         example: &'static str,
     },
     /// A key that means nothing here.
@@ -53,7 +53,7 @@ pub enum GainsError {
         key: String,
         /// Its value.
         value: String,
-        /// Where it is written.
+        /// The entry that states it.
         with: String,
     },
     /// The file's name is no name for a table.
@@ -92,7 +92,7 @@ pub enum GainsError {
     Region {
         /// The largest spectral radius.
         spectral_radius: f64,
-        /// Where.
+        /// The least stable point.
         worst: quatrack_design::certify::Variation,
     },
     /// The loop of the cascade is not stable all over the region that the design asks for.
@@ -101,11 +101,11 @@ pub enum GainsError {
          change motor_lag_ms, lower the weights or narrow [region]"
     )]
     CascadeRegion {
-        /// Which chain.
+        /// The chain.
         chain: CascadeChain,
         /// The largest spectral radius.
         spectral_radius: f64,
-        /// Where.
+        /// The least stable point.
         worst: Box<CascadeVariation>,
     },
     /// The core would refuse the table.

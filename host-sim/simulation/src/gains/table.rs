@@ -96,7 +96,7 @@ impl Table {
         &self.head
     }
 
-    /// Which law it is for.
+    /// The law that it is for.
     pub fn kind(&self) -> TableKind {
         self.kind
     }

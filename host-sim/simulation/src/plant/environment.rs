@@ -133,7 +133,7 @@ pub struct Truth {
     pub rise_lag_s: f64,
     /// Of one that falls, s.
     pub fall_lag_s: f64,
-    /// How late commands act, s.
+    /// Delay of the commands, s.
     pub delay_s: f64,
     /// Thrust over the commanded one at the start.
     pub thrust_factor: f64,

@@ -1,4 +1,5 @@
-//! The cushion of air below a rotor near the ground.
+//! Ground effect, by Cheeseman and Bennett: height of each rotor over the floor in; the additional thrust of each rotor,
+//! as force and torque on the craft, out.
 
 use nalgebra::Vector3;
 

@@ -283,7 +283,7 @@ impl Plant {
         })
     }
 
-    /// Where it is.
+    /// Its state.
     pub fn state(&self) -> &RigidState {
         &self.state
     }

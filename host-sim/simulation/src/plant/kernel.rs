@@ -154,7 +154,7 @@ impl SideBySide {
         }
     }
 
-    /// Where a lane is.
+    /// Sets the state of a lane.
     pub(super) fn put_state(&mut self, lane: usize, state: &RigidState) {
         let x = <[f64; 17]>::from(state.to_vector());
         self.state.iter_mut().zip(x).for_each(|(row, value)| row[lane] = value);

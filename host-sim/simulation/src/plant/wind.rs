@@ -14,11 +14,11 @@ const PERIOD_S: f64 = 0.002;
 pub struct Gust {
     /// At its height, world frame, m/s.
     pub peak_m_s: Vector3<f64>,
-    /// When it begins, s.
+    /// Its beginning, s.
     pub from_s: f64,
     /// How long it rises, and how long it falls, s.
     pub rise_s: f64,
-    /// How long it stays, s.
+    /// Time at its full strength, s.
     pub stay_s: f64,
 }
 

@@ -12,7 +12,7 @@ pub const SCHEMA: &str = "quatrack/compare/1";
 /// One law's flight.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Which law.
+    /// The law.
     pub law: String,
     /// Sum of the position error's norm over samples of 10 ms, times 10 ms, m s; nothing for a flight that was lost.
     pub iae_m_s: Option<f64>,

@@ -15,7 +15,7 @@ pub enum ScenarioError {
     /// The file cannot be read.
     #[error("{}: cannot be read ({reason})", path.display())]
     Unreadable {
-        /// Which file.
+        /// The file.
         path: PathBuf,
         /// The system's message.
         reason: String,
@@ -23,9 +23,9 @@ pub enum ScenarioError {
     /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
     #[error("{origin}, line {line}, `{text}`: {reason}")]
     Syntax {
-        /// Whose it is.
+        /// The file or flag that it is of.
         origin: String,
-        /// Where, from 1.
+        /// The line, from 1.
         line: usize,
         /// The text there.
         text: String,
@@ -35,7 +35,7 @@ pub enum ScenarioError {
     /// A value without sense.
     #[error("{origin}: {key} = {value}: must be {must}")]
     Value {
-        /// Whose it is.
+        /// The file or flag that it is of.
         origin: String,
         /// The key with its table.
         key: &'static str,
@@ -47,7 +47,7 @@ pub enum ScenarioError {
     /// A vehicle or a trajectory that cannot be had.
     #[error("{origin}: {key}: {reason}")]
     Named {
-        /// Whose it is.
+        /// The file or flag that it is of.
         origin: String,
         /// The key.
         key: &'static str,
@@ -57,9 +57,9 @@ pub enum ScenarioError {
     /// A figure of the plant that is out of range.
     #[error("{origin}: {error}")]
     Plant {
-        /// Whose it is.
+        /// The file or flag that it is of.
         origin: String,
-        /// Which, and the remedy.
+        /// The fault, and the remedy.
         #[source]
         error: PlantError,
     },

@@ -31,11 +31,11 @@ pub struct ScenarioFile {
     pub speed_m_s: Option<f64>,
     /// Length of a step, m.
     pub step_m: Option<f64>,
-    /// How long is measured, s.
+    /// Duration of the measured part, s.
     pub duration_s: Option<f64>,
-    /// Whose law.
+    /// The law that flies.
     pub law: Option<Law>,
-    /// Whose laws, where a campaign flies several.
+    /// The laws, where a campaign flies several.
     pub laws: Option<Vec<Law>>,
     /// 100hz or exact.
     pub setpoints: Option<Setpoints>,
@@ -57,7 +57,7 @@ pub struct ScenarioFile {
     /// The estimator's, where it is a filter.
     #[serde(default)]
     pub filter: Filter,
-    /// Where the craft begins.
+    /// The start of the craft.
     #[serde(default)]
     pub start: Start,
     /// The motors' supply.
@@ -91,7 +91,7 @@ pub enum Air {
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct OwnAir {
-    /// Whose figures these go over; vacuum's where absent.
+    /// The air that these figures go over; vacuum where absent.
     pub of: Option<AirOf>,
     /// Linear drag over mass along body x, y, z, 1/s.
     pub drag_per_s: Option<[f64; 3]>,
@@ -103,7 +103,7 @@ pub struct OwnAir {
     pub gust_rms_m_s: Option<f64>,
 }
 
-/// Whose air.
+/// The air that figures go over.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub enum AirOf {

@@ -15,7 +15,7 @@ use crate::plant::{Plant, PlantGroup, RigidState};
 /// Farther than this from its course a craft counts as lost, m.
 const LOST_M: f64 = 5.0;
 
-/// How setpoints come.
+/// The form of the setpoints.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 pub enum Setpoints {
     /// At 100 Hz to the jerk, as from the Crazyflie's high-level commander; held in between.
@@ -31,7 +31,7 @@ pub enum Setpoints {
 pub struct Bench<'a> {
     /// The course.
     pub flown: &'a Flown,
-    /// How setpoints come.
+    /// The form of the setpoints.
     pub setpoints: Setpoints,
     /// The estimate.
     pub estimation: Estimation,

@@ -66,7 +66,7 @@ pub struct Tally {
     pub max_error_m: f64,
     /// Control steps with a motor at its limit.
     pub saturated_steps: u64,
-    /// When and why it was lost.
+    /// Time and reason of its loss.
     pub lost: Option<Lost>,
 }
 

@@ -72,9 +72,9 @@ pub enum LawError {
          vehicle's; of a vehicle file its own, and `quatrack gains craft` names the fault"
     )]
     NoTable {
-        /// Which law.
+        /// The law.
         law: &'static str,
-        /// Whose name.
+        /// The law's name.
         vehicle: String,
         /// The mass that it was told, kg.
         mass_kg: f64,
@@ -82,9 +82,9 @@ pub enum LawError {
     /// The core flies no such vehicle.
     #[error("{law} on {vehicle}: {error}")]
     Core {
-        /// Which law.
+        /// The law.
         law: &'static str,
-        /// Whose name.
+        /// The law's name.
         vehicle: String,
         /// Why not.
         #[source]

@@ -1,4 +1,4 @@
-//! A law that has been designed once, for any number of flights.
+//! A law that is designed once for many flights: a campaign flies copies of it, and solves no equation twice.
 
 use quatrack_design::vehicle::Vehicle;
 
@@ -59,7 +59,7 @@ impl Prototype {
         self
     }
 
-    /// Which law.
+    /// The law.
     pub fn law(&self) -> Law {
         self.law
     }

@@ -73,7 +73,7 @@ pub struct Scenario {
     pub course: CourseChoice,
     /// How long is measured, s; a trajectory's own length where absent.
     pub duration_s: Option<f64>,
-    /// Whose law.
+    /// The law that flies.
     pub law: Law,
     /// How a law is told of the course.
     pub setpoints: Setpoints,
@@ -85,7 +85,7 @@ pub struct Scenario {
     pub environment: Environment,
     /// The figures of the true craft.
     pub truth: Truth,
-    /// Of the gyroscope, rad/s.
+    /// Bias of the gyroscope, rad/s.
     pub gyro_bias_rad_s: Vector3<f64>,
     /// Of the accelerometer, m/s^2.
     pub accelerometer_bias_m_s2: Vector3<f64>,
@@ -93,7 +93,7 @@ pub struct Scenario {
     pub told: ToldFigures,
     /// Standard deviations of a sample.
     pub noise: SensorNoise,
-    /// Of the filter.
+    /// The figures of the filter.
     pub filter: FilterFigures,
     /// Where the craft begins beside its course.
     pub start: StartOffset,
@@ -107,7 +107,7 @@ pub struct Side<'a> {
     pub flown: &'a Flown,
     /// The same, evaluated.
     pub track: &'a Track,
-    /// At its start.
+    /// The law, at its start.
     pub law: Box<dyn ControlLaw>,
 }
 

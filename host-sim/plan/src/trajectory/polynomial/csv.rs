@@ -24,9 +24,9 @@ pub enum CsvError {
         y^7, z^0 to z^7 and yaw^0 to yaw^7, each once"
     )]
     Header {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
-        /// Which column.
+        /// The column.
         column: usize,
         /// The text there.
         found: String,
@@ -34,7 +34,7 @@ pub enum CsvError {
     /// A header without a column that must be there.
     #[error("line {line}: the header has no {missing}; only yaw and the higher powers may be left out, and are 0 then")]
     Missing {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// The column.
         missing: String,
@@ -47,7 +47,7 @@ pub enum CsvError {
         }
     )]
     Degree {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// The degree.
         degree: usize,
@@ -60,7 +60,7 @@ pub enum CsvError {
         "; if its numbers have decimal commas, separate the columns by semicolons"
     } else { "" })]
     Columns {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// How many columns it has, trailing separators not counted.
         found: usize,
@@ -70,17 +70,17 @@ pub enum CsvError {
     /// A row with another number of columns than the header.
     #[error("line {line}: {found} columns where the header has {expected}")]
     Ragged {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
-        /// How many columns it has.
+        /// Its number of columns.
         found: usize,
-        /// How many the header has.
+        /// The header's number of columns.
         expected: usize,
     },
     /// A cell that is not a finite number.
     #[error("line {line}, {column}: {found:?} is not a finite number; write one such as 0.25")]
     Number {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// Name of the column.
         column: String,
@@ -90,7 +90,7 @@ pub enum CsvError {
     /// A duration that is zero or negative.
     #[error("line {line}, duration: {value} s; must be positive: remove the row or correct it")]
     Duration {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// The duration, s.
         value: f64,
