@@ -22,7 +22,7 @@ pub(super) fn between(value: f32, least: f32, most: f32) -> f32 {
     if below < least { least } else { below }
 }
 
-/// Whether a number is beyond a bound either way, or no number.
+/// Whether a number is beyond a bound either way, or NaN.
 #[inline(always)]
 pub(super) fn is_beyond(value: f32, bound: f32) -> bool {
     let is_within = value.abs() <= bound;

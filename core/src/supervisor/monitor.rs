@@ -3,7 +3,7 @@
 //!
 //! A step with a sound estimate costs a few comparisons. A part that is not sound is replaced by the last sound one,
 //! carried on: attitude by the gyroscope, velocity and position by the accelerometer, or by the thrust that the motors
-//! should give where there is none. Each part is looked at by itself, so that a position that is no number takes nothing
+//! should give where there is none. Each part is looked at by itself, so that a position that is NaN takes nothing
 //! from a good attitude.
 
 use nalgebra::Vector3;

@@ -236,7 +236,7 @@ fn a_law_without_an_input_is_refused_by_its_name_and_remembers_nothing_of_it() {
         assert_eq!(controller.step_to_motors(&mut memory, measured, target), Err(error));
         assert_eq!(memory, before);
     }
-    // A rate that is no number is named on either way; one so large that the torque is none is told as that.
+    // A rate that is NaN is named on either way; one so large that the torque is none is told as that.
     for controller in [&to_forces, &carried] {
         let turned = Vector3::new(0.0, f32::NAN, 0.0);
         let measured = Measured::new(&state).with_body_rates(&turned);

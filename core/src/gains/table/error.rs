@@ -105,7 +105,7 @@ pub enum TableError {
     },
     /// Gains over time whose knots are no control step apart.
     KnotSpacing,
-    /// The motor lag that a table was designed for is shorter than two control periods, longer than certified, or no number.
+    /// The motor lag that a table was designed for is shorter than two control periods, longer than certified, or NaN.
     MotorLag {
         /// The value found, s.
         lag_s: f32,

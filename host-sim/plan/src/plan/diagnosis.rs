@@ -253,7 +253,7 @@ fn enough(plan: &Plan, limit: Limit, budget: &Budget<'_>) -> Option<f64> {
     Some(least)
 }
 
-/// The curve with the least slack in the limits given, which are weighed by their size.
+/// The curve with the least slack in the limits given, each slack over the size of its limit.
 fn relaxed(plan: &Plan, limits: &[Limit], budget: &Budget<'_>) -> Option<BSpline> {
     let origin_m = plan.waypoints().first()?.position_m;
     if origin_m != Vector3::zeros() {

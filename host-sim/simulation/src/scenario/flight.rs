@@ -135,7 +135,7 @@ impl<'a> Flying<'a> {
             }
             (self.told.time_s, self.told.battery_v) = (time_s, plant.voltage_v());
             match self.law.step(&self.told) {
-                // Times 0 each is 0 or no number.
+                // Times 0 each is 0 or NaN.
                 Ok(asked_n) if (asked_n * 0.0).sum() == 0.0 => self.commands_n = asked_n,
                 Ok(_) => return self.lose(step, "a force that is not finite".to_owned(), plant, keep),
                 Err(reason) => return self.lose(step, reason, plant, keep),
