@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: the attitude filters of one package, fed the same accelerometer and gyro, give the same rotation, if not
 # equally well.
-# What happens: level and turning about z at 1 rad/s for 1 s, with exact data, Madgwick, Mahony and EKF end at 57.3
+# Observed: level and turning about z at 1 rad/s for 1 s, with exact data, Madgwick, Mahony and EKF end at 57.3
 # degrees, AQUA at -57.3, Complementary at 0, UKF at 49. Held still at a roll of 20 degrees, AQUA gives -20 and the
 # others 20: its quaternion takes the world to the body where theirs takes the body to the world, and Complementary
 # without a magnetometer never turns in yaw.

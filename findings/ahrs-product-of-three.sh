@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Guess: with a class for quaternions, yaw * pitch * roll is the product of the three.
-# What happens: the product of two Quaternions of ahrs is right and is a plain array. The third factor is therefore
+# Observed: the product of two Quaternions of ahrs is right and is a plain array. The third factor is therefore
 # multiplied entry by entry: 30, 20 and 10 degrees become (0.948, -0.004, 0, 0), of length 0.948, with no error. yaw *
 # (pitch * roll) is right, and so is wrapping each product in Quaternion again.
-# Why it matters: a chain of frames (room, craft, sensor) is three factors. What comes out looks like a quaternion
+# Why it matters: a chain of frames (room, craft, sensor) is three factors. The result looks like a quaternion
 # near level, and a normalisation on the way makes it one.
 set -euo pipefail
 dir=$(mktemp -d)

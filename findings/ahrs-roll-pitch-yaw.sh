@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: one package has one meaning of rpy, roll first, and a rotation matrix that it turns into a quaternion is the
 # same rotation.
-# What happens: Quaternion(rpy=(10, 20, 30) degrees) rolls by 10 and yaws by 30. DCM(rpy=..) of the same three rolls
+# Observed: Quaternion(rpy=(10, 20, 30) degrees) rolls by 10 and yaws by 30. DCM(rpy=..) of the same three rolls
 # by 30 and yaws by 10, in spite of its own 'Array with roll->pitch->yaw angles'; an example further down reverses
 # them. Of the five methods of DCM.to_quaternion three (chiaverini, sarabandi, hughes) turn a half turn about (1, -1,
 # 0) into a rotation 180 degrees away; at 179.9 degrees all are right.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Guess: two Python libraries for one craft give one meaning to the same call.
-# What happens: aiocflib's hover, velocity and height setpoints use the packet types whose yaw rate the firmware turns
+# Observed: aiocflib's hover, velocity and height setpoints use the packet types whose yaw rate the firmware turns
 # round, and do not turn it: +30 degrees/s turns the craft clockwise, with cflib (same packet type for old firmware,
 # and the new ones) counter-clockwise. go_to takes degrees (cflib: radians); takeoff without a yaw keeps the heading
 # (cflib: turns to 0). A log variable fetched as fp16 comes as its bits, 1.0 as 15360 (cflib: 1.0).

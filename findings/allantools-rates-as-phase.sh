@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: oadev(rates, rate=200) of a gyro's log gives the Allan deviation of those rates, from which the noise density
 # is read at 1 s.
-# What happens: the default says that the data are phases, the integral of the rates. White noise of 0.0001 rad/s per
+# Observed: the default says that the data are phases, the integral of the rates. White noise of 0.0001 rad/s per
 # root hertz, sampled at 200 Hz, reads as 0.0025 at 1 s, 25 times too much, and falls with the time instead of its
 # root. data_type='freq' gives 0.0001. Times that are no multiple of the sample time are cut to one: 0.1017 s becomes
 # 0.1, which the returned times say and the asked ones do not.

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Guess: a PID controller whose derivative_filter_hz is 30, as it is by default, lets 0.71 of a sine's derivative
 # through at 30 Hz.
-# What happens: 0.16. Its 0.71 is at 4.8 Hz: the factor of 2 pi between a frequency and the gain per step, time step
+# Observed: 0.16. Its 0.71 is at 4.8 Hz: the factor of 2 pi between a frequency and the gain per step, time step
 # times frequency, is left out. From a rate of 30 Hz downwards, the factor is 1 and nothing is filtered. A step of the
 # setpoint goes into the derivative as well, since it is that of the error.
 # Why it matters: the derivative is there for its phase, and at 10 Hz, where an attitude loop needs it, it has 46
-# degrees less than planned. A gain found in this simulation is too large for a loop whose filter is what it says.
+# degrees less than planned. A gain found in this simulation is too large for a loop whose filter has the stated
+# frequency.
 set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a Butterworth low-pass asked for 80 Hz at a sample rate of 1 kHz lets 0.71 of a sine of 80 Hz through, and
 # the next version of the same crate, called in the same way, does too.
-# What happens: 0.4.2 does. 0.5.0 lets 0.06 through; its 0.71 is at 20 Hz, a quarter of what was asked, and so for a
+# Observed: 0.4.2 does. 0.5.0 lets 0.06 through; its 0.71 is at 20 Hz, a quarter of the one asked for, and so for a
 # notch, which takes out 20 Hz and leaves the 80 Hz that it was set on. from_params divides the cutoff by twice the
 # sample rate where it should multiply by two. A cutoff above half the sample rate is no longer refused: up to twice
 # the rate is taken.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Guess: a second-order low-pass in single precision passes a constant as it is; that is what a low-pass is for. A
+# Guess: a second-order low-pass in single precision passes a constant as it is; a low-pass is for that. A
 # cutoff that is too low for the precision is refused, as one that is too high is.
-# What happens: at 8 kHz a cutoff of 2 Hz makes 10.4 of a constant 9.81, 1 Hz 8.7 and 0.5 Hz 15.9, or 10.0, 10.2 and
+# Observed: at 8 kHz a cutoff of 2 Hz makes 10.4 of a constant 9.81, 1 Hz 8.7 and 0.5 Hz 15.9, or 10.0, 10.2 and
 # 8.0 in the filter's other form; at 0.25 Hz the output is 0 for ever. The numerator is a difference of 1 and a
 # cosine, of which single precision leaves a few steps or none. With f64 all are right. (0.5.0 has the same, from four
 # times the frequency: its cutoffs are a quarter.)

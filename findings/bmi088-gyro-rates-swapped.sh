@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: set_bandwidth(2000) of the driver makes the BMI088's gyro give 2000 samples per second and anything below it
 # 1000; set_range takes the range that is meant or refuses it.
-# What happens: the two are the other way round. Asked for 2000 it writes 2, which is 1000 Hz and a filter of 116 Hz
+# Observed: the two are the other way round. Asked for 2000 it writes 2, which is 1000 Hz and a filter of 116 Hz
 # by the data sheet (register 0x10), and asked for 1000, which setup does by itself, it writes 1: 2000 Hz and 230 Hz.
 # Any range below 2000 degrees/s, 125 too, becomes 1000 without a word, and the readings are raw integers.
 # Why it matters: a rate loop that reads at 2 kHz gets each sample twice, with twice the delay of the filter that it

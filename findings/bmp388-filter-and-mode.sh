@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Guess: set_filter(Filter::c3) of the driver sets the barometer's filter to the coefficient 3, and power_control()
 # says whether the sensor sleeps.
-# What happens: the filter's three bits are 1 to 3 of the register 0x1F (data sheet), and the driver writes them to 0
-# to 2: c1 is no filter, c3 is 1, c127 is 7. It reads them back from where it wrote them, and so says what was asked.
+# Observed: the filter's three bits are 1 to 3 of the register 0x1F (data sheet), and the driver writes them to 0
+# to 2: c1 is no filter, c3 is 1, c127 is 7. It reads them back from where it wrote them, and so repeats the request.
 # power_control() takes the bits that enable the two sensors for the mode: of a sensor that sleeps with both enabled
 # it says Normal.
 # Why it matters: pressure noise of a height hold is judged with a filter that is two steps weaker than it is called,

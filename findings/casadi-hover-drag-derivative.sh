@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Guess: the Jacobian of a quadratic drag, |v| v, is zero at rest: the force goes with the square of the speed.
-# What happens: CasADi's is NaN in all nine entries at v = 0, with norm_2 as with the root of sumsqr, in SX and in MX,
+# Observed: CasADi's is NaN in all nine entries at v = 0, with norm_2 as with the root of sumsqr, in SX and in MX,
 # and right from 1e-9 m/s on. In one dimension fabs(v) * v is right at 0 too, and so is the root within
 # if_else(sumsqr(v) > 0, .., 0).
 # Why it matters: hover is where a quadcopter's model is linearised, and the guess from which its trajectory

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a table that is asked beyond its last point holds its end, goes on as it was going, or complains, and does so
 # alike for both kinds of interpolation that one function offers.
-# What happens: casadi.interpolant of a thrust curve with linear goes on in a straight line, on both sides and without
+# Observed: casadi.interpolant of a thrust curve with linear goes on in a straight line, on both sides and without
 # bound: 14 one step beyond its last point of 9. With bspline it is 0 on both sides, with a jump at the last point,
 # from 9 to nothing. No word by either.
 # Why it matters: a motor's thrust over its command, or a rotor's coefficient over its advance ratio, is such a table.

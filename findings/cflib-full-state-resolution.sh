@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: send_full_state_setpoint carries body rates in degrees/s, as its documentation says, and rounds the rest to a
 # millimetre and the attitude to something that does not matter.
-# What happens: rates are multiplied by 1000 into 16 bits, so that 33 degrees/s raises struct.error: the firmware
+# Observed: rates are multiplied by 1000 into 16 bits, so that 33 degrees/s raises struct.error: the firmware
 # reads milliradians/s, and only radians/s fit (30 meant as degrees/s is flown as 30 rad/s). Lengths are cut toward
 # zero, not rounded: 2.01 m goes out as 2.009 m, and -0.9 mm as 0. The attitude has steps of 0.16 degrees: a tilt of
 # 0.05 degrees is sent as exactly level, one of 0.1 as 0.159.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: fp16_to_float, which cflib decodes Lighthouse angles with, agrees with the half-precision numbers of IEEE 754
 # (Python's struct has them as 'e').
-# What happens: it does for all numbers but one: minus zero comes out as 2147483648. Both infinities come out as
+# Observed: it does for all numbers but one: minus zero comes out as 2147483648. Both infinities come out as
 # integers of billions, and NaN as another integer.
 # Why it matters: the angle streams send small differences between four sensors in this format. A difference that is a
 # hair below zero rounds to minus zero in it, and the sensor's angle is then two billion radians. A filter on finite

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a heading has one unit throughout cflib, and a take-off or a go-to that names none keeps the one the craft
 # has.
-# What happens: the low-level send_position_setpoint takes degrees, the high-level go_to radians, so go_to(.., 90, ..)
+# Observed: the low-level send_position_setpoint takes degrees, the high-level go_to radians, so go_to(.., 90, ..)
 # asks for 14.3 turns. takeoff() and land() without a yaw turn the craft to yaw 0 (None keeps it). PositionHlCommander
 # has no heading at all: each of its go_to and forward sends yaw 0, forward means along the room's x, and its take-off
 # turns to 0 as well.

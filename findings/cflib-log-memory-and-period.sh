@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Guess: LogConfig logs a raw memory address as its add_memory says, and at the period that it was given.
-# What happens: a block with add_memory dies in create() with TypeError before anything is sent: bytes are appended
+# Observed: a block with add_memory dies in create() with TypeError before anything is sent: bytes are appended
 # where an integer is wanted. Periods are cut to whole 10 ms without a word: 15 ms becomes 10, 19 ms becomes 10, 25 ms
-# becomes 20, while period_in_ms keeps saying what was asked. 9 ms becomes 0.
-# Why it matters: who identifies a motor's lag from a log takes the period for the sample time. 15 for 10 stretches
+# becomes 20, while period_in_ms keeps the requested value. 9 ms becomes 0.
+# Why it matters: an identification of a motor's lag from a log takes the period for the sample time. 15 for 10 stretches
 # the time axis by half, and every rate, lag and drag with it. Take the craft's own timestamps.
 set -euo pipefail
 dir=$(mktemp -d)

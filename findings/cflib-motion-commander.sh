@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Guess: MotionCommander.take_off lifts the craft from where it is and leaves the position estimate alone.
-# What happens: it resets the Kalman filter first and waits 2.1 s, so that with a motion capture system or Lighthouse
+# Observed: it resets the Kalman filter first and waits 2.1 s, so that with a motion capture system or Lighthouse
 # position and heading are found anew while the propellers are about to start. Its heights count from 0 wherever the
 # craft is: up(0.3) from a table of 0.7 m asks for 0.3 m. turn_left(90) is a rate for 1.25 s, with nothing that looks
 # at the heading.

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Guess: cflib's attitude setpoints take one sign of pitch, and 0 % of thrust stops the motors.
-# What happens: send_setpoint and send_setpoint_manual put the pitch on the air with its sign turned,
+# Observed: send_setpoint and send_setpoint_manual put the pitch on the air with its sign turned,
 # send_zdistance_setpoint as it was given: the same angle tilts the craft forwards by one call and backwards by
 # another. 0 % of send_setpoint_manual is 10001 of 65535, 15 % of thrust, and 100 % is 60000: no percentage turns the
 # motors off and none gives all of it.
-# Why it matters: who tests a controller by hand with these calls reads a right answer as a wrong sign, and who lands
+# Why it matters: a test of a controller by hand with these calls reads a right answer as a wrong sign, and a landing
 # by 0 % leaves four propellers turning.
 set -euo pipefail
 dir=$(mktemp -d)
@@ -24,7 +24,7 @@ class Platform:
 
 
 class Craft:
-    """Keeps what would go to the radio."""
+    """Keeps the packets that would go to the radio."""
     platform = Platform()
 
     def send_packet(self, packet):

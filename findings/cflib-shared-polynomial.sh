@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Guess: a Poly4D made with its x alone has three more polynomials of its own, all zero.
-# What happens: the default list of Poly's eight coefficients is one object for all. A height written into z.values
+# Observed: the default list of Poly's eight coefficients is one object for all. A height written into z.values
 # appears in y and yaw, and in every piece that is made later without coefficients: the craft is told to climb to 1 m,
 # to fly 1 m to its left and to turn by 1 rad.
-# Why it matters: filling a trajectory piece by piece is what every exporter does, and nothing on the way to the
+# Why it matters: filling a trajectory piece by piece is the way of every exporter, and nothing on the way to the
 # firmware notices.
 set -euo pipefail
 dir=$(mktemp -d)

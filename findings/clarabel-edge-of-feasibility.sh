@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Guess: an interior-point solver calls a small, well-scaled problem solved or infeasible, and what is minimised has
+# Guess: an interior-point solver calls a small, well-scaled problem solved or infeasible, and the objective has
 # no say in whether there is a solution.
-# What happens: a cart is moved to rest over a distance under a bound on its acceleration, 40 unknowns. Up to the
+# Observed: a cart is moved to rest over a distance under a bound on its acceleration, 40 unknowns. Up to the
 # largest distance that is possible Clarabel is done after ten iterations. From 1e-8 to 1e-6 beyond it, relative, it
 # gives no verdict: 200 iterations, MaxIterations. At 1e-5 the answer depends on the objective: infeasible when jumps
 # of the acceleration are minimised, none when its square is.

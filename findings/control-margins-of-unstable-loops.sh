@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: margins that are large, or infinite, belong to a loop that is stable, and a loop that is not gets negative
 # ones, none, or a warning.
-# What happens: for 0.5/(s - 1) with unit feedback, whose closed loop has a pole at +0.5, margin gives a gain margin
+# Observed: for 0.5/(s - 1) with unit feedback, whose closed loop has a pole at +0.5, margin gives a gain margin
 # of 2 and an infinite phase margin, for 0.001/(s - 1) a gain margin of 1000. disk_margins gives 6 dB and 37 degrees
 # for the first, a good loop by any specification, and 60 dB for the second. A loop that is unstable by too much gain
 # gets a gain margin of 0.6 and a phase margin of -13 degrees from the one, and positive margins from the other.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a Crazyflie that starts at rest on its setpoint, one metre up, with its motors' model and controller from one
 # package, stays there.
-# What happens: the motors start at 0 rpm, so that it falls at once: 5 cm with the Brushless, 47 cm with the 2.x
+# Observed: the motors start at 0 rpm, so that it falls at once: 5 cm with the Brushless, 47 cm with the 2.x
 # before it is caught. It does not come back to 1 m: after 3 s it is at 1.09 m (Brushless), 0.98 m (2.x), 1.05 m
 # (upgrade kit), since the position controller's mass and thrust scale are not the model's and its integrator is
 # bounded.

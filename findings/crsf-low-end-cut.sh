@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: the channels of a receiver, in microseconds, are symmetric about the middle of 1500: full deflection is 988
 # one way and 2012 the other, as CRSF defines its 172 and 1811, and throttles and trims below 1000 are told apart.
-# What happens: the default mapping gives 1000 for 172, for 191 and for 0, and 2012 for 1811 and 2159 for 2047: the
+# Observed: the default mapping gives 1000 for 172, for 191 and for 0, and 2012 for 1811 and 2159 for 2047: the
 # low end is cut and the high end is not.
 # Why it matters: a rate command scaled by the deflection is 2.4 % weaker to the left than to the right at full stick.
 # A receiver's failsafe that is set below 1000, as a value that no stick gives, cannot be told from the stick's end.

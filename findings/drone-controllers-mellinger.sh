@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a Mellinger controller that is told to hold its place at rest commands the weight of its own craft, and one
 # drone of a batch does not feel the others.
-# What happens: at rest on its setpoint it commands 0.97 times the weight of the mass in its own parameters for the
+# Observed: at rest on its setpoint it commands 0.97 times the weight of the mass in its own parameters for the
 # 2.x, 1.45 for the craft with the thrust upgrade and 1.61 for the Brushless: a factor of the 2.x's firmware converts
 # newtons to PWM for all of them. A drone that is told no thrust keeps its motors off alone; beside one that flies in
 # the same batch they turn at four times the speed, and its force becomes 0.05 to 0.09 N, because the test for a stop

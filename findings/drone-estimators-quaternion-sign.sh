@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: q and -q are one attitude, and a filter that is fed poses of a motion capture system does not care which of
 # them it gets.
-# What happens: the unscented filter of the package does not. The extended one, with the same call, hovering with a
+# Observed: the unscented filter of the package does not. The extended one, with the same call, hovering with a
 # heading of 90 degrees and told the same pose with the sign of its quaternion turned, drifts away: 28 degrees of
 # heading after 50 ms, 74 after 0.5 s, with a body rate of 10 rad/s that nobody flies. It subtracts the quaternions.
 # Why it matters: motion capture systems change the sign in flight, at 180 degrees of rotation or whenever a marker

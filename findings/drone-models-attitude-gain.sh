@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Guess: the fitted attitude models (so_rpy and its two relatives) end at the roll, pitch and yaw that they are told.
-# What happens: the coefficient of the command is not that of the angle. Told 0.2 rad of roll they settle at 0.146 to
+# Observed: the coefficient of the command is not that of the angle. Told 0.2 rad of roll they settle at 0.146 to
 # 0.165 rad, told 0.2 rad of yaw at 0.29 to 0.35 rad.
-# Why it matters: these models stand in for the Crazyflie in learning and MPC packages. A yaw loop around one has 1.4
+# Why it matters: these models are used for the Crazyflie in learning and MPC packages. A yaw loop around one has 1.4
 # to 1.8 times the gain that its author thinks it has, and a roll offset that no trim explains.
 set -euo pipefail
 dir=$(mktemp -d)

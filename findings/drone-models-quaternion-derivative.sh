@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: the derivative of the quaternion that a model returns beside its other derivatives is that of its quaternion, x y
 # z w, at its body rates: integrated, it turns the craft as the body rates do.
-# What happens: it is the derivative of a quaternion whose scalar part comes first, of the same four numbers, in NumPy and
+# Observed: it is the derivative of a quaternion whose scalar part comes first, of the same four numbers, in NumPy and
 # in CasADi. At the identity a roll rate of 1 rad/s gives (0, 0, 0.5, 0) instead of (0.5, 0, 0, 0): it turns about z. A pitch rate
 # gives a turn back about y. The docstring warns of the length of such a quaternion, not of its direction.
 # Why it matters: the CasADi model is there for optimal control, which integrates exactly that: its craft does not turn where it

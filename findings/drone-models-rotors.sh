@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: the first-principles model has one motor lag per craft, and the gyroscopic torque of its spinning rotors
 # turns the craft's rotation without adding energy, as a torque at right angles to the body rate does.
-# What happens: each craft has two lags, one for a rising and one for a falling command, with a step between them at
+# Observed: each craft has two lags, one for a rising and one for a falling command, with a step between them at
 # the command itself: 136 and 108 ms for the 2.x with its first propellers, 57 and 62 ms for the Brushless. The
 # gyroscopic torque has the same sign in roll and pitch instead of opposite ones: with the body turning about (1, 1,
 # 0) it does work, 0.36 mW at 7 rad/s and 2000 rpm of difference between the two directions.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Guess: a position controller that takes a heading flies to the same point whatever heading it is told.
-# What happens: drones-sim's LQRController flies 1 m to the side at a heading of 0, wobbles at 45 degrees, and falls
+# Guess: a position controller that takes a heading flies to the same point at any heading that it is told.
+# Observed: drones-sim's LQRController flies 1 m to the side at a heading of 0, wobbles at 45 degrees, and falls
 # hundreds of metres at 90: its gain is designed at heading 0 and applied to errors in the world's axes, so that at 90
 # degrees pitch answers the wrong axis. Its GeometricController is right at 90 and, told 180 degrees from 0, does not
 # turn: after 20 s it is at -2 degrees, and still 1 m short, since the attitude error that it feeds back is zero for a

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a minimum-snap generator without times chooses some that suit the distance; a trajectory for testing
 # estimators has rates in the frame of a gyro, and positions that are the integral of its velocities.
-# What happens: without times each leg gets one second on average, however long: 1 m at 2.2 m/s at most, 100 m at 219
+# Observed: without times each leg gets one second on average, however long: 1 m at 2.2 m/s at most, 100 m at 219
 # m/s. The body rates of its circle are in the world's frame, and the package's simulated gyro reports them as they
 # are: x and y differ by up to 0.5 rad/s from the rates of the attitudes in the same rows. The 'canonical' trajectory
 # jumps in height by 0.2 m at the end of its cruise.

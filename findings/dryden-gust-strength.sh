@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Guess: a Dryden gust of intensity sigma blows with a standard deviation of sigma (m/s), whatever the simulation's
-# step.
-# What happens: RotorPy's, asked for 0.5 m/s, blows with 6 mm/s at steps of 2 ms, and 2 to 3 times that at 10 ms. That
+# Guess: a Dryden gust of intensity sigma blows with a standard deviation of sigma (m/s), at any
+# step of the simulation.
+# Observed: RotorPy's, asked for 0.5 m/s, blows with 6 mm/s at steps of 2 ms, and 2 to 3 times that at 10 ms. That
 # of drones-sim, asked for 2 m/s, blows with 110 m/s at steps of 10 ms and 1100 m/s at 1 ms. Both put white noise into
 # their filter without the factor that its variance needs for the length of a step.
 # Why it matters: a disturbance test in the first is a test in still air, in the second in a wind that no craft

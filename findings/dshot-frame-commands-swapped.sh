@@ -2,10 +2,10 @@
 # Guess: a crate's commands for a motor controller have the numbers of the DShot protocol, as Betaflight and the
 # controllers' firmware have them (dshot_command.h): 9 turns the 3D mode off, 10 turns it on, 32 turns the telemetry
 # on the signal line off.
-# What happens: ThreeDModeOn is sent as 9 and ThreeDModeOff as 10, SignalLineTelemetryEnable as 32 and
+# Observed: ThreeDModeOn is sent as 9 and ThreeDModeOff as 10, SignalLineTelemetryEnable as 32 and
 # SignalLineTelemetryDisable as 33: both pairs are the other way round. The beeps, the directions of rotation and the
 # lights are right.
-# Why it matters: in 3D mode half of the throttle range turns the motor backwards, and what was a low throttle is full
+# Why it matters: in 3D mode half of the throttle range turns the motor backwards, and a low throttle becomes full
 # reverse. A start-up that makes sure that the mode is off, and saves that, turns it on for good.
 set -euo pipefail
 dir=$(mktemp -d)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a bank of two filters that are the same has the estimate and the covariance of each of them. A control that
 # is handed to predict acts, or is refused where there is no matrix for it.
-# What happens: the estimate of MMAEFilterBank is theirs; its variance is larger, here by 42 %, since the spread that
+# Observed: the estimate of MMAEFilterBank is theirs; its variance is larger, here by 42 %, since the spread that
 # it adds is that from the bank's previous estimate, the motion, and not that between the filters. IMMEstimator is
 # right. predict(u) of a KalmanFilter without B ignores u without a word.
 # Why it matters: a bank is built to see when one of its models (with or without wind, three motors or four) becomes

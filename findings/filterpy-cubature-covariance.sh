@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: on a linear model the cubature Kalman filter of a package gives the gains and covariances of its Kalman
 # filter, as its unscented filter does: all three are exact there.
-# What happens: after 30 steps of a position and a velocity with process noise 30, the Kalman filter and the unscented
+# Observed: after 30 steps of a position and a velocity with process noise 30, the Kalman filter and the unscented
 # one give a variance of the position of 0.49 and the cubature filter 30.5. The update uses the points from before the
 # process noise was added. The first gain after a start with small variances is therefore 0.02 instead of 0.98: the
 # first measurement is ignored.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a fixed-lag smoother gives estimates that are better than the filter's, which are better than the
 # measurements; with a lag long enough they are those of the smoother over the whole flight.
-# What happens: filterpy's FixedLagSmoother corrects the newest point with the covariance of after the update instead
+# Observed: filterpy's FixedLagSmoother corrects the newest point with the covariance of after the update instead
 # of before it, so that it hardly counts the measurement, and all later corrections with gains that are too small.
 # With a position sensor of 1 cm on a craft that accelerates at random (2 m/s^2, 10 Hz), the measurements are off by
 # 10 mm rms, the filter by 9.4, the whole-flight smoother of the same package by 6.8, and the fixed lag of 5, 20 or 60

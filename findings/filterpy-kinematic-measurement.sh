@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: kinematic_kf(dim=2, order=1), which is documented to measure the position in each dimension, measures the
 # position in each dimension.
-# What happens: its measurement matrix is (1, 0, 1, 0): one number, the sum of x and y. With dim_z=2 both rows are
+# Observed: its measurement matrix is (1, 0, 1, 0): one number, the sum of x and y. With dim_z=2 both rows are
 # that sum. A craft that is at (1, 0) and measured so, exactly, is estimated at (0.5, 0.5). The rows are right with
 # dim=1 alone, which is the case that a test takes.
 # Why it matters: fed positions of motion capture in two or three axes the filter has too few measurements to see

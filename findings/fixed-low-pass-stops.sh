@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a first-order low-pass in fixed point comes as near to its input as a step of the format divided by its gain,
 # from either side.
-# What happens: y += 0.01 (x - y) in I16F16, whose step is 0.000015, reaches 1 exactly from above and stops at 0.9985
+# Observed: y += 0.01 (x - y) in I16F16, whose step is 0.000015, reaches 1 exactly from above and stops at 0.9985
 # from below, a hundred steps short; to zero it comes from above, and from below it stops at -0.0015. A product is
 # rounded towards minus infinity, not to nearest: -0.001 times 0.001 is -0.000015 and 0.001 times 0.001 is 0. So is a
 # conversion to an integer: -0.00001 becomes -1. A division is rounded towards zero.

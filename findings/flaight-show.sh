@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a light-show package for the Crazyflie sends the heading that its MoveTo documents in degrees, and its
 # collision check covers the show that it flies.
-# What happens: MoveTo(yaw=90) goes to cflib's go_to as it is, which takes radians: the craft is told to turn 14.3
+# Observed: MoveTo(yaw=90) goes to cflib's go_to as it is, which takes radians: the craft is told to turn 14.3
 # times within the move. The check ends at the start of the last action: two craft whose last moves cross pass it, and
 # the same two are refused when a Hover is added after the crossing.
 # Why it matters: a controller that gets 45 rad/s of yaw from a planner saturates its motors, and the planner, not the

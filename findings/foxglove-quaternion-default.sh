@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Guess: a pose or a frame of Foxglove's messages whose rotation is left out, or made with Quaternion(), is level.
-# What happens: Quaternion() is (0, 0, 0, 0), which is no rotation. Quaternion(x=0.1) keeps w at 0 and is a half turn.
+# Observed: Quaternion() is (0, 0, 0, 0), which is no rotation. Quaternion(x=0.1) keeps w at 0 and is a half turn.
 # Fields that hold zero are not written at all, so that a default quaternion takes no byte in the log, and one that is
 # level takes nine.
-# Why it matters: a logger that fills in position alone writes poses with a quaternion that cannot be normalised. What
-# reads the log divides by zero or draws nothing, and a small roll that is set as x alone comes out upside down.
+# Why it matters: a logger that fills in position alone writes poses with a quaternion that cannot be normalised. A reader
+# of the log divides by zero or draws nothing, and a small roll that is set as x alone comes out upside down.
 set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: the last() of a buffer that keeps the newest values is the newest, iter() and windows(2) go from the oldest
 # to the newest.
-# What happens: HistoryBuf gives itself as a slice in the order of storage: of the values 0 to 5 in a buffer of four,
+# Observed: HistoryBuf gives itself as a slice in the order of storage: of the values 0 to 5 in a buffer of four,
 # last() is 3 and first() is 4; windows(2) has one difference of -3 among the ones. recent() is 5, oldest_ordered() is
 # in order. Until the buffer has been filled once, all of them agree.
 # Why it matters: a derivative or a median of a gyro over such a buffer is right for the first N samples, in a unit

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: an attitude filter without a magnetometer counts every turn of its gyro from the first sample on; at worst
 # its heading starts from 0.
-# What happens: for the first 3 s the heading is put back to 0 at each update. Turning at 30 degrees/s for 10 s it
+# Observed: for the first 3 s the heading is put back to 0 at each update. Turning at 30 degrees/s for 10 s it
 # ends at 210 degrees and not at 300; turning in the first second only it shows nothing. skip_startup, or 3 s at rest,
 # give all of the turn. Fed m/s^2 instead of the g that it wants, it gives the same attitude, and 8.8 as the linear
 # acceleration of a craft at rest.

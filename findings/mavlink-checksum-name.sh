@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Guess: the checksum of MAVLink, which its sources call X.25, is what libraries of checksums call X-25.
-# What happens: pymavlink's x25crc of 123456789 is 6f91, and the X-25 of the catalogues (there as crc16.ibm_sdlc) is
+# Guess: the checksum of MAVLink, which its sources call X.25, is the X-25 of libraries of checksums.
+# Observed: pymavlink's x25crc of 123456789 is 6f91, and the X-25 of the catalogues (there as crc16.ibm_sdlc) is
 # 906e, its complement. MAVLink's is the catalogue's MCRF4XX: the same polynomial and start, without the last
 # inversion. It is taken over the message and one byte more, the CRC_EXTRA of its definition, which is not sent.
 # Why it matters: a link of one's own, or a decoder for a log, that takes the one of the same name refuses every

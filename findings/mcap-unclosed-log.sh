@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Guess: of a flight log whose writer was cut off before it could close the file, a reader gives what is there.
-# What happens: mcap's NonSeekingReader gives nothing: it sorts by time first, runs into the end and raises before its
+# Guess: of a flight log whose writer was cut off before it could close the file, a reader gives the part that is there.
+# Observed: mcap's NonSeekingReader gives nothing: it sorts by time first, runs into the end and raises before its
 # first message. With log_time_order=False the same reader gives 986 of 1000 messages and raises then. The default
 # reader for files, make_reader, raises at once, since it looks for the index that was never written.
 # Why it matters: the log of a crash is the one that is not closed. It looks lost, and it is not.

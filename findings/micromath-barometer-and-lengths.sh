@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Guess: approximate functions for microcontrollers are right to a percent or so, and to more than that near 1.
-# What happens: the height over a pressure of 100000 Pa by the usual power of 0.1903 is 217 m where it is 111 m:
+# Observed: the height over a pressure of 100000 Pa by the usual power of 0.1903 is 217 m where it is 111 m:
 # powf(0.99, 5.256) is 0.901 and not 0.949. A square root is up to 6 % too long: the root of 2 is 1.5, the length of
 # (3, 4) 5.125, that of (3, 4, 12) 13.28. atan2(0, 0) is NaN, an asin beyond 1 is 0 and no NaN, 0.49999997 rounds to
 # 1. Sines and cosines are right to 0.0011.

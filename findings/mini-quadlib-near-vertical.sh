@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: Euler angles to a matrix and back, in a quadcopter library, is exact to single precision away from a pitch of
 # 90 degrees, and still the same rotation at it.
-# What happens: at a pitch of 90 degrees, and of 89.99 already, roll comes back as 0 and yaw takes the sum with the
+# Observed: at a pitch of 90 degrees, and of 89.99 already, roll comes back as 0 and yaw takes the sum with the
 # wrong sign: roll 10, yaw 30 become roll 0, yaw -20, a rotation 40 degrees away from the one that went in. At 80
 # degrees all is well.
 # Why it matters: a flip or a throw passes there. A controller that stores its attitude as angles between two steps

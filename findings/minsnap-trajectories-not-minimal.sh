@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a minimum-snap generator gives the curve of least snap, and a higher degree can only lower it. A yaw along
 # the velocity comes with its rate.
-# What happens: the default method ('closed-form') is not minimal for degrees of 6 and more, and the more freedom it
+# Observed: the default method ('closed-form') is not minimal for degrees of 6 and more, and the more freedom it
 # gets the worse it becomes: through four corners of a square the integral of squared snap is 2516 at degree 5, 2294
 # at 7, 4069 at 9, while the other method of the same package ('constrained') ends at 2085 from degree 7 on. Both
 # leave the jerk free at the waypoints unless told otherwise. With yaw='velocity' the attitude turns with the curve,

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: PropellerParams(diameter=6), in inches, has a radius of 76 mm. set_params(resolution=..) of a trajectory sets
 # the resolution.
-# What happens: its R, documented as the radius in metres, is the diameter, 152 mm, and its disc area four times too
+# Observed: its R, documented as the radius in metres, is the diameter, 152 mm, and its disc area four times too
 # large. The package's blade element thrust at 500 rad/s is 10 times that of the same propeller with half of R.
 # set_params(resolution=0.5) leaves the resolution as it was and makes 0.5 m the distance at which a waypoint counts
 # as reached.

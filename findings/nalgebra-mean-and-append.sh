@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Guess: UnitQuaternion::mean_of two equal attitudes is that attitude, and append_axisangle_linearized appends what a
-# gyro measures in a step, a turn about the body's axes.
-# What happens: the mean of two identities is a half turn about z; of two yaws of 0.1 rad it is a rotation of 180
+# Guess: UnitQuaternion::mean_of two equal attitudes is that attitude, and append_axisangle_linearized appends the
+# gyro's measurement of a step, a turn about the body's axes.
+# Observed: the mean of two identities is a half turn about z; of two yaws of 0.1 rad it is a rotation of 180
 # degrees, with a roll of 0.1 and a yaw of pi. The four numbers of the mean are right and are taken in the wrong
 # order: the last, which is the scalar, for z. append_axisangle_linearized multiplies from the left: rolled by 90
 # degrees and turning about its z axis by 1 rad in small steps, the attitude ends 1.38 rad from where the gyro went,

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Guess: nalgebra's unit quaternions convert, interpolate and compare as rotations do.
-# What happens: from_matrix of a half turn about y gives the identity, with no error; from_rotation_matrix gives the
+# Observed: from_matrix of a half turn about y gives the identity, with no error; from_rotation_matrix gives the
 # half turn. euler_angles at a pitch of 90 degrees gives a roll and a yaw whose rotation is up to 130 degrees from the
 # one that was given. Half of the way to a yaw of 11.5 degrees whose quaternion is stored with the other sign, nlerp
 # is turned by 174 degrees and slerp by 5.7. And q == -q is true, so that no test of equality sees the difference.

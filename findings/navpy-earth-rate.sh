@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Guess: earthrate(lat) of a navigation package is the Earth's rotation in north, east and down, as its documentation
-# says, and an option that takes the latitude in radians gives what the same latitude in degrees gives.
-# What happens: the down part is in the place of east, and down is 0: at 47 degrees (49.7, -53.3, 0) microrad/s where
+# says, and an option that takes the latitude in radians gives the same as the latitude in degrees.
+# Observed: the down part is in the place of east, and down is 0: at 47 degrees (49.7, -53.3, 0) microrad/s where
 # (49.7, 0, -53.3) is right. navrate with lat_unit='rad' converts the latitude for the radii of curvature and takes it
 # for degrees in the tangent: its down part is 75 times too small. ecef2lla of a point 100 m above the pole gives a
 # height of -6400 km.
-# Why it matters: the rate is what a gyro at rest measures, and what an inertial filter subtracts. In the wrong axis
+# Why it matters: a gyro at rest measures this rate, and an inertial filter subtracts it. In the wrong axis
 # it is a bias of 11 degrees/hour about east and leaves one about down; a gyrocompass finds another north.
 set -euo pipefail
 dir=$(mktemp -d)

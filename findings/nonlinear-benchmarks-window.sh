@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: the error figures of the benchmark package leave out the first n_init samples, all of them alike, along the
 # time axis that they are told.
-# What happens: R_squared ignores n_init: a start-up error that RMSE and NRMSE leave out is in it, 0.29 and 0.40
+# Observed: R_squared ignores n_init: a start-up error that RMSE and NRMSE leave out is in it, 0.29 and 0.40
 # instead of 1 here, and it no longer is 1 - NRMSE^2 as its documentation says. With time_axis=1 all of them cut
 # n_init channels instead of n_init samples.
 # Why it matters: figures of nano-drone identification are compared to three digits with these functions. A model that

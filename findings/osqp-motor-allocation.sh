@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a quadratic programme of four unknowns that is called solved is solved to three digits or so: four motors'
 # thrusts for a wanted thrust and three torques, in newtons and newton metres, with no bound active.
-# What happens: with its default tolerances OSQP is done after 25 iterations, status solved. The thrust is right; of a
+# Observed: with its default tolerances OSQP is done after 25 iterations, status solved. The thrust is right; of a
 # yaw torque of 0.5 mN m it gives 0.02, of a roll torque of 2 mN m 1.88, since its tolerance is as large as a
 # millinewton metre. The motors' thrusts are 20 mN off. With 1e-9 it needs 75 iterations and is exact.
 # Why it matters: these are the torques of a small craft. An allocation in SI units answers roll, and almost never

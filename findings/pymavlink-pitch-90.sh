@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Guess: a rotation matrix made from a pitch of 90 degrees gives back 90 degrees, with roll and yaw in doubt at most.
-# What happens: pymavlink's Matrix3.to_euler returns a pitch of -180 degrees at +90, and +180 at -90, and correct
+# Observed: pymavlink's Matrix3.to_euler returns a pitch of -180 degrees at +90, and +180 at -90, and correct
 # figures a millionth of a degree away. Its Quaternion class, which logs and scripts use beside it, returns 90.
 # Why it matters: a vertical attitude is where flips, throws and crash detection are looked at in a log. The one
 # sample that is exactly vertical reads as upside down.

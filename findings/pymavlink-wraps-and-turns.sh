@@ -2,7 +2,7 @@
 # Guess: wrap_180 and wrap_360, which graphs of a log use, give an angle between -180 and 180, or 0 and 360;
 # lowpass(value, key, 0.1) lets a tenth of a new value in; a rotation matrix that is turned by steps, or about an
 # axis, stays one.
-# What happens: they take off one turn at most: 550 degrees wraps to 190, 730 to 370. The factor 0.1 of lowpass is the
+# Observed: they take off one turn at most: 550 degrees wraps to 190, 730 to 370. The factor 0.1 of lowpass is the
 # weight of the old value: a step is at 0.9 after one sample. Matrix3.rotate by 1 rad turns by 45 degrees and makes
 # the rows 1.41 long, a hundred steps of 0.01 rad make them 1.005, and only normalize puts it right; from_axis_angle
 # about (0, 0, 2) by 0.5 rad turns by 0.83 and stretches by 1.3.

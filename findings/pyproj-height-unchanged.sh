@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Guess: asked for heights above the sea (EGM96 or EGM2008) of heights above the ellipsoid, what GPS gives, pyproj
+# Guess: asked for heights above the sea (EGM96 or EGM2008) of heights above the ellipsoid, as GPS gives them, pyproj
 # either converts them or says that it has not got the table of the geoid, which its package does not contain.
-# What happens: it returns the height as it was, 500 m for 500 m, with no warning, though the two are tens of metres
+# Observed: it returns the height as it was, 500 m for 500 m, with no warning, though the two are tens of metres
 # apart in most of the world. only_best=True changes nothing. Only the transformer's accuracy of -1 and the word
 # ballpark in its description tell; allow_ballpark=False refuses.
 # Why it matters: an altitude from GPS is compared with a terrain model, or with a barometer set to the sea level. Off

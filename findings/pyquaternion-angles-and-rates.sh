@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: Quaternion.yaw_pitch_roll gives back the yaw, pitch and roll that the attitude was built from in the order
 # that its documentation names (z, y', x''), and integrate takes rates about the axes that it documents.
-# What happens: a yaw of 30, a pitch of 20 and a roll of 10 degrees, composed in that order, come back as 28.5, 22.2
+# Observed: a yaw of 30, a pitch of 20 and a roll of 10 degrees, composed in that order, come back as 28.5, 22.2
 # and -1.1: the formulae are those of the opposite order, in which roll turns first. Angles alone come back right one
 # at a time, so that a test of each axis passes. integrate and derivative document rates about the global axes and
 # take them about the body's.

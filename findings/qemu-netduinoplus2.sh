@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: QEMU's netduinoplus2 is an STM32F405 as its manual describes it, so that firmware for that chip runs on it or
 # is told why not.
-# What happens: the 64 kB of core-coupled memory at 0x10000000 are not there: a write faults. The cycle counter says
+# Observed: the 64 kB of core-coupled memory at 0x10000000 are not there: a write faults. The cycle counter says
 # that it exists (DWT_CTRL's NOCYCCNT is 0) and counts nothing when it is enabled. The clock control takes the request
 # for the external oscillator and the PLL and never reports them ready. SYST_CALIB claims 10 ms for a clock of 21 MHz,
 # where the processor runs at 168.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: phi, theta and psi of a simulated quadcopter are roll, pitch and yaw, as in the list of initial states that
 # it is given; a second craft is a craft of its own; a wind from 90 degrees blows from the side.
-# What happens: given a roll of 0.1, a pitch of 0.2 and a yaw of 0.3 rad, it reports phi 0.3 and psi, which is also
+# Observed: given a roll of 0.1, a pitch of 0.2 and a yaw of 0.3 rad, it reports phi 0.3 and psi, which is also
 # its heading, 0.1: psi goes to the controller as the yaw. The parameters of all craft are one dictionary with the
 # mixer in it, so that making a second one with z upwards turns the signs of the first one's pitch and yaw. The wind's
 # heading, in degrees by its comment, goes into a cosine as it is: at 90 it blows with 45 % of its speed from the

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: the position controller of a quadcopter package, with its default gains on its default craft, holds the point
 # that it is told.
-# What happens: told (1, 1, 2) from (0, 0, 0), the package's own first example, its craft is below the start after 4
+# Observed: told (1, 1, 2) from (0, 0, 0), the package's own first example, its craft is below the start after 4
 # s, after having been 15 m above it, and hundreds of metres away after 10 s. Nothing is reported. Its hover
 # controller stays where it was put. (Installed alone it does not even import: it needs typing-extensions and
 # gymnasium and asks for neither.)

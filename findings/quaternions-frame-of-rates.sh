@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Guess: a package that integrates an angular velocity into a quaternion takes what a gyro measures, the rate in the
+# Guess: a package that integrates an angular velocity into a quaternion takes a gyro's measurement, the rate in the
 # body's frame, and one that gives the angular velocity of a series of attitudes gives that.
-# What happens: numpy-quaternion's integrate_angular_velocity and pytransform3d's quaternion_integrate take it in the
+# Observed: numpy-quaternion's integrate_angular_velocity and pytransform3d's quaternion_integrate take it in the
 # world's frame, and quaternion_gradient and angular_velocity return it there; pyquaternion's integrate takes the
 # body's. Rolled by 90 degrees and turning about the body's z axis by 1 rad, the first two end 1.38 rad away from the
 # attitude that the gyro turned to. Level craft see no difference.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Guess: q and -q are one attitude, so that what lies half of the way between two attitudes, and the mean of them,
+# Guess: q and -q are one attitude, so that the attitude half of the way between two attitudes, and the mean of them,
 # does not depend on the signs that they are stored with.
-# What happens: half of the way from level to a yaw of 0.2 rad that is stored as -q is a yaw of 0.1 for pyquaternion
+# Observed: half of the way from level to a yaw of 0.2 rad that is stored as -q is a yaw of 0.1 for pyquaternion
 # and for numpy-quaternion's slerp, and -3.04 rad for quaternionic and pytransform3d. The mean of yaws of 0.1 and 0.2
 # with one sign turned is -2.99 rad by numpy-quaternion's mean_rotor_in_chordal_metric, and its squad, at half of the
 # way between them, is at 0.54. Its rotation vector of -q for a yaw of 0.1 is -6.18 rad.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a Riccati equation of a plant with a state that no input moves (a bias, a heading that nothing turns), which
 # has no stabilising solution, is refused, and if it is once it is always.
-# What happens: solve_continuous_are raises for a double integrator with such a state as it is written down. In other
+# Observed: solve_continuous_are raises for a double integrator with such a state as it is written down. In other
 # coordinates of the same plant it returns a matrix in two of three cases: no warning, a residual of 0.6 and more, and
 # a gain that leaves the pole at 0. python-control's care with slycot refuses more of them, 25 of 40, and answers the
 # rest.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: RotorPy's two Crazyflies turn in yaw as the firmware expects, count motors as it does, and a vehicle starts
 # from numbers of its own.
-# What happens: their yaw torque per thrust is 33.9 mm for the 2.1 and 19.2 mm for the Brushless; the firmware's own
+# Observed: their yaw torque per thrust is 33.9 mm for the 2.1 and 19.2 mm for the Brushless; the firmware's own
 # figures are 7.35 and 5.69 mm, so that yaw answers 4.6 and 3.4 times as strongly. The first motor is front left (the
 # firmware's M1 is front right). The default initial position and attitude are arrays of integers in one dictionary
 # for every vehicle: 0.6 m becomes 0, 1.7 m becomes 1, and a position written for one craft is the start of all

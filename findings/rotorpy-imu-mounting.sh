@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a simulated inertial sensor that takes its place and its attitude on the craft measures rates and
-# accelerations in its own axes, the same whatever way the craft is heading.
-# What happens: RotorPy's Imu turns the acceleration into the sensor's axes and leaves the rates in the craft's:
+# accelerations in its own axes, the same at any heading of the craft.
+# Observed: RotorPy's Imu turns the acceleration into the sensor's axes and leaves the rates in the craft's:
 # mounted with a quarter turn about z it reports a roll rate as roll. The centripetal part of a sensor 10 cm in front
 # of the centre mixes the body's rates with the arm in the world's axes: pitching at 3 rad/s it is -0.9 m/s^2 along x
 # at a heading of 0 and 0 at a heading of 90 degrees.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: the velocity, acceleration, jerk, snap and yaw acceleration that a trajectory of a simulator gives are
 # derivatives of one another.
-# What happens: in x and y they are. The three-dimensional circle has the jerk and the snap of its height with the
+# Observed: in x and y they are. The three-dimensional circle has the jerk and the snap of its height with the
 # sign turned, by its defaults 1.85 m/s^3 where the acceleration falls by as much. With yaw_bool its yaw acceleration
 # has the sign turned, 5.4 rad/s^2 for -5.4, and that of the plane Lissajous curve is a cosine where it should be a
 # negative sine: 4.6 for -6.3.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a generator of S-curves whose own check calls a move feasible ("certainly doable") makes a curve that ends
 # where, and as fast as, it was asked, without steps.
-# What happens: from rest it does. 1 m from rest to 1 m/s under 3 m/s, 1 m/s^2 and 2 m/s^3, feasible by its check, is
+# Observed: from rest it does. 1 m from rest to 1 m/s under 3 m/s, 1 m/s^2 and 2 m/s^3, feasible by its check, is
 # a curve of 2 s that stays at 0 with no speed to its end; started at 0.5 m/s it goes on at 0.5 m/s to 0.67 m. -1 m
 # with an end speed of 0.5 m/s has a step of 0.36 m in the position on its way. Nothing is reported.
 # Why it matters: legs of a course are joined at speed. The position controller gets a setpoint that stays behind and

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Guess: a time-optimal parameterisation under a limit of the acceleration stays under it, to a part in a thousand or
 # so.
-# What happens: with the default way of turning the result into a trajectory (a spline through it), a square of 1 m
+# Observed: with the default way of turning the result into a trajectory (a spline through it), a square of 1 m
 # under 3 m/s^2 per axis is flown with up to 3.22 m/s^2, and above 3.03 for 3 % of the time. With 21 grid points it is
 # 3.95. parametrizer='ParametrizeConstAccel' stays at 3.00, in the same time of 3.49 s.
 # Why it matters: the limit that is given is the one of the motors. The seven percent are taken where the trajectory

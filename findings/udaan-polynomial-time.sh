@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Guess: the velocity and acceleration that a trajectory returns beside its position are the derivatives of that
 # position.
-# What happens: in udaan's circles and sines they are. In its polynomials (SmoothTraj1, 3, 5 and PolyTraj5) they are
+# Observed: in udaan's circles and sines they are. In its polynomials (SmoothTraj1, 3, 5 and PolyTraj5) they are
 # derivatives by the share of the duration and not by time: for a move of 4 s the velocity is 4 times and the
-# acceleration 16 times what the position does, and a move of half a second reports half and a quarter of them.
+# acceleration 16 times that of the position, and a move of half a second reports half and a quarter of them.
 # Why it matters: the two are the feed-forward of a geometric controller. A 3 m move in 4 s, which needs 1.4 m/s, is
 # fed 5.6 m/s, and the tracking error that follows looks like bad gains.
 set -euo pipefail

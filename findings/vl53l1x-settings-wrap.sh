@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Guess: an offset, a crosstalk or a period that the driver of the range sensor sets is what it gets back from the
+# Guess: an offset, a crosstalk or a period that the driver of the range sensor sets reads back unchanged from the
 # same register.
-# What happens: an offset of -10 mm is written rightly and read as 2038 mm: the sign of the register's 13 bits is not
+# Observed: an offset of -10 mm is written rightly and read as 2038 mm: the sign of the register's 13 bits is not
 # extended. A crosstalk of 127 counts/s is set as 126, and one of 500 as 115: the value is shifted out of its 16 bits
 # before it is divided. A pause of 50 ms between two measurements is kept; one of 100 ms, of which the sensor's clock
 # makes 92800 in 16 bits, becomes 29 ms in a release build, where the wrap is silent.

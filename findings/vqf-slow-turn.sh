@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Guess: an orientation filter fed an exact gyro and a level accelerometer turns by what the gyro says, at any rate.
-# What happens: VQF with its defaults does from 2.5 degrees/s upwards. A steady turn of 1.9 degrees/s, for a minute,
+# Guess: an orientation filter fed an exact gyro and a level accelerometer turns by the gyro's reading, at any rate.
+# Observed: VQF with its defaults does from 2.5 degrees/s upwards. A steady turn of 1.9 degrees/s, for a minute,
 # is taken for a sensor at rest with a bias: 114 degrees turned, 3.2 reported, and the bias that is given back is the
 # turn.
 # Why it matters: a craft that creeps round in yaw in a simulation without vibration is just such a sensor. The log of

@@ -1,4 +1,5 @@
-//! From thrust and body rates to the motors of a craft, and from motor commands to the forces behind their lag.
+//! From thrust over mass (m/s^2) and body rates (rad/s) to the forces of a craft's four motors (N), and from motor
+//! commands to the forces behind their lag.
 
 use nalgebra::Vector3;
 

@@ -90,7 +90,7 @@ pub enum AirframeFigure {
 pub enum AirframeError {
     /// A figure is not between a millionth (a billionth for the inertia) and a thousand of its SI unit: check the units.
     OutOfRange {
-        /// Which.
+        /// The figure.
         figure: AirframeFigure,
         /// Its value.
         value: f32,

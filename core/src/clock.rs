@@ -1,4 +1,4 @@
-//! Time on board: an integer tick count and a rate, never seconds added up.
+//! Time on board: an integer tick count and a rate. Seconds are never added up, so that hours of flight lose no accuracy.
 
 /// Ticks of the control loop since some start; wraps after 2^32.
 pub type Tick = u32;

@@ -1,5 +1,5 @@
-//! The command: thrust and body rates in, the same within the vehicle's limits out, with a report of each limit that
-//! was met.
+//! The command: thrust over mass (m/s^2) and body rates (body frame, rad/s) in, the same within the vehicle's limits out,
+//! with a report of each limit that was met.
 
 use core::fmt;
 use core::hint::cold_path;
@@ -286,7 +286,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_never_a_command() {
+    fn numbers_that_are_not_finite_are_never_a_command() {
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             for i in 0..4 {
                 let mut values = [9.81, 0.0, 0.0, 0.0];

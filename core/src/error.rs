@@ -66,7 +66,7 @@ pub(crate) fn first_non_finite(fields: &[Field], values: &[f32]) -> Option<(Fiel
 pub enum StateError {
     /// A component is infinite or not a number: distrust the estimator.
     NonFinite {
-        /// Where.
+        /// The field.
         field: Field,
         /// The value found.
         value: f32,
@@ -85,7 +85,7 @@ pub enum StateError {
 pub enum ReferenceError {
     /// A component is infinite or not a number: distrust the planner or the link.
     NonFinite {
-        /// Where.
+        /// The field.
         field: Field,
         /// The value found.
         value: f32,

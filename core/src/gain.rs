@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_flown_is_named() {
+    fn references_that_cannot_be_flown_are_named() {
         assert_eq!(Gain::new([[1.0, f32::NAN]]), Err(GainError::NonFinite { row: 0, column: 1 }));
         assert_eq!(Gain::new([[1.0, 0.0], [2.0, -0.0]]), Err(GainError::UnusedError { column: 1 }));
     }

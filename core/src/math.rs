@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_stays_visible() {
+    fn numbers_that_are_not_finite_stay_so() {
         for x in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             let (sin, cos) = sin_cos(x);
             assert!(sin.is_nan() && cos.is_nan());

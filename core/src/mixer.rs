@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn what_just_fits_is_not_told_as_cut() {
+    fn forces_that_just_fit_are_not_told_as_cut() {
         // Sixteenths: no sum is rounded. Roll and pitch swing by half of the range and leave the middle to the thrust.
         let (min, max) = (0.0, 1.0);
         let at_the_ends = Parts { thrust: 0.5, roll: 0.25, pitch: -0.25, yaw: 0.0 };

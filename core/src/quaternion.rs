@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn a_heading_is_what_the_tilt_leaves_of_an_attitude() {
+    fn a_heading_is_the_rest_of_an_attitude_without_its_tilt() {
         for k in -30_i8..=30 {
             let psi = 0.2 * f32::from(k);
             let heading = Heading::from_angle(psi);

@@ -1,4 +1,5 @@
-//! The reference: the flat output and its derivatives in; the state and input that fly it out, checked once.
+//! The reference: the flat output and its derivatives (world frame, SI) in; the state and input that fly it out, checked
+//! once.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,5 @@
-//! The estimated state of a craft with inertia: the state of the paper's model, and the body rates that it commands.
+//! The estimated state of a craft with inertia: position, velocity (world frame, m, m/s), attitude, and the body rates
+//! (rad/s) that the paper's model takes as an input.
 
 use nalgebra::Vector3;
 

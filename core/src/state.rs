@@ -1,4 +1,5 @@
-//! The estimated state: raw numbers from an estimator in, a state whose quaternion has norm 1 out.
+//! The estimated state: raw numbers from an estimator (world frame z up, body to world, SI) in, a state whose quaternion
+//! has norm 1 out.
 
 use nalgebra::Vector3;
 

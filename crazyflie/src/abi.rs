@@ -17,7 +17,7 @@ pub type Axis3 = [f32; 3];
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Attitude {
-    /// When it was computed, ms.
+    /// Time of its computation, ms.
     pub timestamp: u32,
     /// About body x.
     pub roll: f32,
@@ -31,7 +31,7 @@ pub struct Attitude {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vector {
-    /// When it was computed, ms.
+    /// Time of its computation, ms.
     pub timestamp: u32,
     /// World x.
     pub x: f32,
@@ -157,7 +157,7 @@ pub struct Setpoint {
     pub jerk: Vector,
     /// Whether the velocity is given in the body's heading frame; a C `bool`, never looked at as a Rust one.
     pub velocity_body: u8,
-    /// Which of all this counts.
+    /// The modes, which choose the fields that count.
     pub mode: Modes,
 }
 

@@ -1,4 +1,5 @@
-//! The processor's cycle counter, as far as the app has started it; 0 elsewhere.
+//! The processor's cycle counter, to log the length of a step: it runs once the app has started it, and reads 0 on a
+//! desk.
 
 /// The count now.
 #[inline]

@@ -30,7 +30,7 @@ pub struct HeadingStream {
     jerk_rad_s3: f32,
     /// Difference of the newest two rates over their time.
     difference_rad_s2: Option<f32>,
-    /// When the newest came, ms.
+    /// Arrival of the newest, ms.
     since_ms: u32,
 }
 

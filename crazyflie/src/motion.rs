@@ -1,4 +1,4 @@
-//! Position and its derivatives, as setpoints have them.
+//! Position and its derivatives to the jerk (world frame, SI), as setpoints have them.
 
 use quatrack::nalgebra::Vector3;
 

@@ -1,5 +1,5 @@
 //! A craft of the owner's: its figures and its table in, as `quatrack gains craft` writes them into the app's `quatrack_craft.h`;
-//! the craft and its table, or why it does not fly, out.
+//! the craft and its table, or the reason why it does not fly, out.
 
 use core::ffi::CStr;
 

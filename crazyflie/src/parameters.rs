@@ -1,4 +1,4 @@
-//! Parameters as the owner has set them, each within its range. One that is no number is put back to its default.
+//! Parameters as the owner has set them, each within its range. One that is NaN is put back to its default.
 
 use core::sync::atomic::Ordering::Relaxed;
 
@@ -15,7 +15,7 @@ use crate::shared::{AtomicF32, Parameters};
 use crate::tables::Tuning;
 use crate::units::RAD_PER_DEG;
 
-/// The defaults of all that may be no number, in the order of [`Parameters`].
+/// The defaults of all that may be NaN, in the order of [`Parameters`].
 fn defaults(craft: &Craft) -> [f32; Parameters::FLOATS] {
     let Air { drag_per_s, moment_n_s: [moment_x, moment_y], gust, .. } = craft.air;
     let CascadeLimits { speed_m_s, climb_m_s, .. } = CascadeLimits::STANDARD;

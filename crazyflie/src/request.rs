@@ -30,7 +30,7 @@ pub enum Horizontal {
     Rates([f32; 2]),
 }
 
-/// How to move up and down.
+/// The request for the vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Vertical {
     /// Along the motion.
@@ -41,7 +41,7 @@ pub enum Vertical {
     Thrust(f32),
 }
 
-/// How to turn.
+/// The request for the heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Turn {
     /// At the setpoint's heading.

@@ -15,7 +15,7 @@ use crate::request::{Horizontal, Request, Turn, Vertical};
 use crate::stream::Stream;
 use crate::units;
 
-/// How fast and how far.
+/// Bounds of shaped motions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Largest speed of a velocity setpoint, m/s, over the ground and up or down.
@@ -52,7 +52,7 @@ pub struct Shaped<'a> {
     pub stream: &'a Stream,
     /// Headings.
     pub headings: &'a HeadingStream,
-    /// When.
+    /// The time, ms.
     pub now_ms: u32,
     /// Whether the law looks beyond the jerk.
     pub beyond_jerk: bool,

@@ -84,7 +84,7 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// How many are floats.
+    /// Number of those that are floats.
     pub const FLOATS: usize = 15;
 
     /// Sets all that are floats.
@@ -144,7 +144,7 @@ pub struct Log {
     pub refused_tables: AtomicU16,
     /// Why the last of them was not, see `quatrack.h`.
     pub refusal: AtomicU16,
-    /// Parameters that were no numbers and were put back to their defaults.
+    /// Parameters that were NaN and were put back to their defaults.
     pub put_back: AtomicU16,
     /// Which of them was the last, counted from 1 in the order of [`Parameters`].
     pub parameter: AtomicU16,

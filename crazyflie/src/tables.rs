@@ -21,7 +21,7 @@ pub struct Brought<'a> {
     pub own: Option<&'a CascadeTable>,
 }
 
-/// Which table.
+/// The number of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum TableId {
@@ -68,7 +68,7 @@ pub struct Tuning {
 /// A table as it is flown.
 #[derive(Clone, Copy, Debug)]
 pub struct Table {
-    /// Which.
+    /// The table.
     pub id: TableId,
     /// Its gain.
     pub gain: Gain,

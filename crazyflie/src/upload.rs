@@ -31,7 +31,7 @@ pub struct Packet {
     pub bytes: [u8; PACKET_BYTES],
 }
 
-/// How a packet was taken.
+/// The answer to a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Status {

@@ -4,7 +4,7 @@
 #   docs/campaigns/parallel.sh SCENARIO.toml RUNS SHARDS OUT [ARGUMENTS OF parallel...]
 #   docs/campaigns/parallel.sh my.toml 10000 32 /shared/my-campaign --sshloginfile nodes
 #
-# What was interrupted goes on when it is given again.
+# An interrupted campaign goes on when the same command is given again.
 set -euo pipefail
 if [ $# -lt 4 ]; then
   echo "usage: parallel.sh SCENARIO.toml RUNS SHARDS OUT [ARGUMENTS OF parallel...]" >&2

@@ -80,7 +80,7 @@ mod app {
         let keys = Keys::provisioned();
         match &keys.link {
             Some((_, protection)) => defmt::info!("{}", protection),
-            None => defmt::warn!("no key: whoever is on the line can fly"),
+            None => defmt::warn!("no key: anybody on the line can fly"),
         }
         let (flash, slot_bytes) = crate::flash(board.sectors);
         let session = Session::new(context.local.uploads, keys, InFlash::new(flash, slot_bytes), fault);

@@ -1,4 +1,4 @@
-//! The loop's rates: how often it ticks, and how many ticks a control step takes.
+//! The loop's rates: ticks a second, and ticks a control step.
 
 use quatrack::Rate;
 

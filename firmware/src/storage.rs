@@ -381,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_flash_holds_nothing_and_what_is_too_long_is_refused() {
+    fn an_empty_flash_holds_nothing_and_a_blob_too_long_is_refused() {
         assert_eq!(loaded(&Model::new()), None);
         let mut storage = Storage::new(Model::new(), LAYOUT).unwrap();
         let refused = storage.store(&[0; 497]);

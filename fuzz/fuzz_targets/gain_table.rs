@@ -1,5 +1,5 @@
-//! Any bytes into the gain table loader, as they are and with the checksum that belongs to them: what comes out writes
-//! the same bytes again, and flies.
+//! Any bytes into the gain table loader, as they are and with the checksum that belongs to them: a table that comes out
+//! writes the same bytes again, and flies.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

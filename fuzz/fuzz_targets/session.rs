@@ -1,5 +1,5 @@
-//! Any orders, noise and steps into the image's session, over a cable and with a key: no panic, forces within what motors do, and no
-//! motor that turns for anybody who has not armed.
+//! Any orders, noise and steps into the image's session, over a cable and with a key: no panic, forces within the motors'
+//! range, and no motor that turns for anybody who has not armed.
 #![no_main]
 
 use std::cell::Cell;
@@ -81,7 +81,7 @@ fn fly(bytes: &[u8]) -> Option<()> {
     }
     let figures = *AIRFRAME.figures();
     let (nonces, mut now, mut asked) = (Cell::new(0), 0, false);
-    while let Some(what) = source.byte() {
+    while let Some(choice) = source.byte() {
         let mut hear = |bytes: &[u8], host: &mut HostSession| {
             let mut buffer = [0; FRAME_BYTES];
             for byte in bytes {
@@ -92,9 +92,9 @@ fn fly(bytes: &[u8]) -> Option<()> {
                 }
             }
         };
-        match what % 8 {
+        match choice % 8 {
             0..4 => {
-                let number = usize::from(what / 8) % 2;
+                let number = usize::from(choice / 8) % 2;
                 let host = &mut hosts[number];
                 let message = match source.message()? {
                     ToBoard::Hello(_) => host.hello(),
@@ -107,18 +107,18 @@ fn fly(bytes: &[u8]) -> Option<()> {
                 }
             }
             4 => {
-                let (noise, rest) = source.0.split_at(source.0.len().min(usize::from(what)));
+                let (noise, rest) = source.0.split_at(source.0.len().min(usize::from(choice)));
                 source.0 = rest;
                 hear(noise, &mut hosts[1]);
             }
             _ => {
-                let rates = match what / 8 % 2 {
+                let rates = match choice / 8 % 2 {
                     0 => BodyRates::NoGyroscope,
                     _ => BodyRates::Measured([source.float()?, source.float()?, source.float()?].into()),
                 };
-                for _ in 0..=what / 16 {
+                for _ in 0..=choice / 16 {
                     now += 2;
-                    flight.0.step(now, what % 8 == 7, rates);
+                    flight.0.step(now, choice % 8 == 7, rates);
                     let forces = *flight.0.forces_n();
                     let is_off = forces == [0.0; 4];
                     assert!(is_off || (asked && flight.0.mode().is_in_air()), "{:?}", flight.0.mode());

@@ -1,4 +1,5 @@
-//! Any setpoints, states and gyroscope into the Crazyflie's controller: what it puts out is finite and within what motors do.
+//! Any setpoints, states and gyroscope into the Crazyflie's controller: its output is finite and within the motors'
+//! range.
 #![no_main]
 
 use std::sync::atomic::Ordering::Relaxed;
@@ -56,10 +57,10 @@ fn fly(bytes: &[u8]) -> Option<()> {
     let _alone = Firmware::start(&vehicle, &Tune::new(0, 0.0), Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 });
     let most_n = 4.0 * vehicle.motors().thrust_max_n as f32 * 1.000_1;
     let (mut control, mut step) = (Control::default(), 10_u32);
-    while let Some(what) = source.byte() {
-        let any = what & 1 == 1;
+    while let Some(bits) = source.byte() {
+        let any = bits & 1 == 1;
         let setpoint = Setpoint {
-            timestamp: if what & 2 == 0 { step } else { 0 },
+            timestamp: if bits & 2 == 0 { step } else { 0 },
             mode: source.modes()?,
             position: source.vector(any)?,
             velocity: source.vector(any)?,
@@ -69,7 +70,7 @@ fn fly(bytes: &[u8]) -> Option<()> {
             attitude_rate: source.angles(any)?,
             attitude_quaternion: source.quaternion(any)?,
             thrust: source.number(any)?,
-            velocity_body: (what >> 2) & 1,
+            velocity_body: (bits >> 2) & 1,
         };
         let state = State {
             position: source.vector(any)?,
@@ -81,7 +82,7 @@ fn fly(bytes: &[u8]) -> Option<()> {
         let sensors = SensorData { gyro, ..SensorData::default() };
         ffi::quatrack.parameters.table.store(source.byte()? % 8, Relaxed);
         ffi::quatrackService();
-        for _ in 0..=what >> 3 {
+        for _ in 0..=bits >> 3 {
             ffi::controllerOutOfTree(&mut control, &setpoint, &sensors, &state, step);
             step = step.wrapping_add(1);
             assert!(control.payload.iter().all(|value| value.is_finite()), "{control:?}");

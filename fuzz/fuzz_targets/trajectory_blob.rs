@@ -1,4 +1,5 @@
-//! Any bytes into the trajectory loader: what comes out plays to its end, every reference flyable or refused.
+//! Any bytes into the trajectory loader: a trajectory that comes out plays to its end, every reference flyable or
+//! refused.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

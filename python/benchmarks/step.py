@@ -3,7 +3,7 @@
     python python/benchmarks/step.py [CRAFTS]
 
 Both take states and setpoints in arrays and give forces or speeds of the motors in an array. The time is that of the calling thread, and
-each has only one: what else runs on the machine counts for little.
+each has only one: other loads of the machine count for little.
 """
 
 import os
@@ -31,7 +31,7 @@ def states():
 
 
 position, attitude, velocity, rates = states()
-# What their command has too: position, velocity and acceleration of each craft.
+# Their command has these too: position, velocity and acceleration of each craft.
 setpoints = [np.zeros((CRAFTS, 3)) for _ in range(3)]
 xyzw, command = np.roll(attitude, -1, axis=1), np.zeros((CRAFTS, 13))
 outer, inner, motors = (

@@ -113,7 +113,7 @@ impl<const W: usize> Quantity<W> {
         std::array::from_fn(|i| row[i])
     }
 
-    /// How many rows there are.
+    /// The number of rows.
     pub(crate) fn len(&self) -> usize {
         self.crafts.unwrap_or(1)
     }

@@ -13,7 +13,7 @@ use crate::arrays::Quantity;
 use crate::reference::Reference;
 use crate::state::{State, single};
 
-/// What is remembered of one craft.
+/// The memory of one craft.
 #[derive(Clone)]
 pub(crate) struct Craft {
     pub(crate) memory: Memory,
@@ -44,7 +44,7 @@ const CRAFTS_A_THREAD: usize = 256;
 /// Crafts from which on it pays to let other threads of the interpreter run.
 pub(crate) const WORTH_RELEASING: usize = 32;
 
-/// What a step is given.
+/// The inputs of a step.
 #[derive(Clone, Copy)]
 pub(crate) struct Inputs<'a> {
     pub(crate) state: &'a State,

@@ -64,7 +64,7 @@ const WORDS: [&str; 3] = ["law", "outcome", "reason"];
 ///
 /// scenario: path of a scenario with distributions, or its keys as a dictionary
 /// runs: how many; each law flies them all
-/// out: folder for the rows, made or gone on with: what was flown before is not flown again
+/// out: folder for the rows, made or gone on with: runs in it are not flown again
 /// laws: names; the scenario's where left out
 /// seed: of all draws; the scenario's where left out
 /// threads: as many as there are processors where left out

@@ -18,8 +18,8 @@ use crate::state::State;
 /// law: "quatrack" (the cascade), "actuator-aware", "lqr-e", "lyap-e", "lqr-f", "lyap-f", or a GainTable of any kind
 /// vehicle: a Vehicle, a name, a path or the keys of a vehicle file; laws of motor forces need it, the paper's end with thrust and
 ///     body rates without it
-/// mass_kg, lag_s: what the law is told of the craft where it differs from its file, kg and s
-/// drag_per_s, moment_n_m_per_m_s: what the cascade is told of the air, 1/s and N m a m/s
+/// mass_kg, lag_s: figures that the law is told where they differ from its file, kg and s
+/// drag_per_s, moment_n_m_per_m_s: the air that the cascade is told, 1/s and N m a m/s
 /// feed_forward: whether the paper's laws add the reference's own input
 /// error_form: "heading" or "paper", how the E laws form their error
 /// standing: whether the flight begins on the ground with the motors off; in the air at hover otherwise
@@ -29,7 +29,7 @@ pub(crate) struct Controller {
     law: OwnedLaw,
     standing: bool,
     threads: usize,
-    /// The leading axis of the steps so far, and what is remembered of each craft; none before the first step.
+    /// The leading axis of the steps so far, and the memory of each craft; none before the first step.
     crafts: Option<(Option<usize>, Vec<Craft>)>,
 }
 
@@ -183,7 +183,7 @@ fn said(crafts: Option<usize>) -> String {
     crafts.map_or_else(|| "one craft".to_owned(), |crafts| format!("{crafts} crafts"))
 }
 
-/// What a step gives, for one craft or for many; single precision, as the core computes it.
+/// The output of a step, for one craft or for many; single precision, as the core computes it.
 #[pyclass(frozen, module = "quatrack")]
 pub(crate) struct Step {
     crafts: Option<usize>,
@@ -221,7 +221,7 @@ impl Step {
         self.column(py, |Given { command: [_, p, q, r], .. }| [*p, *q, *r])
     }
 
-    /// What was given up to stay within the limits, as bits; 0 is nothing. Shape () or (N,).
+    /// The limits that cut the output, as bits; 0 is nothing. Shape () or (N,).
     #[getter]
     fn limited<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.column(py, |given| [given.limited])

@@ -72,7 +72,7 @@ pub(crate) struct CrazyflieController {
     tick: u32,
 }
 
-/// What the object commands, as control_t has it.
+/// The object's command, as control_t has it.
 #[pyclass(frozen, module = "quatrack")]
 pub(crate) struct CrazyflieControl {
     /// 1: force and torque; 2: forces of the motors.
@@ -165,7 +165,7 @@ fn sensors(of: &Bound<'_, PyAny>) -> PyResult<SensorData> {
 }
 
 impl CrazyflieController {
-    /// What is shared by the process, as long as it is this one's.
+    /// The state that is shared by the process, as long as it is this one's.
     fn own(&self) -> PyResult<MutexGuard<'static, u64>> {
         let number = switched_on();
         if *number == self.number {
@@ -189,7 +189,7 @@ impl CrazyflieController {
         let mut number = switched_on();
         *number += 1;
         let parameters = &ffi::quatrack.parameters;
-        // As switched on: what is no number is put back to its default.
+        // As switched on: a NaN is put back to its default.
         parameters.set_all(f32::NAN);
         parameters.table.store(0, Relaxed);
         parameters.feed_forward.store(1, Relaxed);

@@ -91,7 +91,7 @@ fn riccati<S: Into<Feedback> + Send + 'static>(
 ///
 /// a: (n, n); b: (n, m); q: (n, n), symmetric; r: (m, m), symmetric
 ///
-/// Returns a Feedback; a poor answer is a QuatrackError that says what is wrong with the problem.
+/// Returns a Feedback; a poor answer is a QuatrackError that names the fault of the problem.
 #[pyfunction]
 pub(crate) fn care(
     py: Python<'_>,
@@ -107,7 +107,7 @@ pub(crate) fn care(
 ///
 /// a: (n, n); b: (n, m); q: (n, n), symmetric; r: (m, m), symmetric
 ///
-/// Returns a Feedback; a poor answer is a QuatrackError that says what is wrong with the problem.
+/// Returns a Feedback; a poor answer is a QuatrackError that names the fault of the problem.
 #[pyfunction]
 pub(crate) fn lqr(
     py: Python<'_>,
@@ -123,7 +123,7 @@ pub(crate) fn lqr(
 ///
 /// a: (n, n); b: (n, m); q: (n, n), symmetric; r: (m, m), symmetric
 ///
-/// Returns a Feedback; a poor answer is a QuatrackError that says what is wrong with the problem.
+/// Returns a Feedback; a poor answer is a QuatrackError that names the fault of the problem.
 #[pyfunction]
 pub(crate) fn dare(
     py: Python<'_>,
@@ -139,7 +139,7 @@ pub(crate) fn dare(
 ///
 /// a: (n, n); b: (n, m); q: (n, n), symmetric; r: (m, m), symmetric
 ///
-/// Returns a Feedback; a poor answer is a QuatrackError that says what is wrong with the problem.
+/// Returns a Feedback; a poor answer is a QuatrackError that names the fault of the problem.
 ///
 /// s: (n, m), the cross weight
 #[pyfunction]
@@ -210,7 +210,7 @@ pub(crate) fn hover_model<'py>(
     Ok((from_matrix(py, &a)?, from_matrix(py, &b)?))
 }
 
-/// What a feedback promises as it is flown, rounded to single precision and held over a period.
+/// The certificate of a feedback as it is flown, rounded to single precision and held over a period.
 ///
 /// a: (n, n); b: (n, m); gain: (m, n) of u = -K x; rate_hz: control rate
 /// delay_samples: whole samples by which commands are known to act late

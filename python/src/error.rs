@@ -1,4 +1,4 @@
-//! What goes wrong, as exceptions with the text of the command.
+//! Errors as exceptions, with the text of the command.
 
 use std::fmt::Display;
 
@@ -10,7 +10,7 @@ create_exception!(
     quatrack,
     QuatrackError,
     PyValueError,
-    "What the crates refuse: one line that says what is wrong, where, and what to do. It is a ValueError."
+    "A refusal of the crates: one line that names the fault, its place and the remedy. It is a ValueError."
 );
 
 /// An error of a crate as the exception.

@@ -16,7 +16,7 @@ use crate::state::{State, single};
 /// The core's error-state Kalman filter with its estimate, of one craft.
 ///
 /// state: State to begin with
-/// force: "thrust-axis" or "all-axes", what the prediction takes from the accelerometer
+/// force: "thrust-axis" or "all-axes", the part of the accelerometer that the prediction takes
 /// integration: "second-order", or "crazyflie" as that firmware does it
 /// drag_per_s: (2,), linear drag over mass along body x and y, 1/s, for "thrust-axis"
 /// acceleration_noise, gyro_noise: (3,), densities, m/s^2 and rad/s per root hertz
@@ -24,7 +24,7 @@ use crate::state::{State, single};
 /// deviation_min, deviation_max: bounds of any deviation, SI
 /// gate: "open", "99%", "99.9%" or "99.99%", which measurements are taken for outliers
 ///
-/// What is left out is as the Crazyflie's firmware has it.
+/// Arguments left out are as in the Crazyflie's firmware.
 #[pyclass(module = "quatrack")]
 pub(crate) struct Estimator {
     filter: CoreEstimator,

@@ -24,7 +24,7 @@ use crate::own_law::{Interruptible, OwnLaw};
 use crate::scenario;
 use crate::state::State;
 
-/// What flies.
+/// The law that flies.
 enum Flies {
     Named(Law),
     Table { bytes: Vec<u8>, name: String },
@@ -149,7 +149,7 @@ fn flown(py: Python<'_>, scenario: &Scenario, flies: Flies, course: Option<Piece
 /// scenario: a Scenario, a path, or the keys of a file as a dictionary
 /// law: the scenario's own where left out; a name, a GainTable for motor forces, or a callable that takes a LawInput and returns
 ///     the forces of M1 to M4 (4,), N. Its attribute rate_hz says how often it is called (500), its method reset is called before the
-///     flight. What it raises ends the flight and is raised here
+///     flight. An exception in it ends the flight and is raised here
 ///
 /// Returns a Flight. A craft that is lost is no exception: Flight.lost says when and why.
 #[pyfunction]
@@ -224,7 +224,7 @@ impl Flight {
 
 #[pymethods]
 impl Flight {
-    /// Which law flew.
+    /// The law that flew.
     #[getter]
     fn law(&self) -> &str {
         &self.law
@@ -285,7 +285,7 @@ impl Flight {
         State::of_rigid(Some(samples.len()), samples.iter().map(|sample| &sample.state))
     }
 
-    /// What its law took that for.
+    /// Its law's estimate.
     #[getter]
     fn estimate(&self) -> State {
         let around = &self.recording.around;

@@ -1,4 +1,4 @@
-//! Tables of gains: bytes, files, designs and what is built in.
+//! Tables of gains: bytes, files, designs and built-in ones.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -155,7 +155,7 @@ impl GainTable {
         self.table.head().name.as_str()
     }
 
-    /// Which law it is for.
+    /// The law that it is for.
     #[getter]
     fn kind(&self) -> String {
         self.table.kind().to_string()
@@ -191,7 +191,7 @@ impl GainTable {
         shaped(py, &shape, entries)
     }
 
-    /// What the table says that was proven: margins, delay and lag.
+    /// The certificate that the table states: margins, delay and lag.
     #[getter]
     fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let certificate = &self.table.head().certificate;

@@ -40,7 +40,7 @@ pub(crate) struct OwnedLaw {
     pub(crate) name: String,
 }
 
-/// What is said beside a law.
+/// Settings beside a law.
 pub(crate) struct Options<'a, 'py> {
     pub(crate) vehicle: Option<&'a Bound<'py, PyAny>>,
     pub(crate) mass_kg: Option<f64>,
@@ -215,7 +215,7 @@ impl OwnedLaw {
         Ok(run(&accepted.controller(&settings).map_err(refused)?))
     }
 
-    /// What it remembers at the start of a flight: in the air, or on the ground with the motors off.
+    /// Its memory at the start of a flight: in the air, or on the ground with the motors off.
     pub(crate) fn memory(&self, standing: bool) -> Memory {
         match &self.actuation {
             Some(actuation) if !standing => Memory::hovering(actuation.airframe()),

@@ -11,7 +11,7 @@
 //! crazyflie         the Crazyflie object through its C interface
 //! controller        the core's controller, for many crafts
 //!   batch           one step of all of them
-//!     law           a law with what it borrows
+//!     law           a law with its borrowed parts
 //! estimator
 //! gains, trajectory, design
 //!   state, reference, vehicle
@@ -44,7 +44,7 @@ mod trajectory;
 mod values;
 mod vehicle;
 
-/// What Python imports; the package `quatrack` names it.
+/// The module that Python imports; the package `quatrack` names it.
 #[pyo3::pymodule]
 mod _quatrack {
     use pyo3::prelude::*;

@@ -23,7 +23,7 @@ impl Cancelled {
 }
 
 /// Does the work on a thread of its own. On a signal whose handler raises, as Ctrl-C's does, the exception comes back at once; the
-/// work is told, and what cannot be told (a solver) comes to its end alone.
+/// work is told, and work that cannot be told (a solver) comes to its end alone.
 pub(crate) fn long_call<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Cancelled) -> T + Send + 'static,

@@ -12,7 +12,7 @@ use crate::long_call::Cancelled;
 use crate::reference::Reference;
 use crate::state::State;
 
-/// What a law is given at a control step.
+/// The inputs of a law at a control step.
 #[pyclass(frozen, module = "quatrack")]
 pub(crate) struct LawInput(Input);
 
@@ -74,7 +74,7 @@ impl LawInput {
 pub(crate) struct OwnLaw {
     callable: Py<PyAny>,
     rate_hz: u32,
-    /// What it raised: the flight ends there.
+    /// The exception that it raised: the flight ends there.
     pub(crate) raised: Option<PyErr>,
 }
 

@@ -17,7 +17,7 @@ use crate::state::State;
 ///
 /// scenario: a Scenario, a path, or the keys of a file as a dictionary; its course and law count for nothing here
 /// state: State of one craft or of N, where they begin
-/// motor_forces: (4,) or (N, 4), what the motors give at the start, N; at hover where left out
+/// motor_forces: (4,) or (N, 4), the motors' forces at the start, N; at hover where left out
 /// seeds: N whole numbers, where the gusts of each begin; the scenario's and those after it where left out
 /// threads: at most so many for many crafts
 #[pyclass(module = "quatrack")]
@@ -33,7 +33,7 @@ const CRAFTS_A_THREAD: usize = 32;
 
 /// A state of one craft as a start, its motors at hover or at given forces.
 fn start(state: &State, row: usize, thrusts_n: Vector4<f64>) -> Result<RigidState, String> {
-    // The core's check of what is a state.
+    // The core's check of a state.
     state.core(row).validated().map_err(|error| error.to_string())?;
     let [w, x, y, z] = state.attitude.row(row);
     Ok(RigidState {
@@ -136,7 +136,7 @@ impl Plant {
         Ok(())
     }
 
-    /// Where the crafts are, with what gyroscope and accelerometer feel without noise.
+    /// Where the crafts are, with the readings of gyroscope and accelerometer without noise.
     #[getter]
     fn state(&mut self) -> State {
         let felt = self.plants.iter_mut().map(|plant| plant.motion().specific_force_m_s2.into());

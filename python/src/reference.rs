@@ -1,4 +1,4 @@
-//! What is to be followed, for one craft or for many.
+//! References, for one craft or for many.
 
 use pyo3::prelude::*;
 use quatrack::nalgebra::Vector3;
@@ -31,7 +31,7 @@ pub(crate) struct Reference {
 }
 
 impl Reference {
-    /// How many rows there are.
+    /// The number of rows.
     pub(crate) fn len(&self) -> usize {
         self.crafts.unwrap_or(1)
     }

@@ -9,7 +9,7 @@ use crate::long_call::long_call;
 use crate::trajectory::by_name;
 use crate::values::from_json;
 
-/// The paper's Table I beside ours: what `quatrack reproduce` prints, and its numbers.
+/// The paper's Table I beside ours: the output of `quatrack reproduce`, and its numbers.
 #[pyclass(frozen, module = "quatrack")]
 pub(crate) struct Reproduction {
     text: String,

@@ -15,7 +15,7 @@ use crate::trajectory;
 use crate::values::Source;
 use crate::vehicle::Vehicle;
 
-/// A craft, its air, what is wrong with what is known of it, a course and a law.
+/// A craft, its air, its deviations, a course and a law.
 ///
 /// scenario: path of a scenario file, or its keys as a dictionary
 #[pyclass(frozen, module = "quatrack")]
@@ -58,7 +58,7 @@ impl Course {
         Ok(Reference::of_points(times.crafts, &points))
     }
 
-    /// When it ends, s.
+    /// Its end, s.
     #[getter]
     fn duration(&self) -> f64 {
         self.scenario.flown(self.trajectory.clone()).course.duration_s()
@@ -78,7 +78,7 @@ impl Scenario {
         argument(scenario).map(Self)
     }
 
-    /// What is flown, with the time that is measured; a trajectory that it names is had first.
+    /// The course, with the time that is measured; a trajectory that it names is planned or read first.
     fn course(&self, py: Python<'_>) -> PyResult<Course> {
         Ok(Course { scenario: self.0.clone(), trajectory: trajectory(py, &self.0)? })
     }

@@ -9,7 +9,7 @@ use quatrack_simulation::plant::RigidState;
 use crate::arrays::{Quantity, Together};
 use crate::error::refused_of;
 
-/// Where a craft is and what its inertial sensors feel; of N crafts with a leading axis N.
+/// State of a craft and readings of its inertial sensors; of N crafts with a leading axis N.
 ///
 /// World frame z up; body x forwards, y left, z up; quaternion scalar first, body to world, either sign. A quantity given as one
 /// row serves all crafts.
@@ -47,7 +47,7 @@ impl State {
         }
     }
 
-    /// How many rows there are.
+    /// The number of rows.
     pub(crate) fn len(&self) -> usize {
         self.crafts.unwrap_or(1)
     }
@@ -77,7 +77,7 @@ impl State {
         }
     }
 
-    /// Of what laws were told.
+    /// Of the estimates that laws were told.
     pub(crate) fn of_estimates<'a>(
         crafts: Option<usize>,
         estimates: impl Iterator<Item = &'a Estimate> + Clone,

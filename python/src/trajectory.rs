@@ -161,7 +161,7 @@ impl Trajectory {
         Ok(Reference::of_points(times.crafts, &points))
     }
 
-    /// What plays it on board, at a rate.
+    /// The player that plays it on board, at a rate.
     #[pyo3(signature = (rate_hz=500))]
     fn player(&self, rate_hz: u32) -> PyResult<Player> {
         let pieces = on_board::pieces(&self.0);

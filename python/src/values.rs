@@ -8,7 +8,7 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
-/// A file that a command reads: by its path, or what would be in it as a dictionary.
+/// A file that a command reads: by its path, or its contents as a dictionary.
 pub(crate) enum Source {
     Path(PathBuf),
     Text(String),
@@ -16,10 +16,10 @@ pub(crate) enum Source {
 
 impl Source {
     /// From a path (str or os.PathLike) or a dictionary with the keys of the file.
-    pub(crate) fn read(what: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub(crate) fn read(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(dictionary) = value.cast::<PyDict>() {
-            let text = toml::to_string(&table(what, dictionary, DEEPEST)?)
-                .map_err(|error| PyTypeError::new_err(format!("{what}: {error}")))?;
+            let text = toml::to_string(&table(name, dictionary, DEEPEST)?)
+                .map_err(|error| PyTypeError::new_err(format!("{name}: {error}")))?;
             return Ok(Self::Text(text));
         }
         match value.extract::<PathBuf>() {
@@ -27,7 +27,7 @@ impl Source {
             Err(_) => {
                 let kind = value.get_type().name()?;
                 Err(PyTypeError::new_err(format!(
-                    "{what}: {kind}; give a path, or a dictionary with the keys of the file"
+                    "{name}: {kind}; give a path, or a dictionary with the keys of the file"
                 )))
             }
         }
@@ -70,7 +70,7 @@ fn entry(path: &str, value: &Bound<'_, PyAny>, left: u32) -> PyResult<Value> {
     if value.is_instance_of::<PyFloat>() {
         return value.extract().map(Value::Float);
     }
-    // Arrays and numbers of NumPy say themselves what they are in Python.
+    // Arrays and numbers of NumPy convert themselves to Python's own types.
     if value.hasattr("tolist")? {
         return entry(path, &value.call_method0("tolist")?, left);
     }

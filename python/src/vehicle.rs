@@ -36,7 +36,7 @@ pub(crate) fn argument(value: &Bound<'_, PyAny>) -> PyResult<DesignVehicle> {
     .map_err(refused)
 }
 
-/// What a law is told of a craft.
+/// The figures of a craft that a law is told.
 pub(crate) fn told(
     vehicle: &DesignVehicle,
     mass_kg: Option<f64>,

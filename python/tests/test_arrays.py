@@ -55,7 +55,7 @@ def test_rows_that_do_not_match_are_refused():
         q.State(np.zeros((2, 3)), velocity=np.zeros((3, 3)))
 
 
-def test_what_is_given_back_is_a_copy():
+def test_returned_arrays_are_copies():
     state = q.State([0.0, 0.0, 1.0])
     state.position[2] = 5.0
     assert state.position[2] == 1.0

@@ -25,7 +25,7 @@ def test_rows_come_as_columns_and_are_the_same_again(tmp_path):
     assert (tmp_path / "one" / "rows.parquet").exists()
 
 
-def test_what_is_no_campaign_is_refused(tmp_path):
+def test_folders_that_are_no_campaign_are_refused(tmp_path):
     with pytest.raises(q.QuatrackError, match="no such law"):
         q.campaign(VARIED, 5, tmp_path / "one", laws=["albatross"])
     with pytest.raises(ValueError, match="at least 1"):

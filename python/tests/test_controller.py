@@ -30,7 +30,7 @@ def test_many_crafts_are_as_many_single_ones_to_the_bit(make):
                 assert np.array_equal(getattr(alone, name), getattr(step, name)[row], equal_nan=True), name
 
 
-def test_the_papers_law_gives_what_its_gain_says():
+def test_the_papers_law_gives_its_gains_command():
     controller = q.Controller("lqr-e")
     step = controller.step(q.State([0.0, 0.0, 0.99]), q.Reference([0.0, 0.0, 1.0]))
     # 10 mm too low at 100 1/s^2; single precision of 10.81.
@@ -54,7 +54,7 @@ def test_a_reference_to_the_jerk_has_its_snap_fitted():
         to_jerk = q.Reference(at.position, at.velocity, at.acceleration, at.jerk)
         forces = [c.step(at.state, r).motor_forces for c, r in ((exact, at), (fitted, to_jerk))]
         apart.append(np.abs(forces[0] - forces[1]).max())
-    # While it fits, the snap is missing; then what is missing is the fit's own error, a hundredth of the weight at most.
+    # While it fits, the snap is missing; then the fit's own error is missing, a hundredth of the weight at most.
     assert max(apart[10:]) < 0.02 * q.Vehicle(CRAFT).hover_force_n < max(apart[:1]) + 1.0
 
 

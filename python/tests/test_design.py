@@ -60,7 +60,7 @@ def test_fortran_order_is_the_same_matrix():
         (lambda: q.certify(*DOUBLE[:2], [[-1.0, -1.0]], 500), "stable"),
     ],
 )
-def test_what_has_no_answer_says_why(call, text):
+def test_equations_without_an_answer_are_refused(call, text):
     with pytest.raises(q.QuatrackError, match=text):
         call()
 
@@ -70,7 +70,7 @@ def test_a_vector_is_no_matrix():
         q.lqr(DOUBLE[0], [0.0, 1.0], np.eye(2), np.eye(1))
 
 
-def test_a_certificate_says_what_a_gain_promises():
+def test_a_certificate_has_the_figures_of_a_gain():
     gain = q.lqr(*DOUBLE).gain
     certificate = q.certify(*DOUBLE[:2], gain, 500)
     assert certificate["rate_hz"] == 500.0

@@ -34,7 +34,7 @@ def test_an_outlier_is_not_taken():
     assert filter.update_distance([0.0, 3.0, 1.0], 3.0, 0.1)["is_taken"]
 
 
-def test_what_no_sensor_gives_is_refused():
+def test_impossible_measurements_are_refused():
     filter = q.Estimator(q.State([0.0, 0.0, 1.0]))
     with pytest.raises(q.QuatrackError):
         filter.predict([np.nan, 0.0, 0.0], [0.0, 0.0, 9.81], 0.01)

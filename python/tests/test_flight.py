@@ -74,7 +74,7 @@ def test_a_table_for_motor_forces_flies():
         q.fly(SHORT, q.GainTable.builtin("lqr-e"))
 
 
-def test_what_a_law_raises_ends_the_flight_and_is_raised():
+def test_an_exception_of_a_law_ends_the_flight_and_is_raised():
     class Broken(Exception):
         pass
 
@@ -96,7 +96,7 @@ def test_what_a_law_raises_ends_the_flight_and_is_raised():
         (None, Exception, "motor forces of the law"),
     ],
 )
-def test_what_is_no_force_is_refused(given, error, text):
+def test_returns_that_are_no_forces_are_refused(given, error, text):
     with pytest.raises(error, match=text):
         q.fly(SHORT, lambda _: given)
 

@@ -15,7 +15,8 @@ from conftest import random_crafts
 
 LONG = {"vehicle": "crazyflie-2.1", "course": "hover", "duration_s": 600.0}
 
-# What each call needs, made before the signal may come: an interrupt inside another package's import or C code is that package's.
+# The arguments of each call, made before the signal may come: an interrupt inside another package's import or C code is
+# that package's.
 CALLS = {
     "fly": ("pass", f"q.fly({LONG!r})"),
     "fly with a law of one's own": (

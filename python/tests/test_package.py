@@ -15,7 +15,7 @@ def test_the_version_is_the_workspaces():
     assert f'version = "{q.__version__}"' in manifest.split("\n[", 1)[0]
 
 
-def test_everything_says_what_it_is():
+def test_everything_has_a_description():
     for name in q.__all__:
         if name == "__version__":
             continue
@@ -27,7 +27,7 @@ def test_everything_says_what_it_is():
             assert not untold, (name, untold)
 
 
-def test_the_stubs_have_what_there_is():
+def test_the_stubs_are_complete():
     stub = ast.parse((Path(q.__file__).parent / "_quatrack.pyi").read_text())
     classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
     functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}

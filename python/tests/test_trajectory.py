@@ -33,7 +33,7 @@ def test_a_plan_passes_its_waypoints():
     assert np.abs(trajectory.at(times).position - stored.at(times).position).max() < 1e-5
 
 
-def test_a_plan_without_a_way_says_what_is_too_tight():
+def test_an_infeasible_plan_names_its_tight_bounds():
     import tomllib
 
     plan = tomllib.loads((ROOT / "plans" / "aggressive.toml").read_text())
@@ -53,7 +53,7 @@ def test_a_refit_goes_into_a_crazyflies_memory():
     assert np.abs(fitted.at(times).position - mild.at(times).position).max() < 5e-3
 
 
-def test_what_cannot_be_flown_is_refused():
+def test_trajectories_that_cannot_be_flown_are_refused():
     jump = np.zeros((2, 4, 8))
     jump[1, 0, 0] = 1.0
     with pytest.raises(q.QuatrackError, match="x jumps by 1.0"):
@@ -64,7 +64,7 @@ def test_what_cannot_be_flown_is_refused():
         q.Trajectory.load("none.csv")
 
 
-def test_a_player_gives_what_the_trajectory_says():
+def test_a_player_gives_the_trajectorys_samples():
     mild = q.Trajectory.paper("mild")
     player = mild.player(500)
     assert player.end_tick == 15000

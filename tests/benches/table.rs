@@ -1,10 +1,11 @@
-//! What the benchmarks before this one measured, as the README has it: `cargo bench --package quatrack-tests` ends with it.
+//! The measurements of the benchmarks before this one, as the README has them: `cargo bench --package quatrack-tests`
+//! ends with it.
 
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-/// Groups in the order of the table, and what one iteration is.
+/// Groups in the order of the table, and the content of one iteration.
 const GROUPS: [(&str, &str); 6] = [
     ("step", "one control step"),
     ("plant", "2 ms of the plant"),

@@ -1,4 +1,4 @@
-//! States off references, spread evenly over a box of 24 dimensions: what the laws are compared on.
+//! States off references, spread evenly over a box of 24 dimensions: the laws are compared on them.
 
 use quatrack::nalgebra::Vector3;
 use quatrack::{FlatSample, Quaternion, Reference, State};

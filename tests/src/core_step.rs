@@ -10,7 +10,7 @@ pub fn step(controller: &Controller<'_>, state: &State, reference: &Reference) -
     step_on(controller, &mut Memory::at_rest(), state, Target::new(reference))
 }
 
-/// A step on what is remembered.
+/// A step on the remembered values.
 ///
 /// # Errors
 /// As [`Controller::step`].

@@ -1,4 +1,4 @@
-//! Matrices and random problems of the tests of the Riccati solvers, and what they all must hold to.
+//! Matrices and random problems of the tests of the Riccati solvers, and the bounds that they all must keep.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ pub fn identity(n: usize) -> DMatrix<f64> {
     DMatrix::identity(n, n)
 }
 
-/// The norm of the difference over the norm of what is right.
+/// The norm of the difference over the norm of the right value.
 pub fn relative_error(got: &DMatrix<f64>, want: &DMatrix<f64>) -> f64 {
     (got - want).norm() / want.norm()
 }

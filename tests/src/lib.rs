@@ -1,4 +1,4 @@
-//! What the tests that cross crates share; they live in `tests/`.
+//! Shared parts of the tests that cross crates; the tests are in `tests/`.
 
 pub mod cases;
 pub mod core_step;

@@ -282,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn the_air_is_learned_from_nothing_whatever_the_bias() {
+    fn the_air_is_learned_from_nothing_at_any_bias() {
         let untold = Air { learn: true, ..Air::NONE };
         let (learner, seen) = known(&untold, 30.0, 0.5, 0.0, 1.0);
         // The told zero keeps 0.1 of 30 m^2/s for drag, of 15 for each moment.
@@ -305,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn without_an_accelerometer_what_is_told_is_flown() {
+    fn without_an_accelerometer_the_told_air_is_flown() {
         let learner = AirLearner::new(&Air::BRUSHED, &CRAFT, H);
         let mut seen = SeenAir::NONE;
         for accelerometer in [None, Some(Vector3::new(f32::NAN, 0.0, 0.0)), Some(Vector3::new(0.0, 1e9, 0.0))] {

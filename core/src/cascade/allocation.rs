@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_refused() {
+    fn numbers_that_are_not_finite_are_refused() {
         let allocation = Allocation::of(&CRAFT);
         for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
             for place in 0..4 {

@@ -1,4 +1,5 @@
-//! The attitude that makes an acceleration, and how far the craft is from it.
+//! The attitude error of the cascade: the wanted specific force (world frame, m/s^2), a heading and the craft's attitude
+//! in; half the rotation vector from the wanted attitude to the craft's (body frame, rad) out.
 
 use nalgebra::Vector3;
 

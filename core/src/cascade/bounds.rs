@@ -22,7 +22,7 @@ pub(super) fn between(value: f32, least: f32, most: f32) -> f32 {
     if below < least { least } else { below }
 }
 
-/// Whether a number is beyond a bound either way, or no number.
+/// Whether a number is beyond a bound either way, or NaN.
 #[inline(always)]
 pub(super) fn is_beyond(value: f32, bound: f32) -> bool {
     let is_within = value.abs() <= bound;
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_stays_so() {
+    fn a_nan_stays_one() {
         assert!(is_beyond(f32::NAN, 1.0) && is_beyond(-1.1, 1.0) && !is_beyond(-1.0, 1.0));
         assert!(within(f32::NAN, 1.0).is_nan() && between(f32::NAN, 0.0, 1.0).is_nan());
         let [x, y] = shortened([f32::NAN, 0.0], 1.0);

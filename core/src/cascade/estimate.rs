@@ -35,7 +35,7 @@ const NORM_SQUARED: [f32; 2] = [0.25, 4.0];
 pub(super) struct Now {
     pub(super) position: Vector3<f32>,
     pub(super) velocity: Vector3<f32>,
-    /// Of norm 1.
+    /// The attitude, of norm 1.
     pub(super) attitude: Quaternion,
     pub(super) body_rates: Vector3<f32>,
 }

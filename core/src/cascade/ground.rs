@@ -1,10 +1,12 @@
 //! Standing, held or flying: whether the observers may believe the measurements.
 //!
-//! On the ground, or held by a wall or a hand, a craft does not move as its forces say. After a start with motors off it stands until
-//! it has climbed or moves, and asks for no way sideways. A disturbance on its bound at rest means that it is held, and so does a
-//! stop that no air makes: near there it goes towards its goal slowly, by the error alone. Pressed against a wall by its lower edge a
-//! craft is turned over by the wall the more the more it leans. A push along the thrust that only the ground can give means that it
-//! stands again.
+//! On the ground, or held by a wall or a hand, a craft does not move as its forces say: the observers would learn a false disturbance.
+//!
+//! - **Standing.** After a start with motors off it stands until it has climbed or moves, and corrects no position over ground. A
+//!   disturbance along the thrust that only the ground can give means that it stands again.
+//! - **Held.** A disturbance on its bound at rest means that it is held, and so does a stop that no air makes. Near that place it
+//!   goes towards its goal slowly, by the error alone: a craft that leans against a wall on its lower edge is turned over by it.
+//! - **Flying** otherwise.
 
 use nalgebra::Vector3;
 
@@ -19,7 +21,7 @@ const HELD_WAY_M: f32 = 0.15;
 pub(super) const HELD_M_S: f32 = 0.15;
 /// Speed from which on it does, and below which it is at rest, m/s.
 const MOVING_M_S: f32 = 0.25;
-/// Time at rest with a disturbance on its bound after which it is held, s: less than a craft takes to lean against what it has
+/// Time at rest with a disturbance on its bound after which it is held, s: less than a craft takes to lean against the disturbance that it has
 /// learned.
 const HELD_S: f32 = 0.03;
 /// Push along the thrust, at rest, that only the ground gives, m/s^2.

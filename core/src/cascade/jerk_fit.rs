@@ -5,7 +5,7 @@
 
 use nalgebra::Vector3;
 
-/// How many jerks are kept.
+/// Number of jerks that are kept.
 const KEPT: usize = 8;
 
 /// The last jerks, newest first, dated.
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn few_jerks_give_what_they_can() {
+    fn few_jerks_give_as_many_derivatives_as_they_can() {
         let mut fit = JerkFit::NONE;
         assert_eq!(fit.snap_and_crackle(), [Vector3::zeros(); 2]);
         fit.accept(&Vector3::x(), 0.0);

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_gives_nothing_and_what_is_large_stays_within_the_range() {
+    fn a_nan_gives_nothing_and_large_inputs_stay_within_the_range() {
         let figures = CRAFT.figures();
         let upside_down = Quaternion::new(0.0, 1.0, 0.0, 0.0);
         for acceleration in [[0.0, 0.0, -100.0], [1e6, -1e6, 1e6], [0.0; 3]] {

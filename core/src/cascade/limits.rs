@@ -1,4 +1,5 @@
-//! Limits on the way to a place that is far off.
+//! Limits of the cascade's outer loop on the way to a distant goal: speed over ground and up and down (m/s), and tilt.
+//! The law is linear, and would tilt too far without them.
 
 use core::fmt;
 

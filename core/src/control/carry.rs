@@ -1,4 +1,4 @@
-//! A command carried to the motors: body-rate loop and mixer.
+//! A command of thrust (m/s^2) and body rates (rad/s) carried to motor forces (N): body-rate loop and mixer.
 
 use nalgebra::Vector3;
 

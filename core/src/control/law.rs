@@ -1,4 +1,4 @@
-//! Any law with its gain, to be chosen at run time.
+//! Any law with its gain, chosen at run time: one type, so that one controller flies every kind of table.
 
 #[cfg(feature = "cascade")]
 use crate::cascade::Cascade;

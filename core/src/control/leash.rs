@@ -1,4 +1,5 @@
-//! The leash: how far away a goal may be.
+//! The leash: a goal's position and velocity (world frame, m, m/s) in; the same, no farther from the measured ones than
+//! its length, out.
 
 use nalgebra::Vector3;
 

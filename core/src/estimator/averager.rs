@@ -1,4 +1,4 @@
-//! Samples of the inertial sensors between two predictions, averaged.
+//! Samples of the inertial sensors (body frame, rad/s and m/s^2) in; their mean between two predictions out.
 
 use nalgebra::Vector3;
 

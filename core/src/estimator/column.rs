@@ -1,4 +1,5 @@
-//! Nine errors in three groups.
+//! A column of the filter's nine errors, in groups of three: position (m) and velocity (m/s) in the world frame, attitude
+//! (body frame, rad).
 
 use nalgebra::Vector3;
 

@@ -88,7 +88,7 @@ pub struct DeviationsAtStart {
 pub struct EstimatorConfig {
     /// Where the force comes from.
     pub force: Force,
-    /// How it is integrated.
+    /// The method of integration.
     pub integration: Integration,
     /// Linear drag over mass along body x and body y, 1/s, for [`Force::ThrustAxis`]; 0 where it is unknown. There is
     /// none for body z: along it the accelerometer measures the drag together with the thrust.

@@ -1,4 +1,5 @@
-//! The covariance of the nine errors as blocks of three, so that zero blocks are not multiplied.
+//! The covariance of the filter's nine errors as blocks of three, so that zero blocks are not multiplied. Units are those
+//! of the errors, squared.
 
 use nalgebra::{Matrix3, Vector3};
 

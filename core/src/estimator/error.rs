@@ -63,7 +63,7 @@ impl EstimatorFigure {
 pub enum EstimatorError {
     /// A figure is not a number or not within its range. The estimate stays as it was.
     OutOfRange {
-        /// Which.
+        /// The figure.
         figure: EstimatorFigure,
         /// Its value.
         value: f32,

@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_named_and_changes_nothing() {
+    fn a_nan_is_named_and_changes_nothing() {
         let (estimator, mut estimate) = at_home();
         let before = estimate;
         let position = Vector3::new(0.0, f32::NAN, 0.0);

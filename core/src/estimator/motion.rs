@@ -1,4 +1,5 @@
-//! Position, velocity and attitude carried over a period by gyroscope and accelerometer.
+//! Position, velocity (world frame) and attitude carried over a period by gyroscope and accelerometer (body frame): the
+//! prediction of the filter's state.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,4 +1,5 @@
-//! Small rotations without sine and cosine, and rotations as matrices.
+//! Small rotations (rotation vectors, rad) as quaternions and matrices, by series: without the sine and cosine of a
+//! library, for the same bits on every target.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -40,7 +40,7 @@ pub enum ScheduleError {
     NoSpacing,
     /// The gain at one of them is none.
     Knot {
-        /// Which, from 0.
+        /// The knot's number, from 0.
         knot: usize,
         /// Why.
         error: GainError,

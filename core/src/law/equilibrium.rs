@@ -131,7 +131,7 @@ pub enum ErrorForm {
 pub struct Equilibrium<'a> {
     /// The gain, designed at heading 0.
     pub gain: &'a EquilibriumGain,
-    /// How the error is formed.
+    /// The error's form.
     pub error_form: ErrorForm,
     /// Whether the reference's input replaces the hover input `u_e`.
     pub feed_forward: FeedForward,

@@ -131,7 +131,7 @@ struct Framer<'b> {
     buffer: &'b mut [u8],
     /// Where the block's code byte is.
     code_at: usize,
-    /// Where the next byte goes.
+    /// The next byte's place.
     next: usize,
 }
 

@@ -90,7 +90,7 @@ pub struct Identity {
     pub decimation: u32,
     /// Pieces that an uploaded trajectory may have.
     pub trajectory_pieces: u32,
-    /// Which frames carry a tag.
+    /// The frames that carry a tag.
     pub protection: Protection,
     /// Whether only signed gain tables are taken.
     pub signed_tables: bool,
@@ -198,13 +198,13 @@ pub enum Refusal {
     OutOfRange,
     /// There is no such trajectory on board, or none is playing.
     NoTrajectory,
-    /// See the error.
+    /// Arming is refused.
     Arm(ArmError),
-    /// See the error.
+    /// The limits are refused.
     Limits(LimitsError),
-    /// See the error.
+    /// A part of an upload is refused.
     Upload(UploadError),
-    /// See the error.
+    /// A finished upload is refused.
     Blob(BlobError),
     /// No gain table has been loaded in this place, or none can be for the rate of the steps.
     NoTable,

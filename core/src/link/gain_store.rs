@@ -69,7 +69,7 @@ impl<const KNOTS: usize> GainStore<KNOTS> {
         self.slots.iter_mut().for_each(Slot::clear);
     }
 
-    /// Whose tables are taken, and the rate of control steps that they must be certified at.
+    /// The vehicle whose tables are taken, and the rate of control steps that they must be certified at.
     pub const fn board(&self) -> Option<&(Vehicle, Rate)> {
         self.board.as_ref()
     }

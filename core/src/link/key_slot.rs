@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_written_is_read() {
+    fn written_keys_are_read() {
         let (a, b) = ([3; KEY_BYTES], [0xFF; KEY_BYTES]);
         let links = [None, Some((a, Protection::Orders)), Some((b, Protection::Everything))];
         for link in links {
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn no_cleared_bit_opens_what_was_closed() {
+    fn no_cleared_bit_opens_a_closed_board() {
         let keys = GivenKeys { link: Some(([3; KEY_BYTES], Protection::Everything)), signing: Some([4; KEY_BYTES]) };
         for byte in [16, 17] {
             for bit in 0..8 {

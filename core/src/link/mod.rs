@@ -88,13 +88,13 @@ pub const DELIMITER: u8 = 0;
 
 /// A message that can be framed: [`ToBoard`] or [`FromBoard`]. Sealed: the schema is this module's.
 pub trait Message: serde::Serialize + serde::de::DeserializeOwned + private::Sealed {
-    /// How many kinds there are.
+    /// Number of kinds.
     const KINDS: u8;
 
     /// Whether this message opens a session at its receiver.
     fn opens_session(&self) -> bool;
 
-    /// When it carries a tag.
+    /// Its rule of tagging.
     fn tagging(&self) -> Tagging;
 }
 

@@ -41,7 +41,7 @@ impl Nonce {
     pub const NONE: Self = Self([0; 16]);
 }
 
-/// Which frames carry a tag.
+/// The frames that carry a tag.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Protection {
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_covered() {
+    fn protections_cover_their_messages() {
         use Tagging::{Always, Greeting, Motion};
         let covered = |protection: Protection| [Greeting, Always, Motion].map(|tagging| protection.covers(tagging));
         assert_eq!(covered(Protection::CableOnly), [false; 3]);

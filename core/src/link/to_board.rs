@@ -171,7 +171,7 @@ pub enum Parameter {
 }
 
 impl Parameter {
-    /// Which one it is.
+    /// Its id.
     pub const fn id(&self) -> ParameterId {
         match self {
             Self::Decimation(_) => ParameterId::Decimation,

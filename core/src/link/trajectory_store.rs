@@ -38,7 +38,7 @@ pub enum BlobError {
     },
     /// Bytes are left after the last piece.
     BytesLeft {
-        /// How many.
+        /// The number of bytes.
         bytes: u32,
     },
     /// The pieces are no trajectory.
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refused_blob_leaves_what_is_in_use() {
+    fn a_refused_blob_leaves_the_one_in_use() {
         let mut store = TrajectoryStore::<4>::new();
         assert_eq!(store.active().trajectory(), None);
         for pieces in 1..=4 {

@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn who_may_open_a_session_is_the_receivers_to_say() {
+    fn the_receiver_admits_sessions() {
         let mut window = Window::closed();
         assert_eq!(window.take(bare(100, 0), true, Nobody), Ok(0), "there is nobody whose it could be");
         let foreign = |session| Err(Rejected::ForeignSession { session });

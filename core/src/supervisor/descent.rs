@@ -40,7 +40,7 @@ pub fn acceleration(looked: &Looked<'_>, tick_s: f32) -> Vector3<f32> {
     let less = LESS_M_S2 + LESS_PER_S * bridged_s;
     let less = if less > LESS_MAX_M_S2 { LESS_MAX_M_S2 } else { less };
     let wanted = Vector3::new(scale * x, scale * y, belief * held - (1.0 - belief) * less);
-    // A velocity that is no number is none to be braked.
+    // A velocity that is NaN is none to be braked.
     if (wanted.x + wanted.y + wanted.z).is_finite() { wanted } else { Vector3::new(0.0, 0.0, -less) }
 }
 

@@ -23,7 +23,7 @@ use crate::state::State;
 pub struct Circumstances {
     /// Ticks since the last accepted frame; none if there never was one. 0 without a link.
     pub link_silence_ticks: Option<Tick>,
-    /// How it is asked to fly.
+    /// The kind of flight that is asked for.
     pub asked: Asked,
     /// Whether there is a reference, and a sound one.
     pub reference: ReferenceReport,

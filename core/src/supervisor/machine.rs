@@ -48,9 +48,9 @@ pub struct Config {
     pub no_climb_max_ticks: Tick,
     /// How long motors may be at their limits without a break, ticks.
     pub saturation_max_ticks: Tick,
-    /// Voltage of a cell below which it is empty, V, and for how long it has to be, ticks.
+    /// Voltage of a cell below which it is empty, V.
     pub battery_least_v: f32,
-    /// See there.
+    /// How long it has to be below, ticks.
     pub battery_low_ticks: Tick,
     /// The space that a flight keeps to, if it is told one.
     pub geofence: Option<Geofence>,
@@ -99,9 +99,9 @@ pub struct Conditions {
     pub soundness: Soundness,
     /// Vertical component of the thrust axis: the cosine of the tilt.
     pub upright: f32,
-    /// Where the craft is, m, and how fast, m/s.
+    /// Position of the craft, world frame, m.
     pub position_m: Vector3<f32>,
-    /// See there.
+    /// Velocity, m/s, world frame.
     pub velocity_m_s: Vector3<f32>,
     /// Whether there is a reference, and a sound one.
     pub reference: ReferenceReport,

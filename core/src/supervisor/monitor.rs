@@ -3,7 +3,7 @@
 //!
 //! A step with a sound estimate costs a few comparisons. A part that is not sound is replaced by the last sound one,
 //! carried on: attitude by the gyroscope, velocity and position by the accelerometer, or by the thrust that the motors
-//! should give where there is none. Each part is looked at by itself, so that a position that is no number takes nothing
+//! should give where there is none. Each part is looked at by itself, so that a position that is NaN takes nothing
 //! from a good attitude.
 
 use nalgebra::Vector3;
@@ -68,7 +68,7 @@ const STEP_MAX_S: f32 = 0.05;
 /// Share of a new difference of attitudes in the body rates that are made of them.
 const DIFFERENCE_SHARE: f32 = 0.5;
 
-/// How sound a state is.
+/// The soundness of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Soundness {
     /// As it was given, or with its quaternion scaled to norm 1.
@@ -86,7 +86,7 @@ pub enum Soundness {
 /// The state and body rates that a step may be flown on.
 #[derive(Clone, Copy, Debug)]
 pub struct Looked<'a> {
-    /// How sound it is.
+    /// Its soundness.
     pub soundness: Soundness,
     /// The state; of finite numbers and an attitude, unless that is lost.
     pub state: &'a State,

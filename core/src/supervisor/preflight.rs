@@ -60,11 +60,11 @@ pub struct Preflight {
     pub start_max_m: f32,
     /// The law's certified range.
     pub law: Certified,
-    /// The motors' lag, s, the mass, kg, and the steps a second of the craft.
+    /// The motors' lag, s.
     pub lag_s: f32,
-    /// See there.
+    /// The craft's mass, kg.
     pub mass_kg: f32,
-    /// See there.
+    /// Control steps a second.
     pub rate_hz: u32,
     /// The limits of commands.
     pub limits: Limits,

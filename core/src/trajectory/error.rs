@@ -12,7 +12,7 @@ pub enum TrajectoryError {
     Empty,
     /// A piece of no duration.
     NoDuration {
-        /// Which piece.
+        /// The piece's number.
         piece: usize,
     },
     /// Longer than [`super::MAX_DURATION_NS`] in all.
@@ -22,7 +22,7 @@ pub enum TrajectoryError {
     },
     /// A coefficient is infinite or not a number, or the polynomial leaves the range of f32.
     NonFinite {
-        /// Which piece.
+        /// The piece's number.
         piece: usize,
     },
     /// Position or heading jumps where a piece begins.

@@ -1,4 +1,5 @@
-//! One piece: a time since it began in; the flat output to jerk, or to its fifth derivative, out.
+//! One piece: a time since its beginning (s) in; the flat output (world frame, m; rad) to its jerk, or to its fifth
+//! derivative, out.
 
 use nalgebra::Vector3;
 
@@ -20,7 +21,7 @@ pub const MAX_HEADING_JUMP_RAD: f32 = 1e-3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Piece {
-    /// How long it lasts, ns.
+    /// Its duration, ns.
     pub duration_ns: u64,
     /// Position along world x, m.
     pub x: Coefficients,

@@ -74,7 +74,7 @@ impl<'a> Player<'a> {
         Self { trajectory, clock, end_tick, piece, following, end_ns: piece.duration_ns }
     }
 
-    /// Where it is.
+    /// Its place.
     pub fn bookmark(&self) -> Bookmark {
         let Self { trajectory, clock, end_tick, end_ns, .. } = *self;
         // The piece of the last tick is none of those that follow.

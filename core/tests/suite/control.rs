@@ -42,7 +42,7 @@ fn a_goal_is_drawn_along_the_straight_line_to_it() {
 }
 
 #[test]
-fn what_either_law_cuts_on_the_way_is_told() {
+fn cuts_of_either_law_on_the_way_are_told() {
     let reference = Reference::hover(Vector3::zeros(), 0.0).unwrap();
     let target = Target::new(&reference);
     let wide = Limits::new(1.8, 16.5, Vector3::new(20.0, 20.0, 5.0)).unwrap();
@@ -96,7 +96,7 @@ fn forces_of_both_laws_on_the_way_tell_the_cuts_of_both() {
 }
 
 #[test]
-fn what_is_measured_is_handed_on_as_it_is() {
+fn measurements_are_handed_on_as_they_are() {
     let (state, rates) = (State::at_rest(Vector3::new(1.0, 2.0, 3.0)), Vector3::new(0.1, 0.2, 0.3));
     assert_eq!((Measured::new(&state).state(), Measured::new(&state).body_rates_rad_s()), (&state, None));
     let rigid = quatrack::RigidState { state, body_rates_rad_s: rates };

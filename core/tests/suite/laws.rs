@@ -63,7 +63,7 @@ fn full<const M: usize, const N: usize>(rows: &[[f32; N]; M], size: f64) -> [[f3
 }
 
 #[test]
-fn the_equilibrium_law_is_its_twin_whatever_its_gain() {
+fn the_equilibrium_law_is_its_twin_for_any_gain() {
     let whole = EquilibriumGain::new(full(paper::LQR_E.gain().rows(), 3.0)).unwrap();
     for gain in [&paper::LQR_E, &paper::LYAP_E, &whole] {
         let exact = matrix(gain.gain().rows());
@@ -82,7 +82,7 @@ fn the_equilibrium_law_is_its_twin_whatever_its_gain() {
 }
 
 #[test]
-fn the_flat_output_law_is_its_twin_whatever_its_gain() {
+fn the_flat_output_law_is_its_twin_for_any_gain() {
     let whole = FlatOutputGain::new(full(paper::LQR_F.gain().rows(), 0.3)).unwrap();
     for gain in [&paper::LQR_F, &paper::LYAP_F, &whole] {
         let exact = matrix(gain.gain().rows());
@@ -139,7 +139,7 @@ fn a_gain_is_given_back_as_it_was_made_and_one_stray_entry_counts() {
 }
 
 #[test]
-fn integral_action_is_its_twin_whatever_its_gain() {
+fn integral_action_is_its_twin_for_any_gain() {
     let rate = Rate::from_hz(100).unwrap();
     let mut rows: [[f32; 12]; 4] = full(&[[0.0; 12]; 4], 9.0);
     for (row, designed) in rows.iter_mut().zip(paper::LQR_E.gain().rows()) {

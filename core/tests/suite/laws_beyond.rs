@@ -78,7 +78,7 @@ fn hover(heading_rad: f32) -> Reference {
 }
 
 #[test]
-fn integral_action_adds_what_its_sum_asks_for_in_the_heading_frame() {
+fn integral_action_adds_the_answer_to_its_sum_in_the_heading_frame() {
     let (gain, rows) = (lqi(100), lqi_rows(100));
     for feed_forward in [FeedForward::Without, FeedForward::With] {
         let without =
@@ -159,7 +159,7 @@ fn the_sum_holds_while_the_command_that_answers_to_it_is_cut() {
 }
 
 #[test]
-fn a_step_without_a_command_leaves_what_is_remembered() {
+fn a_step_without_a_command_leaves_the_memory() {
     let gain = lqi(100);
     let controller = Controller::new(IntegralAction::new(&gain, rate(100), FeedForward::Without), Limits::NONE);
     let before = memory_of(Vector3::new(0.1, 0.2, 0.3));

@@ -103,7 +103,7 @@ impl Board {
     }
 }
 
-/// A host that sends one request at a time, and on silence asks where it stands.
+/// A host that sends one request at a time, and on silence asks for its progress.
 struct Host {
     encoder: Encoder,
     decoder: Decoder<FromBoard>,
@@ -161,7 +161,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn an_upload_over_a_bad_line_ends_with_what_was_sent(
+    fn an_upload_over_a_bad_line_ends_with_the_sent_blob(
         heights in vec(0.5_f32..2.0, 1..=TRAJECTORY_PIECES), there in vec(fate(), 50), back in vec(fate(), 50)
     ) {
         // A line that lets nothing through for ever is no line.

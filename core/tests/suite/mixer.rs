@@ -62,7 +62,7 @@ proptest! {
 }
 
 #[test]
-fn what_fits_is_mixed_exactly_and_inverted() {
+fn wrenches_that_fit_are_mixed_exactly_and_inverted() {
     let asked = of_parts(0.07, 0.01, -0.005, 0.02);
     let (forces, limited) = CRAFT.mix(&asked).unwrap();
     assert_eq!(limited, MotorLimited::NOTHING);
@@ -86,7 +86,7 @@ fn full_thrust_keeps_roll_and_gives_up_yaw() {
 }
 
 #[test]
-fn what_is_not_finite_is_never_mixed() {
+fn numbers_that_are_not_finite_are_never_mixed() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for i in 0..4 {
             let mut parts = [0.07, 0.0, 0.0, 0.0];

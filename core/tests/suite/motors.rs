@@ -1,5 +1,5 @@
-//! The way to the motors against its f64 twin: rate loop and mixer, the actuator-aware law; the memory, and what is
-//! refused.
+//! The way to the motors against its f64 twin: rate loop and mixer, the actuator-aware law; the memory, and
+//! refusals.
 
 use nalgebra::{Rotation3, SMatrix, SVector, Vector4};
 use quatrack::gains::paper;
@@ -59,7 +59,7 @@ fn a_command_comes_out_as_the_forces_whose_wrench_it_asks_for() {
             let mut memory = Memory::new(before).unwrap();
             let measured = Measured::new(&case.state).with_body_rates(&rates);
             let found = controller.carry(&mut memory, &Output::Command(step), measured).unwrap();
-            assert_eq!(found.limited.command().bits(), 0b0101, "what was cut before is told");
+            assert_eq!(found.limited.command().bits(), 0b0101, "an earlier cut is reported");
             let (min, max) = (f64::from(figures.force_min_n), f64::from(figures.force_max_n));
             if exact.iter().all(|force| (min..=max).contains(force)) {
                 within += 1;
@@ -213,7 +213,7 @@ fn the_actuator_aware_law_is_its_formula_in_both_forms() {
 }
 
 #[test]
-fn a_law_is_refused_by_name_what_it_lacks_and_remembers_nothing_of_it() {
+fn a_law_without_an_input_is_refused_by_its_name_and_remembers_nothing_of_it() {
     let airframe = Airframe::CRAZYFLIE_2_1;
     let actuation = Actuation::new(&airframe, rate()).unwrap();
     let gain = decoupled();
@@ -236,7 +236,7 @@ fn a_law_is_refused_by_name_what_it_lacks_and_remembers_nothing_of_it() {
         assert_eq!(controller.step_to_motors(&mut memory, measured, target), Err(error));
         assert_eq!(memory, before);
     }
-    // A rate that is no number is named on either way; one so large that the torque is none is told as that.
+    // A rate that is NaN is named on either way; one so large that the torque is none is told as that.
     for controller in [&to_forces, &carried] {
         let turned = Vector3::new(0.0, f32::NAN, 0.0);
         let measured = Measured::new(&state).with_body_rates(&turned);
@@ -252,7 +252,7 @@ fn a_law_is_refused_by_name_what_it_lacks_and_remembers_nothing_of_it() {
 }
 
 #[test]
-fn a_law_of_forces_keeps_its_own_actuation_and_each_law_says_what_it_does() {
+fn a_law_of_forces_keeps_its_own_actuation_and_each_law_tells_its_output() {
     let [own, other] = AIRFRAMES.map(|airframe| Actuation::new(&airframe, rate()).unwrap())[..2] else {
         unreachable!("there are three")
     };
@@ -281,7 +281,7 @@ fn a_law_of_forces_keeps_its_own_actuation_and_each_law_says_what_it_does() {
 }
 
 #[test]
-fn what_is_remembered_of_the_motors_is_as_told() {
+fn remembered_motor_forces_are_as_told() {
     let airframe = Airframe::CRAZYFLIE_2_1;
     for bad in [f32::NAN, f32::INFINITY] {
         for motor in 0..4 {

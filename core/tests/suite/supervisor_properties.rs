@@ -1,5 +1,5 @@
-//! The supervisor over random flights: whatever is measured and asked for, motors stand still where they have to, and what reaches
-//! them is finite and within bounds.
+//! The supervisor over random flights: with any measurements and requests, motors are off where they have to be, and the
+//! forces that reach them are finite and within bounds.
 
 use proptest::prelude::*;
 use quatrack::cascade::{Air, Cascade, CascadeLimits};
@@ -161,7 +161,7 @@ proptest! {
     ) {
         let figures = *Airframe::CRAZYFLIE_2_1_BRUSHLESS.figures();
         let mut craft = Craft::new();
-        // What an observer knows without looking into the supervisor.
+        // Facts known without looking into the supervisor.
         let mut asked = false;
         for event in events {
             match event {

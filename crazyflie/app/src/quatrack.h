@@ -31,7 +31,7 @@ typedef struct {
   uint8_t bytes[30];
 } quatrackPacket_t;
 
-/* Set by the owner; a value out of range counts as the nearest one in it. One that is no number is put back to its default: as
+/* Set by the owner; a value out of range counts as the nearest one in it. One that is NaN is put back to its default: as
  * switched on the seven from dragPerS on are none, and get the craft's own figures once the app has said which craft this is. */
 typedef struct {
   float positionScale;    /* stiffness of the cascade in position, 0.5..1.3; of the paper's laws a factor on the feedback of
@@ -69,7 +69,7 @@ typedef struct {
   uint16_t jumps;           /* setpoints that were not where the ones before led */
   uint16_t refusedTables;   /* tables asked for or sent that are not flown */
   uint16_t refusal;         /* why: 1 no such table, 2 none sent, 3 motor lag, 4 unsound, 5 vehicle or rate, 6 law */
-  uint16_t putBack;         /* parameters that were no numbers and got their defaults back */
+  uint16_t putBack;         /* parameters that were NaN and got their defaults back */
   uint16_t parameter;       /* which was the last, counted from 1 as they are above */
   uint16_t reason;          /* why the newest flight was left: 0 it was not, 1 bad setpoint, 2 no position or velocity,
                                3 no attitude, 4 no body rates, 5 no output of the law, 6 motors at their limits, 7 landed,

@@ -75,7 +75,7 @@ static void sayPutBack(void)
   const uint16_t putBack = quatrack.log.putBack;
   const unsigned index = quatrack.log.parameter - 1u;
   if (putBack != said && index < sizeof(floats) / sizeof(floats[0])) {
-    DEBUG_PRINT("quatrack.%s was no number: back to its default\n", floats[index]);
+    DEBUG_PRINT("quatrack.%s was NaN: back to its default\n", floats[index]);
   }
   said = putBack;
 }

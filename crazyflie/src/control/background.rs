@@ -13,7 +13,7 @@ pub enum Work {
     TakeOver,
 }
 
-/// Whose turn it is.
+/// The work whose turn it is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Background {
     next: Work,

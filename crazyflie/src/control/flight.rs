@@ -1,4 +1,5 @@
-//! The state of a flight.
+//! The state of a flight: off, along a stream of setpoints, guided by a request, or at body rates by hand. One enum, so
+//! that no two hold at once.
 
 use quatrack::Followed;
 use quatrack::nalgebra::Vector3;

@@ -148,7 +148,7 @@ impl Flyer {
         self.table.gives_forces() || !self.handover.is_over()
     }
 
-    /// Makes what the next control step follows along a stream. It takes nothing from the last state that was flown on,
+    /// Makes the next control step's reference along a stream. It takes nothing from the last state that was flown on,
     /// but where the leash of the paper's laws ends.
     #[inline(always)]
     pub(super) fn look_ahead(&mut self, guard: &Guard, next_step: u32) {

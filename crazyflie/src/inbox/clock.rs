@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_seen_late_is_dated_by_its_stamp() {
+    fn a_setpoint_seen_late_is_dated_by_its_stamp() {
         let mut clock = Clock::new();
         // The clocks are 5000 ms apart, also where they wrap.
         for start in [0_u32, u32::MAX - 60] {

@@ -203,7 +203,7 @@ mod tests {
     });
 
     #[test]
-    fn it_says_what_changed() {
+    fn it_names_the_change() {
         let mut inbox = Inbox::new();
         assert!(inbox.is_urgent(&along(5, 1.0, 0.0), 105), "another kind cannot wait");
         assert_eq!(inbox.take(&along(5, 1.0, 0.0)), ALONG);
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_bad_wherever_it_is() {
+    fn a_nan_is_bad_in_any_field() {
         let bad = |change: fn(&mut Setpoint)| {
             let mut inbox = Inbox::new();
             inbox.is_urgent(&along(5, 1.0, 0.0), 105);

@@ -1,4 +1,4 @@
-//! The image that flies in an emulator, with its line on two named pipes of the host; everything else is `main.rs`.
+//! The image that flies in an emulator: the same as `main.rs`, with its line on two named pipes of the host.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -6,7 +6,7 @@
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
 use stm32f4::stm32f405::FLASH;
 
-/// Where they begin.
+/// The first address.
 const START: u32 = 0x0808_0000;
 /// Bytes of a sector.
 pub const SECTOR_BYTES: u32 = 128 * 1024;

@@ -101,7 +101,7 @@ pub enum GyroError<E> {
     },
     /// The chip did not take a setting.
     Setting {
-        /// Which.
+        /// The setting.
         setting: Setting,
         /// The value written.
         written: u8,

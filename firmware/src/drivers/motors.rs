@@ -20,7 +20,7 @@ pub struct Motors<P> {
     curve: ThrustCurve,
 }
 
-/// How the forces were met.
+/// Whether the forces were met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Driven {
     /// As they were asked for.
@@ -34,14 +34,14 @@ pub enum Driven {
 pub enum MotorError<E> {
     /// A force is not a finite number.
     NotFinite {
-        /// Which motor.
+        /// The motor.
         motor: u8,
         /// Its force, N.
         force_n: f32,
     },
     /// A channel refused its duty. It may hold the last one; the others are off.
     Channel {
-        /// Which motor.
+        /// The motor.
         motor: u8,
         /// Its error.
         error: E,

@@ -1,4 +1,4 @@
-//! The paper's laws alone, for an image without the feature `motors`.
+//! The laws of an image without the feature `motors`: the paper's alone, whose steps end at thrust and body rates.
 
 use quatrack::gains::table::{AcceptedTable, TableKind};
 use quatrack::link::{LawChoice, Table};

@@ -82,7 +82,7 @@ fn nobody_takes_over_an_armed_craft_but_the_pilot_goes_on() {
 }
 
 #[test]
-fn after_silence_a_hello_is_taken_whatever_its_number() {
+fn after_silence_a_hello_of_any_number_is_taken() {
     for number in [0, 999, 1001, 1000_u32.wrapping_sub(1 << 31)] {
         let (mut board, _) = Board::armed();
         board.now = CONFIG.link_silence_max_ticks;

@@ -158,7 +158,7 @@ fn a_disarm_request_stops_at_once() {
 }
 
 #[test]
-fn what_is_not_fit_to_fly_is_not_armed() {
+fn a_craft_not_fit_to_fly_is_not_armed() {
     let refused = |change: fn(&mut Flight)| {
         let mut flight = board(None);
         flight.playback.start(stored::player(TrajectoryId::Mild).expect("it is in flash"));

@@ -261,7 +261,7 @@ fn a_reference_that_is_none_is_braked_for() {
 }
 
 #[test]
-fn whatever_ends_a_flight_ends_with_no_forces() {
+fn every_end_of_a_flight_leaves_no_forces() {
     for table in LAWS {
         // On body rates that come with the state, none are left to level by.
         let mut old = flying(table, 0);
@@ -365,7 +365,7 @@ fn without_body_rates_a_law_that_needs_none_commands_and_drives_nothing() {
 }
 
 #[test]
-fn the_gyroscope_counts_before_what_came_with_the_state() {
+fn the_gyroscope_counts_before_rates_that_came_with_the_state() {
     for table in LAWS {
         let (mut sent, mut measured) = (flying(table, 0), flying(table, 0));
         let rates = state(5).body_rates_rad_s;

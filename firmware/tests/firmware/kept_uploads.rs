@@ -113,7 +113,7 @@ fn a_table_and_a_trajectory_are_there_after_a_restart() {
 }
 
 #[test]
-fn what_is_committed_alone_is_gone_after_a_restart() {
+fn an_upload_committed_alone_is_gone_after_a_restart() {
     let flash = Flash::new();
     assert_eq!(board(&flash, None).upload(BlobKind::GainTable, TABLE, commit), Ok(()));
     assert!(!board(&flash, None).has_table());
@@ -147,7 +147,7 @@ fn power_lost_at_any_byte_leaves_the_table_before() {
 }
 
 #[test]
-fn what_was_kept_is_checked_again() {
+fn kept_uploads_are_checked_again() {
     let (flash, key) = (Flash::new(), random_key());
     assert_eq!(board(&flash, None).upload(BlobKind::GainTable, TABLE, keep), Ok(()));
     // The same flash behind an image that takes signed tables alone.

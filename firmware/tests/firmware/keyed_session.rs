@@ -162,7 +162,7 @@ fn the_pilot_arms_sets_and_disarms() {
 }
 
 #[test]
-fn who_has_no_key_or_another_one_is_told_so_and_gets_nothing() {
+fn a_host_without_the_key_or_with_another_one_is_told_so_and_gets_nothing() {
     for protection in BOTH {
         let key = random_key();
         let mut board = Board::with(key, protection, None);

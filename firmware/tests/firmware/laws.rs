@@ -55,7 +55,7 @@ fn thrust(flight: &mut Flight, now: Tick) -> f32 {
 }
 
 #[test]
-fn a_change_in_flight_takes_its_steps_whatever_is_asked_meanwhile() {
+fn a_change_in_flight_takes_its_steps_under_any_requests_meanwhile() {
     let mut flight = board();
     load(&mut flight).unwrap();
     flight.hear(0);

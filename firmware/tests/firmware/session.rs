@@ -133,7 +133,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
 
     #[test]
-    fn whatever_is_sent_forces_are_sound_and_motors_wait_for_an_arm(events in prop::collection::vec(event(), 1..150)) {
+    fn for_any_frames_forces_are_sound_and_motors_wait_for_an_arm(events in prop::collection::vec(event(), 1..150)) {
         let figures = *AIRFRAME.figures();
         let mut flight = Here(Flight::new(Box::leak(Box::default()), None));
         let mut session = Session::new(Box::leak(Box::new(Uploads::new())), Keys::NONE, NoFlash, None);

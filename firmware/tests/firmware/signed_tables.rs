@@ -117,7 +117,7 @@ fn negated() -> Vec<u8> {
 const UNSIGNED: Result<(), Refusal> = Err(Refusal::Blob(BlobError::Unsigned));
 
 #[test]
-fn only_what_is_signed_with_the_right_key_is_taken() {
+fn only_tables_signed_with_the_right_key_are_taken() {
     let (key, other) = (random_key(), random_key());
     let mut board = Board::started(Some(key), quatrack_firmware::kept::NoFlash);
     assert_eq!(board.commit(TABLE), UNSIGNED);

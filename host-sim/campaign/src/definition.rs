@@ -22,7 +22,7 @@ pub type Trajectories<'a> = &'a dyn Fn(&str) -> Result<PiecewisePolynomial, Stri
 pub struct Asked {
     /// The campaign's seed; the scenario's own, or 1, where absent.
     pub seed: Option<u64>,
-    /// Whose laws; the scenario's where empty.
+    /// The laws; the scenario's where empty.
     pub laws: Vec<Law>,
 }
 
@@ -183,7 +183,7 @@ impl Campaign {
         self.varied.iter().map(Varied::name).collect()
     }
 
-    /// Whose laws.
+    /// The laws that fly.
     pub fn laws(&self) -> &[Law] {
         &self.laws
     }

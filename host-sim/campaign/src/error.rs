@@ -13,9 +13,9 @@ pub enum CampaignError {
     /// A distribution without sense.
     #[error("{origin}: vary.{key}: {reason}")]
     Vary {
-        /// Whose it is.
+        /// The figure's key.
         origin: String,
-        /// Which figure.
+        /// The figure.
         key: String,
         /// Why not, with the remedy.
         reason: String,
@@ -26,7 +26,7 @@ pub enum CampaignError {
     /// A trajectory that cannot be had.
     #[error("{name}: {reason}")]
     Trajectory {
-        /// Which.
+        /// Its name.
         name: String,
         /// Why not.
         reason: String,
@@ -37,7 +37,7 @@ pub enum CampaignError {
     /// The system refuses a file.
     #[error("{}: {failure} ({reason})", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// The failed access, in words.
         failure: &'static str,
@@ -47,7 +47,7 @@ pub enum CampaignError {
     /// A folder that holds something else.
     #[error("{}: {reason}", path.display())]
     Folder {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// The fault, with the remedy.
         reason: String,

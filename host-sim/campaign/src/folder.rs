@@ -32,7 +32,7 @@ pub struct Card {
     pub seed: u64,
     /// How many runs; each law flies them all.
     pub runs: u64,
-    /// Whose laws, in the order of their rows.
+    /// The laws, in the order of their rows.
     pub laws: Vec<String>,
     /// Names of the drawn figures, in the order of their columns.
     pub drawn: Vec<String>,
@@ -141,7 +141,7 @@ impl Folder {
         &self.card
     }
 
-    /// Where it is.
+    /// Its path.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_reader_gives_back_what_was_flown() {
+    fn the_reader_gives_back_the_flight() {
         let text = "vehicle = \"crazyflie-2.1\"\ncourse = \"step\"\nstep_m = 0.2\nduration_s = 0.5\n";
         let scenario = Scenario::checked(&ScenarioFile::parse(text, "test").unwrap(), "test", Path::new("")).unwrap();
         let mut law = scenario.law.start(&scenario.vehicle, &scenario.told).unwrap();

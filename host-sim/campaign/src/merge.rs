@@ -10,7 +10,7 @@ use crate::shard::Shard;
 /// A shard that is not whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Missing {
-    /// Which.
+    /// The shard.
     pub shard: Shard,
     /// Its runs that are there, of all.
     pub flown: [u64; 2],

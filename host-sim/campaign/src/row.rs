@@ -31,9 +31,9 @@ impl Outcome {
 /// One flight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Which run.
+    /// The run's number.
     pub run: u64,
-    /// Whose law.
+    /// The law.
     pub law: Law,
     /// Of its noise and gusts.
     pub seed: u64,

@@ -31,7 +31,7 @@ impl Shard {
         bound(self.index - 1)..bound(self.index)
     }
 
-    /// How many parts there are.
+    /// The number of parts.
     pub fn count(&self) -> u64 {
         self.count
     }

@@ -47,7 +47,7 @@ pub struct Summary {
 /// Of one law.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawSummary {
-    /// Which.
+    /// The law.
     pub law: String,
     /// Flights, without those that were refused.
     pub flights: u64,
@@ -74,11 +74,11 @@ pub struct LawSummary {
 /// A flight to look at.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Worst {
-    /// Which run.
+    /// The run's number.
     pub run: u64,
     /// Its seed of noise and gusts.
     pub seed: u64,
-    /// When it was lost, s.
+    /// Time at which it was lost, s.
     pub lost_s: Option<f64>,
     /// Largest position error, m.
     pub max_error_m: Option<f64>,
@@ -89,7 +89,7 @@ pub struct Worst {
 /// How much a figure matters.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Matter {
-    /// Which.
+    /// The figure.
     pub figure: String,
     /// Spearman's rank correlation with the largest error, a lost flight being worse than any other.
     pub rank_correlation: f64,

@@ -21,7 +21,7 @@ const TRIES: u32 = 1000;
 /// Names of the distributions.
 const KINDS: [&str; 4] = ["uniform", "normal", "log_normal", "choice"];
 
-/// How a number is drawn.
+/// A distribution.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
     /// Between two numbers.
@@ -41,7 +41,7 @@ pub struct Varied {
     pub path: Vec<String>,
     /// Which number of a list; all of them where absent.
     pub index: Option<usize>,
-    /// How it is drawn.
+    /// Its distribution.
     pub kind: Kind,
     /// Whether it is a factor of the figure in the file.
     pub relative: bool,

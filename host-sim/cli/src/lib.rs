@@ -1,4 +1,4 @@
-//! What the `quatrack` command has below it and no other crate needs: the image on its processor, and figures.
+//! Parts of the `quatrack` command that no other crate needs: the image on its processor, and figures.
 //!
 //! ```text
 //! the command: arguments and files in; tables, files and an exit code out

@@ -1,7 +1,7 @@
 //! The `quatrack` command: arguments and files in; tables, files and an exit code out.
 //!
 //! Exit code 0: done. 1: the question was answered with no (a cell of Table I missed, a plan that cannot be met).
-//! 2: the input cannot be used; one line says why and what to do. 3: the craft of a scenario was lost.
+//! 2: the input cannot be used; one line names the reason and the remedy. 3: the craft of a scenario was lost.
 
 mod cli;
 

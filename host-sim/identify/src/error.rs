@@ -45,7 +45,7 @@ pub enum IdentifyError {
     /// A figure that was given from outside.
     #[error("{field} = {value}: must be {must}")]
     Value {
-        /// Which.
+        /// The field.
         field: &'static str,
         /// As given.
         value: f64,

@@ -1,4 +1,4 @@
-//! Signals on an even grid: low-pass without phase, derivative, fractional shift, first-order lag.
+//! Filters of signals on an even grid: low-pass without phase, derivative, fractional shift, first-order lag.
 
 use std::f64::consts::{PI, SQRT_2};
 

@@ -48,7 +48,7 @@ pub struct Prediction {
     pub no_angular_acceleration: Course,
     /// Everything stays as it is at the start.
     pub no_change: Course,
-    /// How many starts.
+    /// The number of starts.
     pub starts: usize,
     /// A part that was held out, for pictures: one stretch of a flight, predicted from its every half second.
     pub example: Option<Example>,

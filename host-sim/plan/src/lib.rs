@@ -1,9 +1,9 @@
-//! What is flown: waypoints and bounds, or files, in; trajectories of the flat output out.
+//! Planning: waypoints and bounds, or files, in; trajectories of the flat output out.
 //!
 //! ```text
 //! plan            waypoints and bounds -> B-spline, by second-order cone programming
 //!   trajectory    B-splines, polynomial pieces, their files, fits for the Crazyflie
-//!     quote       what an error quotes of a file
+//!     quote       the part of a file that an error quotes
 //! ```
 //!
 //! Below it is `quatrack_design`, of which it takes the flat output and gravity; conventions are those.

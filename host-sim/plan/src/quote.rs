@@ -1,4 +1,4 @@
-//! What an error quotes of a file: never more than a line of a terminal or two holds.
+//! The part of a file that an error quotes: never more than a line of a terminal or two holds.
 
 /// Most characters of a file that an error quotes.
 pub const QUOTED_MAX: usize = 200;
@@ -28,7 +28,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_long_is_cut_between_characters_and_says_so() {
+    fn a_long_text_is_cut_between_characters_and_marked() {
         assert_eq!(quoted("speed_m_s = 2"), "speed_m_s = 2");
         let long = quoted(&"\u{e4}".repeat(10_000));
         assert_eq!((long.chars().count(), long.ends_with("\u{e4}...")), (200, true));

@@ -1,4 +1,4 @@
-//! Steps of a plant, for counting: what a step costs is the difference of two lengths over the difference in steps.
+//! Steps of a plant, for counting: the cost of a step is the difference of two lengths over the difference in steps.
 //!
 //! ```text
 //! cargo build --release --package quatrack-simulation --example plant_step
@@ -19,17 +19,17 @@ const STEP_S: f64 = 0.002;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut words = std::env::args().skip(1);
     let steps: u32 = words.next().ok_or("how many steps?")?.parse()?;
-    let what = words.next().unwrap_or_default();
+    let surroundings = words.next().unwrap_or_default();
     let vehicle = vehicles::by_name("crazyflie-2.1-brushless")?;
     let (mut environment, mut truth) = (Environment::VACUUM, Truth::as_designed(&vehicle));
-    if what != "vacuum" {
+    if surroundings != "vacuum" {
         environment.air = Air::of(&vehicle).ok_or("its air is known")?;
         environment.wind = Wind::constant(Vector3::new(1.0, 0.0, 0.0));
     }
-    if what == "turbulence" || what == "flown" {
+    if surroundings == "turbulence" || surroundings == "flown" {
         environment.wind.turbulence = Some(Dryden::at_low_altitude(Vector3::repeat(0.5), 1.0, 1.0));
     }
-    if what == "flown" {
+    if surroundings == "flown" {
         truth = Truth::as_flown(&vehicle);
     }
     let hover_n = vehicle.hover_thrust_n();

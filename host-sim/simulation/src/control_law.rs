@@ -23,7 +23,7 @@ pub trait ControlLaw {
     }
 
     /// One control step: the forces asked of the four motors, N, numbered as in [`quatrack_design::vehicle`]. The
-    /// motors then do what they can of them.
+    /// motors then give them as far as they can.
     ///
     /// # Errors
     /// One line that says why there is no answer. The flight ends there and counts as lost.
@@ -37,7 +37,7 @@ pub struct Input {
     pub time_s: f64,
     /// Where the craft is, as far as anybody on board knows.
     pub estimate: Estimate,
-    /// Where it should be.
+    /// The setpoint.
     pub setpoint: Setpoint,
     /// Voltage of the battery, V.
     pub battery_v: f64,

@@ -1,5 +1,5 @@
-//! Every generated file of a checkout: its folder of designs in; what belongs in each file, and where the committed one
-//! differs, out.
+//! Every generated file of a checkout: its folder of designs in; the right contents of each file, and where the committed
+//! one differs, out.
 //!
 //! | file | from |
 //! |---|---|

@@ -51,7 +51,7 @@ pub struct DormandPrince {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("integration stopped at t = {time_s} s: no step above the minimum meets the tolerance")]
 pub struct StepTooSmall {
-    /// Where, s.
+    /// The time, s.
     pub time_s: f64,
 }
 

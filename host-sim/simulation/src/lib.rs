@@ -1,8 +1,8 @@
-//! Flights: vehicles, plants, gains and trajectories in; what is flown and how well out. In f64, and with the `f32` core and
-//! the Crazyflie controller as they are on board.
+//! Flights: vehicles, plants, gains and trajectories in; flights with their errors out. In f64, and with the `f32` core
+//! and the Crazyflie controller as they are on board.
 //!
 //! ```text
-//! generated            every generated file of a checkout against what belongs in it
+//! generated            every generated file of a checkout against its right contents
 //! scenario             one file that every command flies: a craft, its air, a course and a law
 //!   rivals             Mellinger's and Lee's laws and the cascaded PID
 //!     control_law      the interface by which a law flies
@@ -10,7 +10,7 @@
 //! crazyflie            the Crazyflie's firmware around our controller
 //! reproduction         Table I, and past it
 //!   flight             plants under laws in f64 and under the f32 core, metrics
-//!     plant            a rigid body with motors that lag and saturate, and what else pushes it
+//!     plant            a rigid body with motors that lag and saturate, and other loads on it
 //!       integrator     one-step methods
 //!   gains              design files -> certified tables, their check, exchange with other tools
 //!     vehicles         vehicles by name or from TOML files; their limits and number

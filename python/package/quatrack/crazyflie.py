@@ -50,7 +50,7 @@ class Quaternion:
 
 @dataclass
 class Modes:
-    """What of a setpoint counts: DISABLED, ABSOLUTE or VELOCITY each."""
+    """The parts of a setpoint that count: DISABLED, ABSOLUTE or VELOCITY each."""
 
     x: int = DISABLED
     y: int = DISABLED
@@ -108,7 +108,7 @@ class SensorData:
 
     @classmethod
     def of(cls, state: quatrack.State) -> SensorData:
-        """What the sensors of a craft feel."""
+        """The readings of a craft's sensors."""
         sensors = cls()
         if state.body_rates is not None:
             sensors.gyro = Vector(*np.degrees(state.body_rates).tolist())

@@ -53,6 +53,6 @@ def test_the_eight_flies_nearer_than_under_drone_controllers():
 
 
 @pytest.mark.heavy
-def test_the_eight_flies_nearer_whatever_the_drone():
+def test_the_eight_flies_nearer_on_any_drone():
     rows = list(_table.drone_models(_table.Flown.eight(12.0)))
     assert len(rows) == 4 and all(row.is_won() for row in rows), rows

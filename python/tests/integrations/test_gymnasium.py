@@ -1,4 +1,4 @@
-"""Gymnasium's checkers, and what the environment promises."""
+"""Gymnasium's checkers, and the environment's own promises."""
 
 import warnings
 
@@ -39,7 +39,7 @@ def test_a_seed_gives_the_same_flights_and_another_others():
     assert first.shape == (31, 8, 18) and first.dtype == np.float32
 
 
-def test_spaces_hold_what_comes():
+def test_spaces_hold_every_observation():
     env = QuatrackVectorEnv(8, GUSTY, steps=20)
     observations, _ = env.reset(seed=3)
     for _ in range(60):

@@ -64,6 +64,6 @@ def test_the_eight_flies_nearer_than_under_its_own_controller():
 
 
 @pytest.mark.heavy
-def test_the_eight_flies_nearer_whatever_the_craft():
+def test_the_eight_flies_nearer_on_any_craft():
     rows = list(_table.rotorpy(_table.Flown.eight(12.0)))
     assert len(rows) == 2 and all(row.is_won() for row in rows), rows

@@ -1,7 +1,7 @@
 //! The layers that each crate draws at the top of its `lib.rs`, held to the imports of its sources.
 //!
 //! A drawing is the first text block of the crate's documentation. Each of its lines begins with the modules of one layer,
-//! separated by commas; what follows after two spaces says what they are for. A module may import those of its own line and of
+//! separated by commas; the words after two spaces say their purpose. A module may import those of its own line and of
 //! the lines below it.
 
 use std::collections::BTreeMap;
@@ -95,8 +95,7 @@ fn imports_only_go_down() {
 
 #[test]
 fn a_drawing_is_read_by_its_lines() {
-    let lib =
-        "//! Words.\n//!\n//! ```text\n//! top       what is above\n//!   a, b    what is below\n//! ```\nmod a;\n";
+    let lib = "//! Words.\n//!\n//! ```text\n//! top       words above\n//!   a, b    words below\n//! ```\nmod a;\n";
     let expected = [("top", 0), ("a", 1), ("b", 1)].map(|(name, line)| (name.to_owned(), line));
     assert_eq!(drawn(lib), BTreeMap::from(expected));
     assert_eq!(

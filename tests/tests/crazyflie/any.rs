@@ -1,5 +1,5 @@
-//! Whatever a firmware, a radio or an estimator may come up with: what the Crazyflie's controller puts out is finite and
-//! within what motors do.
+//! Any input of a firmware, a radio or an estimator: the Crazyflie's controller's output is finite and
+//! within the motors' range.
 
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -114,7 +114,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn what_is_put_out_is_finite_and_within_what_motors_do(
+    fn outputs_are_finite_and_within_the_motors_range(
         name in prop_oneof![Just("crazyflie-2.1"), Just("crazyflie-2.1-upgrade-kit"), Just("crazyflie-2.1-brushless")],
         flown in prop::collection::vec((setpoint(), state(), 0..7_u8, number(0.15)), 1..30),
         first_step in prop_oneof![Just(10_u32), Just(u32::MAX - 101)],

@@ -1,5 +1,5 @@
-//! Faults flown through the Crazyflie object: what is recoverable is not lost, what is not ends with the motors off, and the log says
-//! why.
+//! Faults flown through the Crazyflie object: a recoverable one is not lost, any other ends with the motors off, and the
+//! log says why.
 
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -13,8 +13,8 @@ use crate::setpoints::flight::{CRAFTS, DESCENDING, FLYING, Flight, mode};
 use crate::setpoints::sent::{alt_hold, full_state, hover, manual, position, velocity_world, z_distance};
 
 const STOPPED: u8 = 3;
-/// Longest time until the log has what a step has seen, ms: each call between control steps writes one part of four, or, four times in
-/// a row at most, none.
+/// Longest time until the log has the values of a step, ms: each call between control steps writes one part of four, or,
+/// four times in a row at most, none.
 const LOGGED_MS: u32 = 40;
 
 fn reason() -> u16 {
@@ -80,7 +80,7 @@ fn an_estimate_that_is_lost_for_good_ends_on_the_ground() {
 }
 
 #[test]
-fn what_is_not_to_be_flown_ends_with_motors_off() {
+fn faults_that_cannot_be_flown_end_with_motors_off() {
     for (name, most_ms, end) in [
         ("state: attitude absent for good", 5100, "stopped (no attitude)"),
         ("gyro: NaN for good", 700, "stopped (no body rates)"),
@@ -119,7 +119,7 @@ fn figures(setpoint: &mut Setpoint) -> [&mut f32; 23] {
 }
 
 #[test]
-fn what_is_no_number_in_any_field_of_any_setpoint_is_bad() {
+fn a_nan_in_any_field_of_any_setpoint_is_bad() {
     let thrust = Flight::hovering().hover_thrust();
     let setpoints = [
         position([0.0, 0.0, 1.0], 10.0),
@@ -182,7 +182,7 @@ fn tumbled_it_stays_off_until_a_new_flight() {
         (flight.state.velocity_m_s, flight.state.body_rates_rad_s) =
             (Vector3::zeros(), Vector3::x() * 1e-2 * f64::from(step % 3));
         if mode() == STOPPED {
-            // 0.6 s upside down, and what the log takes to say so.
+            // 0.6 s upside down, and the log's delay.
             assert!((60..=65).contains(&step), "{step}");
             break;
         }

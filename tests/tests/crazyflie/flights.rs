@@ -107,7 +107,7 @@ fn at_20_ms_nothing_of_bitcrazes_comes_close() {
             let strayed = iae_m_s(&craft, rate, 0.020, &noisy);
             assert!(strayed <= bar, "{name}: {strayed} at {rate} rad/s");
         }
-        // With nothing stated it flies outside what it is certified for, and strays no farther than they do.
+        // With nothing stated it flies outside its certified range, and strays no farther than they do.
         assert!(iae_m_s(&craft, 1.485, 0.0, &noisy) <= 0.047, "{name}");
     }
 }
@@ -149,7 +149,7 @@ fn the_papers_tables_fly_where_the_lag_lets_them_and_are_refused_elsewhere() {
     // Bitcraze's controllers on this flight at this lag: Lee 0.047, Mellinger 0.097.
     assert!(flown.iae.unwrap() <= 0.03, "{flown:?}");
     assert_eq!(ffi_table_after(&Tune::new(2, 0.020)), 2);
-    assert_eq!(ffi_table_after(&Tune::new(2, 0.0)), 0, "nothing but what is published is known");
+    assert_eq!(ffi_table_after(&Tune::new(2, 0.0)), 0, "the published figures alone are known");
     assert_eq!(ffi_table_after(&Tune::new(1, 0.063)), 1);
     assert_eq!(ffi_table_after(&Tune::new(77, 0.0)), 0);
 }
@@ -222,7 +222,7 @@ fn manual_flight_tilts_as_asked_with_the_legacy_sign_of_pitch() {
 
 #[test]
 fn the_supervisors_level_out_keeps_the_height() {
-    // What is left of a position setpoint at 1 m when the supervisor levels the craft out.
+    // The rest of a position setpoint at 1 m when the supervisor levels the craft out.
     let mut setpoint = Setpoint { mode: Modes { z: Mode::ABSOLUTE, ..ANGLES }, ..Setpoint::OFF };
     setpoint.position.z = 1.0;
     let last = *hold(&setpoint, 2.0).last().unwrap();
@@ -230,7 +230,7 @@ fn the_supervisors_level_out_keeps_the_height() {
 }
 
 #[test]
-fn what_makes_no_sense_goes_level_and_slowly_down() {
+fn setpoints_without_sense_go_level_and_slowly_down() {
     let mixed = Modes { x: Mode::ABSOLUTE, y: Mode::VELOCITY, z: Mode::ABSOLUTE, ..Modes::default() };
     let mut not_a_number = Setpoint { mode: ANGLES, thrust: HOVER_THRUST, ..Setpoint::OFF };
     not_a_number.attitude.roll = f32::NAN;
@@ -265,7 +265,7 @@ fn motors_are_off_without_a_setpoint_and_turn_on_where_an_estimate_is_missing_fo
         firmware.step(&lost, Some(&setpoint));
     }
     for (found, before) in firmware.control().payload.iter().zip(flown.payload) {
-        // Carried on for 4 ms by what is felt, it is where it was.
+        // Carried on for 4 ms by the sensors, it is where it was.
         assert!((found - before).abs() < 0.01, "{:?}", firmware.control());
     }
 }

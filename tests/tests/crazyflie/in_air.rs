@@ -57,7 +57,7 @@ fn identified_crafts_step_and_stand_in_wind() {
 
 #[test]
 fn any_honest_mass_within_a_fifth_flies() {
-    // Plants of RotorPy 3.0.0 and crazyflow 0.4.0, and a mocap deck: what they weigh is told.
+    // Plants of RotorPy 3.0.0 and crazyflow 0.4.0, and a mocap deck: their mass is told.
     for (vehicle, mass_kg) in [
         ("crazyflie-2.1-brushless", 0.0434),
         ("crazyflie-2.1-brushless", 0.044),

@@ -68,8 +68,8 @@ fn the_object_has_the_symbols_of_its_header_and_no_other() {
     let listed = fs::read_to_string(root().join("crazyflie/app/symbols")).unwrap();
     let mut wanted: Vec<&str> = listed.lines().collect();
     wanted.sort_unstable();
-    assert_eq!(global, wanted, "what comes out takes the place of the firmware's own");
-    assert_eq!(undefined, Vec::<String>::new(), "what is missing, a panic's symbol among others");
+    assert_eq!(global, wanted, "any other symbol would take the place of the firmware's own");
+    assert_eq!(undefined, Vec::<String>::new(), "missing symbols, a panic's among others");
     let panics: Vec<&String> = local.iter().filter(|name| name.contains("panic")).collect();
     assert_eq!(panics, Vec::<&String>::new());
 }

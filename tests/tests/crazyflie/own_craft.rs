@@ -74,7 +74,7 @@ fn a_vehicle_file_flies_with_its_own_table() {
         let flown = eight(&mut firmware, &vehicle, &Case::of_lag(lag_s.into()));
         println!("{}: {flown:?}", vehicle.name());
         assert!(flown.iae.is_some_and(|iae| iae <= 0.0023), "{}: {flown:?}", vehicle.name());
-        // A lag that it is not certified for is refused, and what flies stays.
+        // A lag that it is not certified for is refused, and the table in the air stays.
         drop(firmware);
         let firmware = Firmware::start_own(&vehicle, &built_for, &own, &Tune::new(0, 0.3), QUIET).unwrap();
         let log = &quatrack_crazyflie::ffi::quatrack.log;
@@ -85,7 +85,7 @@ fn a_vehicle_file_flies_with_its_own_table() {
 }
 
 #[test]
-fn what_does_not_belong_together_is_refused_in_words() {
+fn figures_that_do_not_fit_together_are_refused_in_words() {
     let vehicle = file("crazyflie-2.1-legacy.toml");
     let own = own_craft(&certified(&vehicle)).unwrap();
     let built_for = platform(&vehicle);

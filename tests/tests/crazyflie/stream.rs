@@ -1,4 +1,4 @@
-//! Setpoints that come slowly: what the Crazyflie's controller makes of the motion between them.
+//! Setpoints that come slowly: the motion that the Crazyflie's controller makes between them.
 
 use quatrack::nalgebra::Vector3;
 use quatrack::{FifthOrderSample, Heading};
@@ -81,7 +81,8 @@ fn where_no_jerk_is_sent_it_is_the_slope_of_the_accelerations() {
         stream.catch_up();
     }
     let sample = at(&stream, 100, true);
-    // The acceleration's fourth derivative is 6480 m/s^6, its third at most 1600 m/s^5 here: what a parabola over 70 ms lacks.
+    // The acceleration's fourth derivative is 6480 m/s^6, its third at most 1600 m/s^5 here: a parabola over 70 ms lacks
+    // it.
     let off = 1600.0 * 0.07_f64.powi(2) / 5.0;
     assert_near(&sample.flat.jerk_m_s3, 3, 0.1, 0.5 * off);
     assert_near(&sample.snap_m_s4, 4, 0.1, 0.07 * 1600.0);
@@ -93,7 +94,7 @@ fn between_setpoints_the_newest_is_carried_on_by_its_own_derivatives() {
     let mut stream = Stream::new();
     assert_eq!(stream.accept(&motion(0.0), 7, false), Arrival::Begun);
     let sample = at(&stream, 7 + 10, false);
-    // What is left out: the snap of 120 m/s^4 over 10 ms, t^4/24, t^3/6 and t^2/2 of it.
+    // The part left out: the snap of 120 m/s^4 over 10 ms, t^4/24, t^3/6 and t^2/2 of it.
     assert_near(&sample.flat.position_m, 0, 0.01, 120.0 * 1e-8 / 24.0 + 1e-7);
     assert_near(&sample.flat.velocity_m_s, 1, 0.01, 130.0 * 1e-6 / 6.0 + 1e-7);
     assert_near(&sample.flat.acceleration_m_s2, 2, 0.01, 130.0 * 1e-4 / 2.0 + 1e-6);
@@ -118,7 +119,7 @@ fn nothing_is_fitted_over_a_jump_or_a_gap() {
         let sample = at(stream, now_ms, true);
         sample.snap_m_s4 == Vector3::zeros() && sample.crackle_m_s5 == Vector3::zeros()
     };
-    // A jump of 3 cm; 1 cm is within what a gap of full-state packets may leave.
+    // A jump of 3 cm; 1 cm is within the error that a gap of full-state packets may leave.
     let mut stream = fed(10, 50, 0);
     assert!(!is_bare(&stream, 50));
     assert_eq!(stream.accept(&shifted(0.06, 0.03), 60, true), Arrival::Jumped);
@@ -198,7 +199,7 @@ fn a_turn_that_jumps_pauses_or_is_not_to_be_differenced_has_a_rate_alone() {
     let mut jumped = turned(10, 40, true);
     jumped.accept(Heading::from_angle(0.3), 1.5, 50, true);
     assert!(bare(&jumped, 54));
-    // Without successors it stands after a tenth of a second.
+    // Without successors it is at rest after a tenth of a second.
     let [heading, rate, _, _] = turn(0.04);
     let late = heading_at(&turned(10, 40, true), 40 + EXTRAPOLATION_MAX_MS + 1);
     assert!((late[0] - heading - 0.1 * rate).abs() < 1e-6 && late[1..] == [0.0; 3], "{late:?}");
@@ -219,7 +220,7 @@ fn a_heading_that_moves_with_a_rate_of_zero_gets_its_own() {
     // A fifth of half a step over 10 ms, some times over.
     assert!((rate - std::f64::consts::FRAC_PI_2).abs() < 0.1 && second == 0.0 && third == 0.0, "{rate}");
     (1010..=1500).step_by(10).for_each(|ms| headings.accept(sent(1000), 0.0, ms, true));
-    assert_eq!(heading_at(&headings, 1504)[1], 0.0, "it stands again");
+    assert_eq!(heading_at(&headings, 1504)[1], 0.0, "it is at rest again");
     headings.accept(sent(0), 0.0, 1510, true);
     assert_eq!(heading_at(&headings, 1514)[1], 0.0, "a jump is no turn");
 }

@@ -1,5 +1,5 @@
-//! What the Crazyflie's controller has to survive, through its C interface: far goals, turns, any tilt, weak motors, a wall, the
-//! ground, odd setpoints. In vacuum, told the craft's usual air: the wrong one.
+//! Trials that the Crazyflie's controller has to survive, through its C interface: far goals, turns, any tilt, weak
+//! motors, a wall, the ground, odd setpoints. In vacuum, told the craft's usual air: the wrong one.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use crate::setpoints::flight::{CRAFTS, DESCENDING, FLYING, Flight, MapInto as _,
 use crate::setpoints::orders::figure_eight;
 use crate::setpoints::sent::{full_state, position};
 
-/// What a way to a goal looked like.
+/// The extremes on a way to a goal.
 #[derive(Debug, Default)]
 struct Way {
     beyond_m: f64,
@@ -46,7 +46,7 @@ fn hovering(name: &str, lag_s: f64) -> Flight {
 }
 
 #[test]
-fn a_goal_is_reached_within_limits_however_far_and_whatever_the_lag() {
+fn a_goal_at_any_distance_is_reached_within_limits_at_any_lag() {
     for name in CRAFTS {
         for lag_s in [0.02, 0.0635, if name.ends_with("brushless") { 0.07 } else { 0.126 }] {
             for (distance, seconds) in [(0.1, 5), (1.0, 5), (4.5, 8), (50.0, 34)] {

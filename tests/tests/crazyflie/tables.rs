@@ -73,7 +73,7 @@ fn a_stated_lag_is_flown_with_the_gains_that_are_certified_for_it() {
 }
 
 #[test]
-fn what_flies_with_a_stated_lag_is_stable_with_that_off_by_a_quarter_and_everything_else_off() {
+fn a_table_at_a_stated_lag_is_stable_with_that_off_by_a_quarter_and_everything_else_off() {
     for (name, of_craft) in CRAFTS.into_iter().zip(stated()) {
         let vehicle = vehicles::by_name(name).unwrap();
         let air = if name.ends_with("brushless") { Air::BRUSHLESS } else { Air::BRUSHED };

@@ -1,4 +1,4 @@
-//! Tables that come over the app channel in flight, and what the owner sets beside them.
+//! Tables that come over the app channel in flight, and the owner's settings beside them.
 
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -26,7 +26,7 @@ fn table_within(vehicle: TableVehicle, limits: Limits) -> Vec<u8> {
     table_of(vehicle, limits, &Rows::Equilibrium(*paper::LQR_E.gain().rows()))
 }
 
-/// The same within what any craft does.
+/// The same within limits that any craft reaches.
 fn known_lag_table(vehicle: TableVehicle) -> Vec<u8> {
     table_within(vehicle, Limits::new(1.8, 16.5, Vector3::new(20.0, 20.0, 10.0)).unwrap())
 }
@@ -157,7 +157,7 @@ fn a_cascade_that_is_sent_flies_where_it_is_certified() {
         }
         state = plant.hold(&state, &commands_n, t_s, 1e-3);
     }
-    // A third of what 12 s of the table in the image may stray.
+    // A third of the error that 12 s of the table in the image may have.
     assert!(strayed < 0.0008, "{strayed} m s");
     // Certified to 95 ms.
     ffi::quatrack.parameters.motor_lag_s.set(0.1);
@@ -189,7 +189,7 @@ fn a_table_with_an_integral_flies() {
 }
 
 #[test]
-fn what_is_damaged_uncertified_or_for_another_craft_is_refused_and_changes_nothing() {
+fn tables_damaged_uncertified_or_for_another_craft_are_refused_and_change_nothing() {
     let craft = vehicles::by_name("crazyflie-2.1").unwrap();
     let _firmware = Firmware::start(&craft, &Tune::new(5, LAG_S.into()), QUIET);
     let good = known_lag_table(KNOWN[0].vehicle);
@@ -211,7 +211,7 @@ fn what_is_damaged_uncertified_or_for_another_craft_is_refused_and_changes_nothi
     assert_eq!(send(&good), Status::Taken as u8);
     ffi::quatrackService();
     assert_eq!(ffi::quatrack.log.table.load(Relaxed), 5);
-    // With the motors' lag back to what is published of the craft, 126 ms, its certificate does not reach.
+    // With the motors' lag back to the published one of the craft, 126 ms, its certificate does not reach.
     ffi::quatrack.parameters.motor_lag_s.set(0.0);
     let refused = ffi::quatrack.log.refused_tables.load(Relaxed);
     ffi::quatrackService();

@@ -1,3 +1,5 @@
+//! The handover against analytic mixtures: no jump at its ends, equal parts between, the memory of both laws.
+
 use super::*;
 use crate::clock::Rate;
 use crate::command::Limits;
@@ -102,7 +104,7 @@ fn to_motors() -> ActuatorAwareGain {
 }
 
 #[test]
-fn a_command_and_motor_forces_are_mixed_as_forces_and_both_laws_are_given_what_was_flown() {
+fn a_command_and_motor_forces_are_mixed_as_forces_and_both_laws_are_given_the_mixed_ones() {
     let airframe = Airframe::CRAZYFLIE_2_1.commanded_at(rate());
     let actuation = Actuation::new(&airframe, rate()).unwrap();
     let gain = to_motors();

@@ -98,7 +98,7 @@ impl<'t> AcceptedTable<'t> {
         }
     }
 
-    /// Which law it is for.
+    /// The law that it is for.
     pub const fn kind(&self) -> TableKind {
         self.content.gains.kind()
     }

@@ -37,7 +37,7 @@ pub struct CascadeTable {
     pub motor_lag_s: f32,
     /// The air that is flown with where its owner states none.
     pub air: Air,
-    /// Where the loop is stable.
+    /// The region in which the loop is stable.
     pub certified: CascadeRange,
 }
 

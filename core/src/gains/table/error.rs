@@ -93,7 +93,7 @@ pub enum TableError {
     NoCertificate,
     /// The certificate leaves no room for any error, or a figure of it is no such figure.
     Uncertified {
-        /// Which.
+        /// The figure.
         figure: Figure,
         /// The value found.
         value: f32,
@@ -105,7 +105,7 @@ pub enum TableError {
     },
     /// Gains over time whose knots are no control step apart.
     KnotSpacing,
-    /// The motor lag that a table was designed for is shorter than two control periods, longer than certified, or no number.
+    /// The motor lag that a table was designed for is shorter than two control periods, longer than certified, or NaN.
     MotorLag {
         /// The value found, s.
         lag_s: f32,
@@ -119,7 +119,7 @@ pub enum TableError {
     },
     /// A figure that a table of the cascade has beside the head has no sense.
     Cascade {
-        /// Which.
+        /// The figure.
         figure: CascadeFigure,
         /// The value found.
         value: f32,

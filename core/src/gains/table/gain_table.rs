@@ -87,7 +87,7 @@ impl<'b> GainTable<'b> {
         Ok(AcceptedTable::of(&self.content, self.knots))
     }
 
-    /// Which law it is for.
+    /// The law that it is for.
     pub const fn kind(&self) -> TableKind {
         self.content.gains.kind()
     }

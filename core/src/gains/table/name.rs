@@ -27,7 +27,7 @@ pub enum NameError {
     },
     /// A byte that is no printable ASCII character, or one behind the zeros that fill up.
     Character {
-        /// Where, from 0.
+        /// Its position, from 0.
         position: u8,
         /// The byte found.
         byte: u8,
@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_name_is_refused_by_text_and_by_bytes() {
+    fn bad_names_are_refused_as_text_and_as_bytes() {
         assert_eq!(Name::new(""), Err(NameError::Length { bytes: 0 }));
         assert_eq!(Name::new("exactly-32-characters-is-too-lon"), Err(NameError::Length { bytes: 32 }));
         for (text, position, byte) in [("a b", 1, b' '), ("a\0", 1, 0), ("ü", 0, 0xC3)] {

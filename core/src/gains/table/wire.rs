@@ -221,7 +221,7 @@ mod tests {
     use crate::gains::table::{GainTable, Rows, TABLE_BYTES_MAX};
 
     #[test]
-    fn the_payload_is_what_postcard_writes() {
+    fn the_payload_is_postcards_output() {
         let rows = *crate::gains::paper::LQR_E.gain().rows();
         let margins = Margins { gain_factor: 2.0, phase_rad: 0.75 };
         let certificate = Certificate {

@@ -1,3 +1,5 @@
+//! The guard by its orders: flights that go on, brake, level and switch off, tick by tick.
+
 use nalgebra::Vector3;
 
 use super::super::mode::Tumble;
@@ -102,7 +104,7 @@ fn a_ground_that_was_met_is_none_in_the_next_descent() {
 }
 
 #[test]
-fn by_hand_it_comes_down_level_whatever_its_velocity_over_ground() {
+fn by_hand_it_comes_down_level_at_any_velocity_over_ground() {
     for asked in [Asked::Tilts, Asked::Rates] {
         let mut bench = Bench::flying();
         bench.state.velocity_m_s = Vector3::new(3.0, -2.0, 0.0);
@@ -117,7 +119,7 @@ fn by_hand_it_comes_down_level_whatever_its_velocity_over_ground() {
 }
 
 #[test]
-fn a_pilot_may_turn_over_and_what_comes_down_may_not() {
+fn a_pilot_may_turn_over_and_a_craft_that_comes_down_may_not() {
     let mut bench = Bench::flying();
     bench.state.attitude = Quaternion::new(0.0, 1.0, 0.0, 0.0);
     let asked = Asked::Rates;
@@ -127,7 +129,7 @@ fn a_pilot_may_turn_over_and_what_comes_down_may_not() {
 }
 
 #[test]
-fn who_takes_over_in_the_air_flies_on_the_first_state_if_that_is_sound() {
+fn a_controller_selected_in_the_air_flies_on_the_first_state_if_that_is_sound() {
     let mut bench = Bench::flying();
     for (tilt, expected) in [(0.2, Given::Fly), (3.0, Given::Fly), (f32::NAN, Given::Off)] {
         bench.guard = Guard::flying(bench.now);

@@ -1,3 +1,5 @@
+//! The state machine by its verdicts: every reason, its time and the mode after it.
+
 use super::super::mode::Fault;
 use super::*;
 
@@ -113,7 +115,7 @@ fn after_a_time_in_the_air() {
 }
 
 #[test]
-fn what_is_over_before_its_time_is_forgotten() {
+fn trouble_that_is_over_before_its_time_is_forgotten() {
     let mut supervisor = in_mode(Mode::Flying);
     for tick in 0..5000 {
         let upright = if tick % 900 == 0 { 1.0 } else { 0.3 };

@@ -1,3 +1,5 @@
+//! The monitor on spoilt samples: each fault, how long it is bridged, and how far the bridge is from the truth.
+
 use super::*;
 
 const CONFIG: MonitorConfig = MonitorConfig::STANDARD;
@@ -187,7 +189,7 @@ fn a_gyroscope_that_stands_still_while_the_craft_turns_is_dead() {
 }
 
 #[test]
-fn what_does_not_come_is_bridged_like_what_is_bad() {
+fn missing_estimates_are_bridged_like_bad_ones() {
     let mut bench = Bench::flying();
     for tick in 0..=501 {
         let (now, expected) = (bench.now, if tick > 500 { Soundness::AttitudeOnly } else { Soundness::Bridged });

@@ -1,3 +1,5 @@
+//! The checks before arming: each refusal, and a craft that passes.
+
 use super::*;
 use crate::quaternion::Quaternion;
 
@@ -32,7 +34,7 @@ fn checked(change: impl FnOnce(&mut Preflight)) -> Result<(), ArmError> {
 }
 
 #[test]
-fn what_is_as_it_should_be_is_armed() {
+fn a_sound_craft_is_armed() {
     assert_eq!(checked(|_| ()), Ok(()));
     assert_eq!(checked(|p| p.reference_m = None), Ok(()), "a reference may still come");
     assert_eq!(checked(|p| p.law = Certified::NoMotors), Ok(()), "commands for somebody else's motors");

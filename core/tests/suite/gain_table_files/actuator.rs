@@ -1,4 +1,4 @@
-//! Tables for the law that commands motor forces: where every field stands, each reason for a refusal, any bytes.
+//! Tables for the law that commands motor forces: the offset of every field, each reason for a refusal, any bytes.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -34,7 +34,7 @@ fn refusal(offset: usize, replacement: &[u8]) -> TableError {
 }
 
 #[test]
-fn every_field_stands_where_the_page_says_and_comes_back() {
+fn every_field_is_where_the_page_says_and_comes_back() {
     let bytes = actuator_bytes();
     assert_eq!((bytes.len(), CONSTANT_TABLE_BYTES_MAX), (505, 505));
     assert_eq!(bytes[8..11], [5, 4, 19]);

@@ -164,7 +164,7 @@ fn swapping_the_papers_tables_in_hover_keeps_every_bit_of_the_command() {
                 step(&controller(&table, feed_forward, ErrorForm::HeadingFrame), reference.state(), &reference).unwrap()
             });
             for step in &commands {
-                assert_eq!(step.command, *reference.input(), "what holds the craft up, from every law");
+                assert_eq!(step.command, *reference.input(), "the thrust that holds the craft up, from every law");
             }
             // Within each law, which has the same signs in both of its tables.
             for pair in commands.chunks(2) {

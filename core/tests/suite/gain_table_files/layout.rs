@@ -10,7 +10,7 @@ fn f32_at(bytes: &[u8], offset: usize) -> f32 {
 }
 
 #[test]
-fn every_field_stands_where_the_page_says() {
+fn every_field_is_where_the_page_says() {
     assert_eq!(FORMAT_VERSION, 2, "a new version has offsets of its own: write them down");
     for (name, rows) in tables() {
         let table = table(name);
@@ -57,5 +57,5 @@ fn a_buffer_that_is_too_short_gets_no_table() {
     }
     let mut longer = [0xAA; TABLE_BYTES_MAX];
     assert_eq!(table.to_bytes(&mut longer).map(<[u8]>::len), Some(bytes));
-    assert_eq!(longer[bytes..bytes + 3], [0xAA; 3], "what is behind the table is not written");
+    assert_eq!(longer[bytes..bytes + 3], [0xAA; 3], "bytes behind the table are not written");
 }

@@ -10,7 +10,7 @@ use quatrack::gains::table::{
 
 use super::fixture::{VEHICLE, bytes_of, dimensions, rate, sealed, table, tables};
 
-/// What a table is refused for after some of its bytes have been replaced, checksum made anew.
+/// The refusal of a table after some of its bytes have been replaced, checksum made anew.
 fn refusal(name: &str, offset: usize, replacement: &[u8]) -> TableError {
     let mut bytes = bytes_of(&table(name));
     bytes[offset..offset + replacement.len()].copy_from_slice(replacement);
@@ -166,7 +166,7 @@ fn rate_and_limits_are_possible_ones() {
 fn a_table_without_design_or_certificate_is_refused() {
     assert_eq!(refusal("lqr-e", 101, &[0; 32]), TableError::NoDesign);
     assert_eq!(refusal("lqr-e", 133, &[0; 32]), TableError::NoCertificate);
-    // Offset of the figure; values that certify nothing, and one beyond what is believed.
+    // Offset of the figure; values that certify nothing, and one beyond belief.
     let cases = [
         (165, Figure::OneChannelGain, [0.0, 1.0, -2.0], 1001.0),
         (169, Figure::OneChannelPhase, [0.0, -0.0, -1.0], 3.2),
@@ -199,7 +199,7 @@ fn a_table_for_another_board_is_refused() {
 }
 
 #[test]
-fn a_refusal_names_what_is_wrong_and_what_to_do() {
+fn a_refusal_names_the_fault_and_the_remedy() {
     let texts = [
         (
             refusal("lqr-e", 0, b"QTTR"),

@@ -1,4 +1,4 @@
-//! Tables of gains over time: where every field stands, each reason for a refusal, any bytes.
+//! Tables of gains over time: the offset of every field, each reason for a refusal, any bytes.
 
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -27,7 +27,7 @@ fn refusal(offset: usize, replacement: &[u8]) -> TableError {
 }
 
 #[test]
-fn every_field_stands_where_the_page_says_and_comes_back() {
+fn every_field_is_where_the_page_says_and_comes_back() {
     for knots in [2, 33, KNOTS_MAX] {
         let gains = gains_over_time(knots);
         let bytes = schedule_bytes(&gains);
@@ -173,7 +173,7 @@ fn an_uploaded_table_is_put_to_use_as_a_whole_and_gone_back_from() {
     let mut damaged = blobs[0].clone();
     damaged[300] ^= 1;
     assert!(matches!(store.commit(&damaged), Err(LoadError::Table(TableError::Checksum { .. }))));
-    assert_eq!(store.active().map(|table| table.head().name), Some(head("along").name), "what was in use stays");
+    assert_eq!(store.active().map(|table| table.head().name), Some(head("along").name), "the table in use stays");
     let sixty = store.active().map(|table| last_thrust(&table));
     assert!(store.revert());
     assert_ne!(store.active().map(|table| last_thrust(&table)), sixty, "the table before");

@@ -1,5 +1,5 @@
-//! Frames of the link over lines that lose, alter, repeat and invent bytes: what comes out is what was sent, in order, or
-//! is counted.
+//! Frames of the link over lines that lose, alter, repeat and invent bytes: every message that comes out was sent, in
+//! order, or is counted.
 
 mod messages;
 mod schema;
@@ -42,7 +42,7 @@ fn numbers<M: Message>(received: &[Received<M>], sent: &[Vec<u8>]) -> Vec<usize>
             }
             let again = encoder.encode(&received.message, &mut buffer).unwrap();
             let number = received.sequence as usize;
-            assert_eq!(again, &sent[number][..], "message {number} is not what was sent");
+            assert_eq!(again, &sent[number][..], "message {number} is not the one sent");
             number
         })
         .collect()
@@ -223,7 +223,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_sound_but_not_understood_is_told_apart() {
+fn sound_frames_that_are_not_understood_are_counted_apart() {
     // Version, session and sequence 0, then the message.
     let whole = |message: &[u8]| framed(&[&[PROTOCOL_VERSION, 0, 0], message].concat());
     let cases: [(Vec<u8>, Rejected); 9] = [

@@ -1,3 +1,5 @@
+//! Distributions: their draws, their bounds and their refusals.
+
 use super::*;
 
 fn vary(text: &str) -> Result<Vec<Varied>, (String, String)> {
@@ -44,7 +46,7 @@ fn a_draw_goes_where_its_name_says() {
 }
 
 #[test]
-fn a_relative_draw_multiplies_what_is_there() {
+fn a_relative_draw_multiplies_the_figure() {
     let figure = one("air.drag_per_s = { choice = [2.0], relative = true }");
     let mut scenario: Table = "[air]\ndrag_per_s = [0.4, 0.5, 1]\n".parse().unwrap();
     figure.put(&mut scenario, 2.0).unwrap();
@@ -55,7 +57,7 @@ fn a_relative_draw_multiplies_what_is_there() {
 }
 
 #[test]
-fn what_has_no_sense_is_refused_by_name() {
+fn distributions_without_sense_are_refused_by_name() {
     for (text, key, reason) in [
         ("a = 3", "a", "no distribution"),
         ("a.b = { uniform = [1.0] }", "a.b", "two numbers"),

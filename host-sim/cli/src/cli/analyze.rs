@@ -15,7 +15,7 @@ use super::{Failure, output};
 ///
 /// For (F-LTI) and (E-LTI): A and B, eigenvalues, Jordan blocks, the rank of the controllability matrix (10), the
 /// orthogonal staircase (11), the uncontrollable mode as a combination of the states, the PBH test at each eigenvalue,
-/// and the reduced pair (14); then each claim of the paper beside what was computed.
+/// and the reduced pair (14); then each claim of the paper beside the computed answer.
 #[derive(clap::Args)]
 #[command(after_help = "Example: quatrack analyze --json section3.json")]
 pub(crate) struct Args {

@@ -59,7 +59,7 @@ enum Command {
     Summary(summary::Args),
 }
 
-/// What goes wrong in a campaign is a matter of what it was given.
+/// Every error of a campaign is one of its inputs.
 fn refused(error: CampaignError) -> Failure {
     Failure::input(error)
 }
@@ -96,7 +96,7 @@ fn fly_all(args: &Args, scenario: &std::path::Path, runs: u64) -> Result<(), Fai
     let flown = fly::fly(&campaign, &folder, args.shard, args.threads.unwrap_or(cores), &|flown| {
         if begun.get().is_none() {
             begun.set(Some(flown));
-            // What was there already says nothing of the rate.
+            // Runs that were there already say nothing of the rate.
             bar.set_position(flown);
             bar.reset_eta();
         }
@@ -113,7 +113,7 @@ fn fly_all(args: &Args, scenario: &std::path::Path, runs: u64) -> Result<(), Fai
         folder.write_parquet().map_err(refused)?;
         output::print(&format!("wrote {}\n", args.out.join("rows.parquet").display()))?;
         let dir = args.out.display();
-        output::print(&format!("quatrack campaign summary {dir} says what came of them\n"))?;
+        output::print(&format!("quatrack campaign summary {dir} prints their summary\n"))?;
     }
     Ok(())
 }

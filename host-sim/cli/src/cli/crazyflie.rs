@@ -16,7 +16,7 @@ use super::{Failure, fly, output};
 /// power distribution: position errors of every course and case.
 ///
 /// With --count, builds the object for the firmware inside a checkout, runs it on the emulated Cortex-M4, counts the
-/// instructions of every call and compares every bit of what it puts out with the host's.
+/// instructions of every call and compares every bit of its outputs with the host's.
 ///
 /// With --scenario, or a flag of one other than --vehicle, flies the controller's default table on that scenario alone, as
 /// `fly` does with the law "crazyflie". A vehicle file that the controller does not know flies so, too, with the table that

@@ -1,4 +1,4 @@
-//! `quatrack faults`: every kind of fault on three crafts in; what comes of each, in one table, out.
+//! `quatrack faults`: every kind of fault on three crafts in; the end of each flight, in one table, out.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -8,7 +8,8 @@ use serde::Serialize;
 
 use super::{Failure, output};
 
-/// Flies the core's cascade under its supervisor through every kind of fault, on three crafts in air, and says what comes of each.
+/// Flies the core's cascade under its supervisor through every kind of fault, on three crafts in air, and prints how each
+/// flight ends.
 ///
 /// Exit code 1 where anything that is recoverable was lost, or a fault that is not did not end with the motors off.
 ///

@@ -41,8 +41,8 @@ use super::{Failure, output};
 /// With --controller the paper's model flies, in vacuum, its state known exactly; so it does
 /// with --gains, but for tables for motor forces, which fly on a rigid craft.
 ///
-/// Exit code 0: flown to the end. 2: an input that cannot be used. 3: the craft was lost; what
-/// was measured until then is printed and written.
+/// Exit code 0: flown to the end. 2: an input that cannot be used. 3: the craft was lost; the samples
+/// until then are printed and written.
 ///
 /// Examples:
 ///   quatrack fly --scenario my.toml --wind-m-s 1,0,0 --out out/windy --plot out/windy.png
@@ -152,7 +152,7 @@ struct FlightReport {
     #[serde(flatten)]
     metrics: Option<Metrics>,
     lost: Option<String>,
-    /// What the reference itself asks for that no law can follow.
+    /// The parts of the reference that no law can follow.
     reference: Option<String>,
 }
 
@@ -162,17 +162,17 @@ enum Gain {
     FlatOutput(Box<FlatOutputGain>),
 }
 
-/// A flight, with what is told of how it was flown.
+/// A flight, with the words that describe how it was flown.
 struct DescribedFlight {
     /// The law and its gains.
     law: String,
     /// The arithmetic and the rate.
     clock: String,
-    /// Whose limits.
+    /// The limits, in words.
     limits: String,
     duration_s: f64,
     flight: Flight,
-    /// What the reference itself asks for that no law can follow.
+    /// The parts of the reference that no law can follow.
     reference: Option<String>,
 }
 
@@ -332,7 +332,7 @@ fn fly_core(
     fly_law(args, law, trajectory, rate, limits)
 }
 
-/// Says what a board does not fly; a start elsewhere is one way on.
+/// Names the fault for which a board does not fly it; a start elsewhere is one way on.
 pub(super) fn not_on_board(name: &str, error: &OnBoardError) -> Failure {
     let how = if matches!(error, OnBoardError::Coarse { .. }) { " by --start 0,0,0" } else { "" };
     Failure::input(format!("{name}: {error}{how}"))

@@ -46,7 +46,7 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
-    /// Writes every generated file that is not what its design gives: the tables of a folder and, in a checkout, the
+    /// Writes every generated file that differs from its design's output: the tables of a folder and, in a checkout, the
     /// sources made of them: core/src/gains/paper.rs and cascade.rs, crazyflie/src/builtin/paper_limits.rs, plans/*.rs.
     ///
     /// A file that `check` passes stays as it is. Exit code 1 for a file that no design gives.
@@ -63,13 +63,13 @@ enum Command {
         /// Folders of designs, or designs [default: gains]
         #[arg(value_name = "DIR|FILE")]
         paths: Vec<PathBuf>,
-        /// Write what was found, as JSON.
+        /// Write the differences, as JSON.
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
     /// Prints a table and its certificate.
     Show {
-        /// A design (TOML), or what was made of one (JSON or binary).
+        /// A design (TOML), or a file made of one (JSON or binary).
         #[arg(value_name = "FILE")]
         file: PathBuf,
         /// Write all of it as JSON.
@@ -82,8 +82,8 @@ enum Command {
     },
     /// Writes the header by which the Crazyflie's object flies a craft that it does not know, with a table of its own.
     ///
-    /// Of a vehicle file the table is the standard cascade for it, certified for what the built-in ones are. Exit code 1 where that
-    /// cannot be had: then write a design.
+    /// Of a vehicle file the table is the standard cascade for it, certified over the same region as the built-in ones.
+    /// Exit code 1 where that cannot be had: then write a design.
     Craft {
         /// A vehicle, or a design of the cascade for one: TOML files.
         #[arg(value_name = "FILE")]
@@ -194,7 +194,7 @@ fn craft(path: &Path, out: &Path) -> Result<(), Failure> {
     output::print(&text)
 }
 
-/// What an owner has to know of the method.
+/// Notes for an owner about the method.
 fn notes(certified: &Certified) -> String {
     let (method, mass_kg) = (certified.design.problem.named().1, certified.design.vehicle.mass_kg());
     if !matches!(method, "cascade" | "actuator-aware") {
@@ -210,7 +210,7 @@ fn notes(certified: &Certified) -> String {
     text
 }
 
-/// Every figure that a design can ask for, beside what this one asks.
+/// Every figure that a design can ask for, beside the minimum of this one.
 fn figures(document: &Value) -> String {
     let mut text = String::new();
     for figure in document["figures"].as_array().into_iter().flatten() {
@@ -224,7 +224,7 @@ fn figures(document: &Value) -> String {
     text
 }
 
-/// What was found of folders of designs, or of designs; of [`FOLDER`] where none is named.
+/// The differences of folders of designs, or of designs; of [`FOLDER`] where none is named.
 fn compared(paths: &[PathBuf]) -> Result<Vec<Checked>, Failure> {
     let default = [PathBuf::from(FOLDER)];
     let paths = if paths.is_empty() { require_folder(Path::new(FOLDER)).map(|()| &default[..])? } else { paths };
@@ -264,7 +264,7 @@ fn generate(folders: &[PathBuf]) -> Result<(), Failure> {
             (Some(_), None) => left = format!("{left}{}\n", told(&file)),
         }
     }
-    let _ = writeln!(text, "{same} files were what their designs give");
+    let _ = writeln!(text, "{same} files agreed with their designs");
     output::print(&text)?;
     if left.is_empty() { Ok(()) } else { Err(Failure::verdict(left.trim_end().replace('\n', "\nquatrack: "))) }
 }
@@ -278,7 +278,7 @@ fn check(paths: &[PathBuf], json: Option<&Path>) -> Result<(), Failure> {
     }
     let differing: Vec<&Checked> = checked.iter().filter(|file| file.difference.is_some()).collect();
     match differing.split_first() {
-        None => output::print(&format!("{} files are what their designs give\n", checked.len())),
+        None => output::print(&format!("{} files agree with their designs\n", checked.len())),
         Some((first, others)) => {
             let mut line = told(first);
             for other in others {

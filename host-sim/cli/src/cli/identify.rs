@@ -14,7 +14,8 @@ use super::{Failure, output};
 /// Tells a craft's figures from logs of its own flights: lag, thrust, drag, airflow moment, inertia, each with a 95 % interval.
 ///
 /// A figure that the flights do not tell is refused with the manoeuvre that would. A quarter of each
-/// flight is held out and predicted from its commands. docs/identify.md says what to fly and log.
+/// flight is held out and predicted from its commands. docs/identify.md names the manoeuvres to fly and the signals to
+/// log.
 ///
 /// Examples:
 ///   quatrack identify flight.csv --mass-kg 0.034 --out my-craft.toml
@@ -26,7 +27,8 @@ pub(crate) struct Args {
     /// Logs of one craft: CSV, plain or compressed by gzip, or the micro SD deck's binary log.
     #[arg(required = true, value_name = "LOG")]
     logs: Vec<PathBuf>,
-    /// Which columns hold what: nanobench, cflib, usd, or a map of one's own [default: cflib, or usd for a log of the deck]
+    /// The map of columns to quantities: nanobench, cflib, usd, or a map of one's own [default: cflib, or usd for a log
+    /// of the deck]
     #[arg(long, value_name = "nanobench|cflib|usd|MAP.toml")]
     columns: Option<String>,
     /// The mass flown, with battery and decks [default: the map's, else the vehicle's]

@@ -1,4 +1,4 @@
-//! Files of keys: 64 hexadecimal digits in, 32 bytes out, and back. Whoever can read one has the key.
+//! Files of keys: 64 hexadecimal digits in, 32 bytes out, and back. A reader of one has the key.
 
 use std::fs;
 use std::io::{Read as _, Write as _};
@@ -8,7 +8,7 @@ use quatrack::link::KEY_BYTES;
 
 use super::Failure;
 
-/// Most bytes that a file of a key has, with what an editor puts behind it.
+/// Most bytes that a file of a key has, with an editor's characters behind it.
 const FILE_BYTES_MAX: u64 = 200;
 
 /// The key of a file.
@@ -21,7 +21,7 @@ pub(crate) fn read(path: &Path) -> Result<[u8; KEY_BYTES], Failure> {
     bytes_of(bytes.trim_ascii()).ok_or_else(|| refused(NO_KEY))
 }
 
-/// Never with what the file holds: it may be a key all the same.
+/// Never with the contents of the file: it may be a key all the same.
 const NO_KEY: &str = "is no key: 64 hexadecimal digits; make one with `quatrack keys new`";
 
 fn bytes_of(digits: &[u8]) -> Option<[u8; KEY_BYTES]> {

@@ -24,15 +24,15 @@ enum Command {
         #[arg(value_name = "FILE")]
         file: PathBuf,
     },
-    /// Writes an image of the firmware that has keys. What it had before is gone.
+    /// Writes an image of the firmware that has keys. The keys that it had before are gone.
     ///
-    /// With a key of the link the board opens sessions for those who have it, too, and for nobody else. With a key of
+    /// With a key of the link the board opens sessions for other holders of it, too, and for nobody else. With a key of
     /// tables it takes those alone that are signed with it (`quatrack gains sign`). An image that was given neither is for a cable.
     Provision {
         /// An image, as `cargo firmware` builds it.
         #[arg(value_name = "IMAGE")]
         image: PathBuf,
-        /// The image to write. Who can read it has the keys.
+        /// The image to write. A reader of it has the keys.
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
         /// The file of the link's key.

@@ -13,7 +13,7 @@ use super::names::did_you_mean;
 pub(crate) struct LimitsChoice {
     /// As it was asked for.
     pub(crate) name: String,
-    /// What a command is cut to.
+    /// The limits of a command.
     pub(crate) limits: Limits,
 }
 

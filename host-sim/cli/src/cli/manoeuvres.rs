@@ -1,4 +1,4 @@
-//! `quatrack manoeuvres`: a vehicle and its conditions in; what flights beyond the linear range come to, law by law, and figures
+//! `quatrack manoeuvres`: a vehicle and its conditions in; flights beyond the linear range, law by law, and pictures
 //! of them, out.
 
 use std::fmt::Write as _;
@@ -14,7 +14,7 @@ use serde::Serialize;
 use super::scenario::ScenarioArgs;
 use super::{Failure, output};
 
-/// What flies them where no law is named: ours, the stock controller's, what came before ours, and the paper's.
+/// Laws where none is named: ours, the stock controller's, the one before ours, and the paper's.
 const LAWS: [Law; 4] = [Law::Quatrack, Law::Mellinger, Law::ActuatorAware, Law::LqrE];
 
 /// Flies take-off, landing, a step of 1 m, a shove of half a metre, a gust as strong as the weight and a start upside down, each

@@ -9,7 +9,7 @@ use quatrack_cli::pil::measure::{self, Images, InstructionReport};
 use super::{Failure, output};
 
 /// Counts instructions on the emulated target, over both of the paper's flights with all four controllers: each law's
-/// step, the reference, the whole tick; and what the firmware takes in flash and RAM.
+/// step, the reference, the whole tick; and the firmware's flash and RAM.
 ///
 /// Every state is counted as it was flown and at its worst: errors in the heading frame of a turning reference, with and
 /// without feed-forward, nothing limited and everything, either sign of the quaternion; and with a gain without a zero.
@@ -28,7 +28,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    // Whatever keeps an image from being run is for the user to mend.
+    // Every reason why an image does not run is for the user to mend.
     let report = counted(args).map_err(Failure::input)?;
     output::print(&report.to_string())?;
     if let Some(path) = &args.json {

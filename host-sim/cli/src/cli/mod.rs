@@ -88,7 +88,7 @@ enum Command {
     Robustness(robustness::Args),
 }
 
-/// Reads the arguments, runs the command, prints what went wrong in one line.
+/// Reads the arguments, runs the command, prints an error in one line.
 pub(crate) fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,

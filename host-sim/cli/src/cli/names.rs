@@ -1,4 +1,4 @@
-//! Names that were nearly right: what was typed and all there are in; the one that was meant, as a question, out.
+//! Names that were nearly right: the typed one and all names in; the one that was meant, as a question, out.
 
 /// How alike two names must be, by Jaro and Winkler, 1 for the same: a slip of two letters in ten.
 const ALIKE: f64 = 0.8;

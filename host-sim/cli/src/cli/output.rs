@@ -1,4 +1,4 @@
-//! What every command writes: files that are whole or absent, JSON, and argument errors.
+//! Outputs of every command: files that are whole or absent, JSON, and argument errors.
 
 use std::fs;
 use std::io::{self, Write as _};
@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::Failure;
 
-/// Prints help, version or an argument error as clap does, which knows what may have been meant; exit code 2 for an error.
+/// Prints help, version or an argument error as clap does, which suggests the nearest argument; exit code 2 for an error.
 pub(crate) fn argument_error(error: &clap::Error) -> ExitCode {
     // Whether or not anybody reads it, there is nothing more to do.
     let _ = error.print();
@@ -30,15 +30,16 @@ fn print_bytes(bytes: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// Creates `dir` and what leads to it.
+/// Creates `dir` and its parents.
 pub(crate) fn create_dir(dir: &Path) -> Result<(), Failure> {
     fs::create_dir_all(dir).map_err(|error| {
         Failure::input(format!("{}: cannot create this folder ({error}); choose another", dir.display()))
     })
 }
 
-/// Writes a file, which is whole at every moment: under a name that nobody guesses, in the same folder, and then renamed. What a link
-/// leads to is written, the link stays; a file keeps its mode. `-` is standard output, and a device or a pipe is written to.
+/// Writes a file, which is whole at every moment: under a name that nobody guesses, in the same folder, and then renamed.
+/// The target of a link is written, the link stays; a file keeps its mode. `-` is standard output, and a device or a pipe
+/// is written to.
 pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
     if path.as_os_str() == "-" {
         return print_bytes(contents);
@@ -48,7 +49,7 @@ pub(crate) fn write(path: &Path, contents: &[u8]) -> Result<(), Failure> {
     })
 }
 
-/// A value with what it is before its own keys: `"schema": "quatrack/NAME/1"`. The forms are in `docs/json.md`.
+/// A value with its schema before its own keys: `"schema": "quatrack/NAME/1"`. The forms are in `docs/json.md`.
 #[derive(Serialize)]
 pub(crate) struct Named<'a, T> {
     schema: String,
@@ -160,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_a_circle_and_what_may_not_be_written_stay() {
+    fn a_folder_a_circle_and_a_protected_file_stay() {
         let folder = tempfile::tempdir().unwrap();
         assert!(write(folder.path(), b"new").is_err());
         let circle = folder.path().join("circle");

@@ -42,7 +42,7 @@ pub(crate) struct Args {
     /// Fly only so many steps in all, spread evenly over the eight flights; there is no IAE then.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     steps: Option<u32>,
-    /// Write what the image logs over the pipes, for `defmt-print -e IMAGE < FILE`; a board's log is read by its probe.
+    /// Write the image's log over the pipes, for `defmt-print -e IMAGE < FILE`; a board's log is read by its probe.
     #[arg(long, value_name = "FILE", requires = "emulator")]
     log: Option<PathBuf>,
     /// The file of the key that the board was given (`quatrack keys`), 64 hexadecimal digits.

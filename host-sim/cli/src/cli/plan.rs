@@ -21,7 +21,7 @@ use super::{Failure, output};
 /// A plan is TOML (docs/plan.md), or rows of waypoints as CSV: t,x,y,z or t,x,y,z,yaw, or x,y,z without times. Without
 /// times, the least within the bounds are found. Bounds on the command line go before those of the file.
 ///
-/// Exit code 1: no curve meets the plan, and what would do is printed. 2: a file that cannot be used.
+/// Exit code 1: no curve meets the plan, and the least remedies are printed. 2: a file that cannot be used.
 ///
 /// Examples:
 ///   quatrack plan plans/mild.toml --json mild.json
@@ -70,7 +70,7 @@ pub(crate) struct Args {
 /// How long a plan is looked for unless it is said, s.
 const TIME_LIMIT_S: f64 = 60.0;
 
-/// What the files hold of a curve.
+/// The figures of a curve in the files.
 #[derive(Serialize)]
 struct Curve {
     degree: usize,
@@ -160,9 +160,9 @@ pub(super) fn planned(
         choice.map(|VehicleChoice(vehicle)| vehicle)
     };
     let bar = ProgressBar::new_spinner();
-    let progress = |what: &str| {
+    let progress = |stage: &str| {
         bar.enable_steady_tick(Duration::from_millis(200));
-        bar.set_message(what.to_owned());
+        bar.set_message(stage.to_owned());
     };
     let budget = Budget::of_seconds(limit_s, &progress);
     let over = Overrides { vehicles: Some(&find), ..over };
@@ -284,7 +284,7 @@ fn leg_summary(PlannedLeg { plan, curve, realised, .. }: &PlannedLeg) -> String 
     for (name, sampled, limit, bound, unit) in rows {
         let proved = limit.and_then(|limit| proved(realised, limit));
         let cell = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{:.4}", value * unit));
-        // A bound is what was asked for: printed as written, but for the rounding of degrees.
+        // A bound is printed as written, but for the rounding of degrees.
         let asked = bound.map_or("-".to_owned(), |bound| format!("{}", (bound * unit * 1e9).round() / 1e9));
         line(&mut text, [name, &cell(Some(sampled)), &cell(proved), &asked]);
     }
@@ -292,7 +292,7 @@ fn leg_summary(PlannedLeg { plan, curve, realised, .. }: &PlannedLeg) -> String 
     line(&mut text, ["waypoint", "time, s", "missed by, m", "tolerance, m"]);
     for ((waypoint, miss), number) in plan.waypoints().iter().zip(&realised.misses_m).zip(plan.first_number()..) {
         let time = format!("{:.4}", waypoint.time_s);
-        // What is left of an equality is rounding, and differs between machines.
+        // The residual of an equality is rounding, and differs between machines.
         let miss = format!("{:.6}", (miss * 1e6).round() / 1e6);
         let tolerance = if waypoint.tolerance_m == 0.0 { "exact".to_owned() } else { waypoint.tolerance_m.to_string() };
         line(&mut text, [&number.to_string(), &time, &miss, &tolerance]);
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn summary_shows_what_is_flown_beside_its_bounds() {
+    fn summary_shows_the_flown_extremes_beside_their_bounds() {
         let (plan, flight) = planned(Path::new("mild"), paper::MILD_TOML, Overrides::default(), 60.0).unwrap();
         let text = summary(&plan, &flight);
         let row = |name: &str| -> Vec<String> {
@@ -409,7 +409,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_used_exits_2_with_the_files_name() {
+    fn a_plan_that_cannot_be_used_exits_2_with_the_files_name() {
         let folder = Folder::new("unusable");
         for plan in ["", "degree = ", "degree = 5\nspan = 3\n"] {
             let failure = folder.run(plan).unwrap_err();

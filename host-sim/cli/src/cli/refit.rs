@@ -48,7 +48,7 @@ pub(crate) struct Args {
     /// planned first), or the Crazyflie's compressed form.
     #[arg(value_name = "mild|aggressive|FILE")]
     trajectory: String,
-    /// Most pieces, 1 to 31, which is what the memory holds.
+    /// Most pieces, 1 to 31, the most that the memory holds.
     #[arg(long, value_name = "N", default_value_t = PIECES_MAX, value_parser = pieces_parser())]
     pieces: usize,
     /// Write nothing and exit with 1 if the position is further off than this.
@@ -60,7 +60,8 @@ pub(crate) struct Args {
     /// Write the pieces in Bitcraze's compressed form: control points of 1 mm and 0.1 degrees, in 2 bytes each.
     #[arg(long, value_name = "FILE")]
     compressed: Option<PathBuf>,
-    /// Whose limits the reference is compared with: a vehicle, none, or THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2 and rad/s.
+    /// Limits that the reference is compared with: those of a vehicle, none, or THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2
+    /// and rad/s.
     #[arg(long, value_name = "V", allow_hyphen_values = true, default_value = "crazyflie-2.1")]
     limits: LimitsChoice,
     #[command(flatten)]
@@ -70,7 +71,7 @@ pub(crate) struct Args {
     json: Option<PathBuf>,
 }
 
-/// What is printed, and written as JSON.
+/// The figures that are printed, and written as JSON.
 #[derive(Serialize)]
 struct RefitReport {
     original_pieces: usize,
@@ -138,7 +139,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     if report.lost() {
         return Err(Failure::verdict(format!(
-            "{name}: LQR-E is lost on it; fly it slower (--time-scale 2), or look at what it asks for; nothing is written"
+            "{name}: LQR-E is lost on it; fly it slower (--time-scale 2), or check its accelerations; nothing is written"
         )));
     }
     let off_m = report.largest_difference.position_m;

@@ -8,9 +8,9 @@ use quatrack_campaign::{CampaignError, Folder};
 
 use super::{Failure, output, reproduce};
 
-/// Puts a campaign on one page that opens from disk without a network: the laws' table, distributions, what matters, the worst
-/// flights with the commands that fly them again, a replay in space of any two flights at once, and the paper's table and
-/// figures, made anew.
+/// Puts a campaign on one page that opens from disk without a network: the laws' table, distributions, the figures that
+/// matter, the worst flights with the commands that fly them again, a replay in space of any two flights at once, and the
+/// paper's table and figures, made anew.
 ///
 /// Example:
 ///   quatrack report my-campaign

@@ -17,7 +17,7 @@ use super::{Failure, output};
 /// motors that saturate. Figures are the position error summed over samples of 10 ms, in m s.
 ///
 /// With --scenario, or a flag of one other than --vehicle, the laws of a scenario fly that: as it is, and with each of these
-/// things wrong on top of what it says.
+/// things wrong on top of its own.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -41,11 +41,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let in_air = args.scenario.checked_in_own_air("crazyflie-2.1")?;
     let report = robustness::report(&in_air.vehicle).map_err(Failure::input)?;
     let report = Report { certified: report, in_air: scenario::fly(&in_air, None)? };
-    output::print(&format!(
-        "{}\nin vacuum, by what is certified:\n{}",
-        report.in_air.text(),
-        table(&report.certified)
-    ))?;
+    output::print(&format!("{}\nin vacuum, by the certificates:\n{}", report.in_air.text(), table(&report.certified)))?;
     if let Some(path) = &args.json {
         output::write_json(path, &output::Named::new("robustness", &report))?;
         output::print(&format!("wrote {}\n", path.display()))?;

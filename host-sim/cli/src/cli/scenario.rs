@@ -19,7 +19,7 @@ use values::{List, estimator, from_here, law, over, over_list, setpoints};
 #[derive(Clone, clap::Args)]
 #[command(next_help_heading = "Scenario")]
 pub(crate) struct ScenarioArgs {
-    /// The scenario (TOML): a craft, its air, what is wrong with what is known of it, a course and a law.
+    /// The scenario (TOML): a craft, its air, its deviations, a course and a law.
     #[arg(long, value_name = "FILE")]
     pub(super) scenario: Option<PathBuf>,
     /// A built-in vehicle, or a TOML file.
@@ -37,7 +37,7 @@ pub(crate) struct ScenarioArgs {
     /// Length of a step, m.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     step_m: Option<f64>,
-    /// How long is measured, s.
+    /// Duration of the measured part, s.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     duration_s: Option<f64>,
     /// 100hz, to the jerk and held; or exact, at every step.
@@ -49,7 +49,7 @@ pub(crate) struct ScenarioArgs {
     /// Where noise and gusts begin: a whole number from 0.
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     seed: Option<u64>,
-    /// vehicle, what the vehicle's file says of its air; or vacuum.
+    /// vehicle, the air of the vehicle's file; or vacuum.
     #[arg(long, value_name = "vehicle|vacuum", value_parser = ["vehicle", "vacuum"])]
     air: Option<String>,
     /// Drag over mass along body x, y and z, 1/s.
@@ -82,7 +82,7 @@ pub(crate) struct ScenarioArgs {
     /// How late commands act, ms.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     delay_ms: Option<f64>,
-    /// Thrust that comes of a command over what should.
+    /// Thrust of a command over its nominal thrust.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     thrust_factor: Option<f64>,
     /// The same at the end of the flight.
@@ -153,7 +153,7 @@ impl ScenarioArgs {
     /// The scenario.
     ///
     /// # Errors
-    /// What the file or a flag says without sense, in one line.
+    /// The value of the file or of a flag that is out of range, in one line.
     pub(super) fn checked(&self) -> Result<Scenario, Failure> {
         self.checked_for(None)
     }

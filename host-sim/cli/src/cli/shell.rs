@@ -1,4 +1,4 @@
-//! `quatrack completions` and `quatrack man`: what a shell and a manual know of the command.
+//! `quatrack completions` and `quatrack man`: the command's arguments for a shell and for a manual.
 
 use clap::CommandFactory as _;
 use clap_complete::Shell;
@@ -6,7 +6,7 @@ use clap_complete::Shell;
 use super::names::did_you_mean;
 use super::{Arguments, Failure, output};
 
-/// Prints what a shell needs to complete the arguments of `quatrack`.
+/// Prints the script by which a shell completes the arguments of `quatrack`.
 ///
 /// Examples:
 ///   quatrack completions bash > ~/.local/share/bash-completion/completions/quatrack
@@ -14,7 +14,7 @@ use super::{Arguments, Failure, output};
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct CompletionArgs {
-    /// Which shell.
+    /// The shell.
     #[arg(value_enum)]
     shell: Shell,
 }

@@ -1,4 +1,4 @@
-//! `--time-scale`, `--reverse`, `--start` and their like: flags in, what is done to a trajectory out.
+//! `--time-scale`, `--reverse`, `--start` and their like: flags in, the transform of a trajectory out.
 
 use nalgebra::Vector3;
 use quatrack_plan::trajectory::transform::Transform;
@@ -31,7 +31,7 @@ pub(crate) struct TransformArgs {
 }
 
 impl TransformArgs {
-    /// What is asked for.
+    /// The transform that is asked for.
     ///
     /// # Errors
     /// Exit code 2 for a value out of range.

@@ -1,4 +1,4 @@
-//! Quantities over one axis, panel below panel: a curve, or what a flight left over.
+//! Quantities over one axis, panel below panel: a curve, or the residual of a flight.
 
 use super::flight::{Quantity, draw_quantities};
 use super::render;
@@ -10,7 +10,7 @@ use super::{FigureError, LARGEST, compose};
 const HEIGHT: f64 = 720.0;
 const PANELS: Frame = Frame { left: 100.0, top: 84.0, right: 1172.0, bottom: 662.0 };
 
-/// What to show.
+/// The data of a chart.
 #[derive(Clone, Debug)]
 pub struct ChartFigure<'a> {
     /// Printed above the figure.

@@ -30,7 +30,7 @@ pub struct Trace<'a> {
 /// A panel.
 #[derive(Clone, Debug)]
 pub struct Quantity<'a> {
-    /// With its unit.
+    /// Its name, with its unit.
     pub name: &'a str,
     /// The axis is at least this long.
     pub shortest: f64,

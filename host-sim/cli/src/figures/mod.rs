@@ -1,5 +1,5 @@
 //! Figures in the manner of the paper's Figures 2 to 5: a reference and the flights that track it, or one flight with
-//! what its motors and the air did, in; SVG or PNG out.
+//! its motors' forces and the wind, in; SVG or PNG out.
 //!
 //! To the left the flight in space, to the right x, y and z over time; the reference dashed, flights solid. Plain data
 //! in, bytes out, the same bytes for the same data: nothing here knows controllers or writes files.
@@ -59,9 +59,9 @@ pub enum FigureError {
     Samples {
         /// The curve's label.
         label: String,
-        /// How many times.
+        /// The number of times.
         times: usize,
-        /// How many positions.
+        /// The number of positions.
         positions: usize,
     },
     /// A time that does not follow the one before it, or is out of reach.
@@ -69,7 +69,7 @@ pub enum FigureError {
     Time {
         /// The curve's label.
         label: String,
-        /// Which sample, from 0.
+        /// The sample's number, from 0.
         index: usize,
         /// Its time, s.
         value: f64,
@@ -79,7 +79,7 @@ pub enum FigureError {
     Reference {
         /// The reference's label.
         label: String,
-        /// Which sample, from 0.
+        /// The sample's number, from 0.
         index: usize,
         /// The first such coordinate, m.
         value: f64,

@@ -52,7 +52,7 @@ fn segment_in_box<const N: usize>(from: [f64; N], to: [f64; N], low: [f64; N], h
 /// `points` without those that move the line by less than `tolerance`; the ends stay.
 ///
 /// From each kept point, the directions that pass within `tolerance` of all points since form a cone; the first point
-/// outside it, or one that turns back, makes its predecessor a kept point. One pass, whatever the curve.
+/// outside it, or one that turns back, makes its predecessor a kept point. One pass, for any curve.
 pub(super) fn thinned(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
     let [first, rest @ .., last] = points else { return points.to_vec() };
     let mut kept = vec![*first];

@@ -1,8 +1,8 @@
 //! An SVG document in, a PNG file's bytes out; and a line of text in, its width out.
 //!
 //! Both come from one renderer with one font: IBM Plex Sans Regular, SIL Open Font License 1.1
-//! (`host-sim/assets/ibm-plex-sans/OFL.txt`), so that figures are the same on every machine, whatever fonts it has, and
-//! texts are as wide as the layout takes them to be.
+//! (`host-sim/cli/assets/ibm-plex-sans/OFL.txt`), so that figures are the same on every machine, with any fonts of its
+//! own, and texts are as wide as the layout takes them to be.
 
 use std::sync::{Arc, LazyLock};
 

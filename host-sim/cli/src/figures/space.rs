@@ -16,7 +16,7 @@ pub(super) struct Frame {
     pub(super) bottom: f64,
 }
 
-/// From the box's middle, the viewer stands this far from +x towards -y, and this far up, degrees: x runs to the
+/// From the box's middle, the viewer is this far from +x towards -y, and this far up, degrees: x runs to the
 /// right, y into the page, and the floor is seen from above.
 const AZIMUTH_DEG: f64 = -58.0;
 const ELEVATION_DEG: f64 = 26.0;
@@ -151,7 +151,7 @@ fn draw_scales(sheet: &mut Sheet, view: &View, axes: &[Range; 3], ticks: &[Vec<(
         let (start, end) = (page(axes[i].low), page(axes[i].high));
         sheet.line(start.into(), end.into(), frame);
         let outwards = if i == 2 { -Vector2::x() } else { view.direction(&outwards).normalize() };
-        // Tick labels stand beside a rising or upright edge and below a flat one.
+        // Tick labels are beside a rising or upright edge and below a flat one.
         let anchor = if i == 1 { Anchor::Start } else { Anchor::End };
         for (value, label) in &ticks[i] {
             let tick = page(*value);

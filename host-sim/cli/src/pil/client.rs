@@ -131,7 +131,7 @@ impl Client {
         })
     }
 
-    /// Sends a request and waits for its answer, whatever it is but an acknowledgement of something else.
+    /// Sends a request and waits for its answer, of any kind but an acknowledgement of something else.
     ///
     /// # Errors
     /// [`PilError`].

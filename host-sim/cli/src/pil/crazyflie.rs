@@ -36,7 +36,7 @@ const FIRST_STEP: u32 = 200;
 const TABLES: [(&str, u8, f64); 5] =
     [("cascade", 0, 0.1), ("lyap-e", 1, 0.02), ("lqr-e", 2, 0.02), ("lyap-f", 3, 0.005), ("lqr-f", 4, 0.005)];
 
-/// How the setpoints come.
+/// The forms of setpoints.
 const SETPOINTS: [(Setpoints, &str); 4] = [
     (Setpoints::HighLevel, "high-level"),
     (Setpoints::HighLevelTurning, "high-level, turning"),

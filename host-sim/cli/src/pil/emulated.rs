@@ -35,7 +35,7 @@ impl Transport {
     }
 }
 
-/// What an emulated board has beside its image.
+/// Settings of an emulated board beside its image.
 #[derive(Clone, Debug, Default)]
 pub struct Equipment<'a> {
     /// Where an image on pipes logs to, as defmt writes it.

@@ -13,7 +13,7 @@ use super::interrupt::Interrupt;
 /// Longest time for an emulator to count.
 const LIMIT: Duration = Duration::from_secs(60);
 
-/// What the image counts, in its order.
+/// The frames and tags that the image counts, in its order.
 const COUNTED: [&str; 5] =
     ["a hello and its answer", "an order", "a state with body rates", "a state and a reference", "an answer"];
 
@@ -29,7 +29,7 @@ pub struct LinkReport {
 /// Instructions from a frame's first byte to its message, or from a message to its frame.
 #[derive(Clone, Debug, Serialize)]
 pub struct FrameCost {
-    /// Which.
+    /// The frame.
     pub frame: &'static str,
     /// Over a cable.
     pub without_tag: u32,

@@ -49,7 +49,7 @@ pub enum PilError {
     Build {
         /// The program that was run.
         command: String,
-        /// How it ended.
+        /// The exit status.
         status: String,
     },
     /// No image.
@@ -66,7 +66,7 @@ pub enum PilError {
     /// The emulator stopped by itself.
     #[error("the emulator ended with {status} before the image had answered{}", said(.output))]
     EmulatorEnded {
-        /// How.
+        /// The exit status.
         status: String,
         /// Its output.
         output: String,
@@ -74,7 +74,7 @@ pub enum PilError {
     /// The image does not get on.
     #[error("no answer within {seconds} s: {waiting_for}")]
     Silent {
-        /// How long.
+        /// The time, s.
         seconds: u64,
         /// The answer that was waited for.
         waiting_for: String,
@@ -100,9 +100,9 @@ pub enum PilError {
     /// A flight has no command.
     #[error("{flight}, step {step}: no command ({reason})")]
     NoCommand {
-        /// Which flight.
+        /// The flight.
         flight: String,
-        /// Which step.
+        /// The step's number.
         step: u32,
         /// The board's words.
         reason: String,

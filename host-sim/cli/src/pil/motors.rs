@@ -1,7 +1,7 @@
 //! Lock-step down to the motors: a connected board in; the paper's courses on a rigid craft under its motor forces,
 //! compared bit for bit with the host's core.
 //!
-//! The craft takes off from the floor with motors that stand still, as one that has just been armed. The paper's law goes
+//! The craft takes off from the floor with motors that do not turn, as one that has just been armed. The paper's law goes
 //! through the body-rate loop and the mixer, which it only survives where the motors are quick: it is given such ones.
 
 use std::collections::BTreeMap;

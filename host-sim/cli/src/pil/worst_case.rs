@@ -73,7 +73,7 @@ pub(super) struct Host {
 impl Host {
     /// At the start of a course, with a controller of the paper's or the dense gain.
     pub(super) fn new(course: PaperTrajectory, controller: Option<Controller>) -> Result<Self, PilError> {
-        let refused = |what: &str| PilError::Answer(format!("the core refuses {what}"));
+        let refused = |part: &str| PilError::Answer(format!("the core refuses {part}"));
         let rate = Rate::from_hz(RATE_HZ).ok_or_else(|| refused("the rate"))?;
         let pieces = stored::pieces(course);
         let stored = Trajectory::new(pieces).map_err(|_| refused("the stored trajectory"))?;

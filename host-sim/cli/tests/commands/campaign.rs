@@ -84,7 +84,7 @@ fn a_campaign_that_was_killed_goes_on_where_it_was() {
         fly();
         assert_eq!(bench.bytes("out/rows.csv"), whole, "{kept}");
     }
-    // What a disk left behind of a block is no row.
+    // The part of a block that a disk left behind is no row.
     let mut torn = whole.clone();
     torn[lines[4]..].fill(0);
     fs::write(bench.0.join("out/rows.csv"), torn).unwrap();
@@ -151,7 +151,7 @@ fn message(said: &str) -> usize {
 }
 
 #[test]
-fn what_cannot_be_flown_is_refused_in_one_line() {
+fn inputs_that_cannot_be_flown_are_refused_in_one_line() {
     let bench = Bench::new("campaign-refuses");
     let refused = |name: &str, text: &str, arguments: &[&str], named: &str| {
         fs::write(bench.0.join(name), text).unwrap();

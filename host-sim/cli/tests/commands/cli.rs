@@ -1,4 +1,4 @@
-//! The command as its user meets it: what it prints, what it writes, and how it refuses.
+//! The command as its user meets it: its output, its files, and its refusals.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,8 +22,8 @@ fn file(dir: &Path, name: &str, contents: &str) -> String {
     path.to_str().unwrap().to_owned()
 }
 
-/// The command refuses with this code, prints nothing but one line on standard error, and that line names all of this. What is
-/// wrong with the arguments themselves is said by clap, in more lines.
+/// The command refuses with this code, prints nothing but one line on standard error, and that line names all of this. An
+/// error of the arguments themselves is printed by clap, in more lines.
 fn assert_refused(arguments: &[&str], exit_code: i32, named: &[&str]) {
     let output = quatrack(arguments);
     let stderr = String::from_utf8(output.stderr).unwrap();
@@ -39,7 +39,7 @@ fn assert_refused(arguments: &[&str], exit_code: i32, named: &[&str]) {
 const HEADER: &str = "duration,x^0,x^1,x^2,x^3,x^4,x^5,x^6,x^7,y^0,y^1,y^2,y^3,y^4,y^5,y^6,y^7,\
                       z^0,z^1,z^2,z^3,z^4,z^5,z^6,z^7,yaw^0,yaw^1,yaw^2,yaw^3,yaw^4,yaw^5,yaw^6,yaw^7\n";
 
-/// A row that stands still at `x` for `duration`.
+/// A row at rest at `x` for `duration`.
 fn row(duration: &str, x: &str) -> String {
     format!("{duration},{x}{}\n", ",0".repeat(31))
 }
@@ -130,7 +130,7 @@ fn a_flight_is_logged_whole_with_named_columns() {
     let metrics: serde_json::Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
     assert!((metrics["iae_m_s"].as_f64().unwrap() - 0.1115).abs() < 1e-3);
     assert_eq!(metrics["saturated_steps"], 0);
-    // What is written lies under its own name only.
+    // A file written is there under its own name only.
     assert!(
         fs::read_dir(&dir).unwrap().all(|entry| !entry
             .unwrap()

@@ -47,7 +47,7 @@ fn message(said: &str) -> usize {
 }
 
 #[test]
-fn what_cannot_be_flown_is_refused_in_one_line() {
+fn inputs_that_cannot_be_flown_are_refused_in_one_line() {
     let (folder, path) = scenario("compare-refuses", "vehicle = \"crazyflie-2.1\"\n[told]\nmass_kg = 29.0\n");
     let missing = folder.join("missing.toml").to_str().unwrap().to_owned();
     let (_, unknown) = scenario("compare-unknown", "vehicle = \"crazyflie-2.1\"\nspeed = 2.1\n");

@@ -1,4 +1,4 @@
-//! Figures as SVG: every curve in every view, axes that fit the reference, whatever the flights do.
+//! Figures as SVG: every curve in every view, axes that fit the reference, for any flights.
 
 use nalgebra::Vector3;
 use quatrack_cli::figures::{Curve, FigureError, TrackingFigure};
@@ -142,7 +142,7 @@ fn thinned_curves_stay_where_the_samples_are() {
     let (left, right) = (drawn[0][0], drawn[drawn.len() - 1][0]);
     for (t, p) in data.time_s.iter().zip(&data.position_m) {
         let page = [left + t / 10.0 * (right - left), 0.5 * (top + bottom) - 0.5 * (bottom - top) * p.y];
-        // The line leaves samples by at most 0.05; twice that for what `top` and `bottom` leave, 0.01 for decimals.
+        // The line leaves samples by at most 0.05; twice that for the error in `top` and `bottom`, 0.01 for decimals.
         assert!(distance(page, drawn) < 0.16, "t = {t}");
     }
     // x rises steadily: a straight line needs its ends only.
@@ -195,7 +195,7 @@ fn a_flight_that_diverges_leaves_the_figure_readable() {
     };
     for panel in 1..=3 {
         // Axes grow by at most half of the longest extent (2 m, y) at either end, then by 6 % and 5 % at either end: z,
-        // 1 m long, keeps a third of its panel, less what these take beyond the 6 % that the calm one has as well.
+        // 1 m long, keeps a third of its panel, less their share beyond the 6 % that the calm one has as well.
         assert!(height(&wild, panel) > 0.3 * height(&calm, panel), "panel {panel}");
     }
     let notes: Vec<&str> = texts(&wild).into_iter().filter(|text| text.ends_with('.')).collect();
@@ -206,7 +206,7 @@ fn a_flight_that_diverges_leaves_the_figure_readable() {
 }
 
 #[test]
-fn what_is_not_finite_breaks_the_line() {
+fn points_that_are_not_finite_break_the_line() {
     let mut flight = Data::wave(0.1);
     flight.position_m[400].x = f64::NAN;
     let svg = svg_of(&Data::wave(0.0), &[&flight]);

@@ -54,7 +54,7 @@ fn the_log_has_motors_their_limits_wind_and_estimate_and_the_same_bytes_for_the_
     };
     let first = log("first", &[]);
     assert!(first == log("again", &[]), "the same seed");
-    assert!(first == log("said", &["--seed", "5", "--speed-m-s", "1"]), "flags that say what the file says");
+    assert!(first == log("said", &["--seed", "5", "--speed-m-s", "1"]), "flags that repeat the file");
     assert!(first != log("other", &["--seed", "6"]), "another seed");
 
     let mut rows = first.lines();
@@ -66,7 +66,7 @@ fn the_log_has_motors_their_limits_wind_and_estimate_and_the_same_bytes_for_the_
     let mut squares = 0.0;
     for row in &rows {
         for motor in 1..=4 {
-            let of = |what: &str| row[column(&format!("{what}_{motor}_n"))];
+            let of = |column_of: &str| row[column(&format!("{column_of}_{motor}_n"))];
             assert!(of("thrust_min") <= of("thrust") && of("thrust") <= of("thrust_max"), "{row:?}");
         }
         squares += (row[column("est_x_m")] - row[column("x_m")]).powi(2);
@@ -79,7 +79,7 @@ fn the_log_has_motors_their_limits_wind_and_estimate_and_the_same_bytes_for_the_
 }
 
 #[test]
-fn a_flag_goes_before_the_file_and_stands_for_one() {
+fn a_flag_goes_before_the_file_and_can_replace_it() {
     let (folder, path) =
         scenario("fly-flags", "vehicle = \"crazyflie-2.1-brushless\"\ncourse = \"step\"\nstep_m = 0.2\n");
     let figures = |name: &str, arguments: &[&str]| {
@@ -117,7 +117,7 @@ fn message(said: &str) -> usize {
 }
 
 #[test]
-fn what_cannot_be_flown_is_refused_in_one_line() {
+fn inputs_that_cannot_be_flown_are_refused_in_one_line() {
     let (_, path) = scenario("fly-refuses", "vehicle = \"crazyflie-2.1\"\n");
     for (arguments, named) in [
         (&["--scenario", &path, "--mass-factor", "9"][..], &["scenario.toml with flags", "errors.mass_factor = 9"][..]),

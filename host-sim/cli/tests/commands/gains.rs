@@ -1,4 +1,4 @@
-//! `quatrack gains` and what flies and exports its designs, as their user meets them.
+//! `quatrack gains` and the commands that fly and export its designs, as their user meets them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -50,7 +50,7 @@ fn assert_refused(output: &Output, exit_code: i32, named: &[&str]) {
 }
 
 #[test]
-fn what_is_committed_is_what_the_designs_give() {
+fn committed_files_are_their_designs_output() {
     let json = folder("committed").join("checked.json");
     assert_done(&quatrack(&["gains", "check", GAINS, "--json", json.to_str().unwrap()]));
     let checked: serde_json::Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
@@ -78,7 +78,7 @@ const SOURCES: [&str; 5] = [
 ];
 
 #[test]
-fn what_is_missing_or_off_by_a_percent_is_named_and_written_again() {
+fn files_missing_or_off_by_a_percent_are_named_and_written_again() {
     let root = folder("checkout");
     let gains = root.join("gains");
     fs::create_dir_all(&gains).unwrap();
@@ -156,7 +156,7 @@ fn a_changed_file_is_named_with_its_first_difference() {
     *entry = (entry.as_f64().unwrap() * (1.0 + 2e-9)).into();
     fs::write(&json, value.to_string()).unwrap();
     assert_refused(&check(), 1, &["mine.json: gain.k[0][0] is 4.5"]);
-    // What only looks different is not.
+    // A file that only looks different is not.
     let value: serde_json::Value = serde_json::from_str(&whole).unwrap();
     fs::write(&json, value.to_string()).unwrap();
     assert_done(&check());
@@ -169,7 +169,7 @@ fn a_changed_file_is_named_with_its_first_difference() {
     bytes[200] ^= 1;
     fs::write(&binary, &bytes).unwrap();
     fs::remove_file(&json).unwrap();
-    // The whole folder: everything that is wrong, and what no design gives.
+    // The whole folder: every file that is wrong, and one that no design gives.
     fs::write(made.join("older.bin"), bytes).unwrap();
     let named =
         ["mine.json: cannot be read", "mine.rs: line ", "mine.bin: byte 200 is", "older.bin: no design gives it"];
@@ -300,7 +300,7 @@ fn the_committed_gains_along_the_w_are_shown_listed_and_flown() {
     };
     assert_done(&fly("aggressive"));
     let flown: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
-    // What is left under a hold of 10 ms, a fiftieth of the paper's 0.11; no limit of the vehicle is reached.
+    // The error that remains under a hold of 10 ms, a fiftieth of the paper's 0.11; no limit of the vehicle is reached.
     assert!(flown["iae_m_s"].as_f64().unwrap() < 2.5e-3 && flown["saturated_steps"] == 0, "{flown}");
     assert_refused(&fly("mild"), 2, &["along-aggressive.bin: its gains are for another trajectory", "mild"]);
     let shown = |extension: &str| stdout(&quatrack(&["gains", "show", &table.replace("bin", extension)]));
@@ -347,7 +347,7 @@ fn exports_name_every_row_and_column() {
 }
 
 #[test]
-fn the_page_on_own_designs_prints_what_the_command_does() {
+fn the_page_on_own_designs_prints_the_commands_output() {
     let page = fs::read_to_string(Path::new(GAINS).join("../docs/own-gains.md")).unwrap();
     let block = |after: &str, fence: &str| {
         let from = page.find(after).unwrap();
@@ -371,7 +371,7 @@ fn the_page_on_own_designs_prints_what_the_command_does() {
 }
 
 #[test]
-fn a_table_of_the_cascade_says_what_it_is_certified_for_and_flies_its_vehicle() {
+fn a_table_of_the_cascade_states_its_certified_region_and_flies_its_vehicle() {
     let dir = folder("cascade");
     let (design, table) =
         (format!("{GAINS}/cascade-brushless-50ms.toml"), format!("{GAINS}/generated/cascade-brushless-50ms.bin"));

@@ -66,7 +66,7 @@ fn a_signed_table_is_the_table_with_a_signature_that_holds() {
 }
 
 #[test]
-fn what_is_no_table_or_no_key_is_refused_without_showing_it() {
+fn files_that_are_no_table_or_no_key_are_refused_without_showing_them() {
     let dir = folder("refused");
     done(&dir, &["keys", "new", "secret"]);
     fs::write(dir.join("text"), "no table").unwrap();

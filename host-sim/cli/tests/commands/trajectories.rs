@@ -1,5 +1,5 @@
-//! Trajectories and plans as they are typed: what is read, moved and written, how a flight that is lost ends, and what is said of a
-//! reference that cannot be followed.
+//! Trajectories and plans as they are typed: files read, moved and written, the end of a flight that is lost, and the
+//! message about a reference that cannot be followed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ const HOPS: &str = "duration,x^0,x^4,x^5,x^6,x^7,y^0,z^0\n2,0,2.1875,-2.625,1.09
                     2,1,2.1875,-2.625,1.09375,-0.15625,0,1\n";
 
 #[test]
-fn what_other_tools_write_flies_alike() {
+fn files_of_other_tools_fly_alike() {
     let dir = folder("alike");
     let iae = |name: &str, text: &str| {
         let path = file(&dir, name, text.as_bytes());

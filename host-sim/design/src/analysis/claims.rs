@@ -7,7 +7,7 @@ use super::{ModelAnalysis, SectionThree};
 /// One statement of the paper, checked.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Claim {
-    /// Where the paper says it.
+    /// Its place in the paper.
     pub source: &'static str,
     /// Its text.
     pub statement: &'static str,

@@ -1,4 +1,4 @@
-//! Faults of a matrix, found before any question about it is answered.
+//! Refusals of a matrix (wrong shape, empty, not finite, no convergence), found before any question about it is answered.
 
 use nalgebra::DMatrix;
 use thiserror::Error;

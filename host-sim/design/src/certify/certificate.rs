@@ -1,4 +1,4 @@
-//! The certificate: every figure that the loop as flown is held to.
+//! The certificate of a gain as flown: poles, margins, delay and lag, as figures for documents and tables.
 
 use num_complex::Complex64;
 use serde::Serialize;
@@ -74,7 +74,7 @@ pub struct AlongFigures {
     pub steps: usize,
     /// The share of V that is left after the step that takes off least.
     pub largest_ratio: f64,
-    /// When that step is, s.
+    /// Time of that step, s.
     pub largest_ratio_at_s: f64,
     /// Largest distance of the interpolated gain from the optimal one at any control step, over the norm of that.
     pub interpolation_error: f64,

@@ -42,9 +42,9 @@ pub enum CertifyError {
          raise the rate, lower the gain or fly slower"
     )]
     UnstableAtKnot {
-        /// Which knot, from 0.
+        /// The knot's number, from 0.
         knot: usize,
-        /// When, s.
+        /// The time, s.
         time_s: f64,
         /// Largest modulus of the poles per sample.
         spectral_radius: f64,

@@ -65,7 +65,7 @@ pub struct LoopMargins {
 /// A disk that ends this close to an infinite gain factor has none: the factor is not known to any digit.
 const UNBOUNDED: f64 = 1e-9;
 
-/// Which disk.
+/// A kind of disk.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Disk {
     Balanced,

@@ -89,7 +89,7 @@ impl Quantity {
 }
 
 impl Judged {
-    /// Whether it reaches the demand; NaN on either side falls short.
+    /// Whether it reaches its minimum; NaN on either side falls short.
     pub fn holds(&self) -> bool {
         self.asked.is_none_or(|asked| self.found >= asked)
     }
@@ -110,7 +110,7 @@ pub fn require(certificate: &Certificate, minimum: &Minimum) -> Result<(), Margi
     }
 }
 
-/// Every figure that a design can ask something of, beside the demand of this one, always in the same order.
+/// Every figure that a design can bound, beside the minimum of this one, always in the same order.
 pub fn judge(certificate: &Certificate, minimum: &Minimum) -> Vec<Judged> {
     let mut figures = Vec::new();
     let mut add = |figure: String, quantity: Quantity, found: f64, asked: Option<f64>| {

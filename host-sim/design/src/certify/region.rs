@@ -54,7 +54,7 @@ pub struct Region {
     pub mass_factors: Vec<f64>,
     /// Inertias over that of the vehicle.
     pub inertia_factors: Vec<f64>,
-    /// How late commands act, s.
+    /// Delay of the commands, s.
     pub delays_s: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! What a certified loop does, by frequency and over time.
+//! The response of a certified loop, by frequency and over time.
 //!
 //! In flow a plant, its controller and the timing; out flow the sensitivity of each channel with the others closed, and the
 //! states after a start away from rest. The margins of a certificate are the peaks of these curves.

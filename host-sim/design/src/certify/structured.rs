@@ -18,9 +18,9 @@ const OSBORNE_SWEEPS: usize = 4;
 /// Bounds of `mu(M)`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StructuredBounds {
-    /// At most this.
+    /// An upper bound.
     pub upper: f64,
-    /// At least this.
+    /// A lower bound.
     pub lower: f64,
 }
 

@@ -76,7 +76,7 @@ pub struct CascadeDesign {
     pub last_correction: f64,
 }
 
-/// How many gains there are.
+/// Number of gains.
 pub const GAINS: usize = 16;
 
 impl CascadeDesign {

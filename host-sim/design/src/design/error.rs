@@ -163,7 +163,7 @@ pub enum DesignError {
     /// The answer is not good to working precision.
     #[error("{equation} was not solved to working precision; scale the states or the weights")]
     Inaccurate {
-        /// Which equation.
+        /// The equation.
         equation: &'static str,
         /// Relative residual of the best attempt.
         residual: f64,

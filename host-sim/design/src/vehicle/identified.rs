@@ -18,7 +18,7 @@ pub struct Interval {
     pub low: f64,
     /// Upper end.
     pub high: f64,
-    /// Where it is from.
+    /// Its source.
     pub source: String,
 }
 

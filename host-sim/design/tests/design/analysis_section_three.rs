@@ -59,7 +59,7 @@ fn the_uncontrollable_mode_is_exactly_q0_and_t_is_a_permutation() {
 }
 
 #[test]
-fn what_is_no_eigenvalue_has_no_jordan_block() {
+fn a_number_that_is_no_eigenvalue_has_no_jordan_block() {
     let models = SectionThree::new().expect("the paper's models are finite");
     let structure = jordan_blocks(&models.equilibrium.a, Complex::new(1.0, 2.0)).expect("finite");
     assert!(structure.block_sizes.is_empty());

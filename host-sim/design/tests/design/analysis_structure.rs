@@ -125,7 +125,7 @@ fn pbh_names_the_eigenvalue_that_the_input_does_not_move() {
 }
 
 #[test]
-fn what_cannot_be_analysed_is_named() {
+fn matrices_that_cannot_be_analysed_are_named() {
     assert_eq!(eigenvalues(&DMatrix::zeros(2, 3)).expect_err("not square").to_string(), "A is 2x3; it must be square");
     let infinite = matrix(1, 1, &[f64::INFINITY]);
     assert!(matches!(jordan_blocks(&infinite, Complex::new(0.0, 0.0)), Err(MatrixError::NotFinite { row: 0, .. })));

@@ -353,7 +353,7 @@ fn a_design_below_its_own_minimum_is_refused_with_the_figure() {
 }
 
 #[test]
-fn what_cannot_be_certified_is_refused_with_its_name() {
+fn loops_that_cannot_be_certified_are_refused_by_name() {
     let plant = Plant::equilibrium();
     let refuse = |gain: DMatrix<f64>, timing: Timing| {
         let error = certify(&plant, &Controller::memoryless(gain), &timing, None).expect_err("unusable");

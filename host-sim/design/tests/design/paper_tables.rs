@@ -90,12 +90,12 @@ fn the_committed_tables_are_the_synthesis_rounded_to_f32() {
 }
 
 #[test]
-fn the_committed_source_is_what_the_generator_writes() {
+fn the_committed_source_is_the_generators_output() {
     assert_eq!(include_str!("../../../../core/src/gains/paper.rs"), paper_tables().unwrap());
 }
 
 /// The design crate does without the core and so has the number once more.
 #[test]
-fn entries_become_zero_below_what_the_core_takes() {
+fn entries_below_the_cores_smallest_become_zero() {
     assert_eq!(ENTRY_MIN.to_bits(), quatrack::gains::table::ENTRY_MIN.to_bits());
 }

@@ -64,7 +64,7 @@ fn a_held_chain_has_its_polynomials() {
 }
 
 #[test]
-fn a_late_hold_splits_into_what_two_plain_holds_do() {
+fn a_late_hold_splits_into_two_plain_holds() {
     let a = matrix(2, 2, &[-0.5, 2.0, -3.0, 0.25]);
     let b = matrix(2, 2, &[1.0, 0.0, 0.5, -2.0]);
     let (h, late) = (0.01, 0.004);
@@ -208,7 +208,7 @@ fn an_unstable_mode_that_the_weight_does_not_see_is_mirrored_in_the_circle() {
 }
 
 #[test]
-fn what_has_no_answer_is_refused_with_its_name() {
+fn equations_without_an_answer_are_refused_by_name() {
     let (a, b, q, r) = (matrix(2, 2, &[1.0, 0.1, 0.0, 1.0]), matrix(2, 1, &[0.0, 0.1]), identity(2), identity(1));
     let refuse = |a: &DMatrix<f64>, b: &DMatrix<f64>, q: &DMatrix<f64>, r: &DMatrix<f64>| {
         let error = dlqr(a, b, q, r).expect_err("unusable");

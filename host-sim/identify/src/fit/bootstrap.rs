@@ -1,4 +1,5 @@
-//! Blocks of a flight, each with its share of a least-squares problem, in; repeated estimates out.
+//! The block bootstrap: blocks of a flight, each with its share of a least-squares problem, in; repeated estimates, from
+//! whose spread intervals are taken, out.
 
 use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;

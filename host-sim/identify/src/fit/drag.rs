@@ -1,4 +1,5 @@
-//! Linear regressions by themselves, with their blocks: drag from the accelerometer, and any other.
+//! Linear regressions by themselves, with their blocks for intervals: drag (1/s) from the accelerometer, and others of
+//! the same form.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,5 @@
-//! All figures of some flights of one craft, with intervals.
+//! All figures of a craft from its flights: checked flights in; every figure with a 95 % interval, or the reason why it
+//! is not known, out.
 
 use std::collections::BTreeMap;
 
@@ -42,7 +43,7 @@ pub struct FlightFit {
     pub torque_bias_n_m: Vector3<f64>,
     /// Of the accelerometer, m/s^2.
     pub force_bias_m_s2: Vector3<f64>,
-    /// Of the gyroscope, rad/s.
+    /// Bias of the gyroscope, rad/s.
     pub gyro_bias_rad_s: Vector3<f64>,
 }
 

@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_named_and_put_right() {
+    fn wrong_units_and_signs_are_named_and_put_right() {
         let rows = rows();
         let right = prepared(&rows, |_| {}, MAP);
         let times = |column: &'static str, factor: f64| {

@@ -221,7 +221,7 @@ impl Grid {
         Ok(grid)
     }
 
-    /// How many points.
+    /// The number of points.
     pub(super) fn len(&self) -> usize {
         self.gyro.len()
     }

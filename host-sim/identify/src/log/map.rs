@@ -169,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_built_in_is_sound_and_what_is_wrong_is_named() {
+    fn built_in_maps_are_sound_and_faults_of_others_are_named() {
         for name in ColumnMap::names() {
             assert!(ColumnMap::built_in(name).is_some(), "{name}");
         }

@@ -1,4 +1,4 @@
-//! How long a search may take, and who is told how it goes.
+//! The time limit of a search, and the receiver of its progress.
 
 use std::cell::Cell;
 use std::time::{Duration, Instant};
@@ -18,7 +18,7 @@ impl<'a> Budget<'a> {
         Self { deadline: None, limit_s: f64::INFINITY, progress: None, exceeded: Cell::new(false) }
     }
 
-    /// So many seconds from now; whatever is being done is told to `progress`.
+    /// So many seconds from now; `progress` is told each stage.
     pub fn of_seconds(limit_s: f64, progress: &'a dyn Fn(&str)) -> Self {
         let deadline = Duration::try_from_secs_f64(limit_s).ok().and_then(|limit| Instant::now().checked_add(limit));
         Self { deadline, limit_s, progress: Some(progress), exceeded: Cell::new(false) }
@@ -41,9 +41,9 @@ impl<'a> Budget<'a> {
         self.limit_s
     }
 
-    pub(super) fn say(&self, what: &str) {
+    pub(super) fn say(&self, stage: &str) {
         if let Some(progress) = self.progress {
-            progress(what);
+            progress(stage);
         }
     }
 }

@@ -1,10 +1,10 @@
-//! Why no curve meets a plan: an infeasible plan in, the limits that are too tight and what would do out.
+//! Why no curve meets a plan: an infeasible plan in, the limits that are too tight and the least that would do out.
 //!
 //! Each limit in turn gets a slack, and the least slack is sought with all others kept; where there is one, that limit
 //! alone explains the failure. Speed, acceleration, thrust, corridors and tolerances are linear in the slack and one solution
 //! gives the least value. Tilt and body rate bound ratios, `|a_xy| / (a_z + g)` and `|jerk| / zeta`: there the largest ratio of
 //! the solution is the next bound to try, which descends to the least one (Dinkelbach's method). A longer duration loosens
-//! every bound; the least is found by halving. What is told has been tried, as it is printed.
+//! every bound; the least is found by halving. Every printed remedy has been tried with the printed digits.
 
 use std::fmt;
 
@@ -30,7 +30,7 @@ const LONGEST: f64 = 64.0;
 /// The duration is told within this part.
 const DURATION_WITHIN: f64 = 1e-3;
 
-/// A limit exceeded by less than this part, or this many metres, is met: ten times what the solver is asked to leave.
+/// A limit exceeded by less than this part, or this many metres, is met: ten times the solver's tolerance.
 const TOUCHED: f64 = 1e-6;
 
 /// Something that bounds a flight and can be relaxed.
@@ -57,10 +57,10 @@ pub enum Limit {
     Duration,
 }
 
-/// A limit and what would do instead.
+/// A limit and the least value that would do instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Remedy {
-    /// Which one.
+    /// The limit.
     pub limit: Limit,
     /// Its value, SI; 0 for corridors and waypoints.
     pub given: f64,
@@ -68,8 +68,8 @@ pub struct Remedy {
     pub enough: f64,
 }
 
-/// What is too tight, as far as it can be told: every entry is one way out, and relaxes all it lists and nothing else.
-/// Empty if none was found.
+/// The limits that are too tight, as far as they can be told: every entry is one way out, and relaxes all it lists and
+/// nothing else. Empty if none was found.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Infeasibility {
     /// The ways out.
@@ -141,9 +141,9 @@ fn outwards(value: f64) -> f64 {
     (value.abs() * scale * (1.0 - 1e-12)).ceil() / scale * value.signum()
 }
 
-/// What is said of curves one after the other of which one has `reason` not to be: what is too tight in them, first each
-/// limit alone; if that leaves only the waypoints to give way, all bounds and corridors together, at last everything; and
-/// how much longer it would have to be.
+/// The diagnosis of curves one after the other of which one has `reason` not to be: the limits that are too tight, first
+/// each limit alone; if that leaves only the waypoints to give way, all bounds and corridors together, at last
+/// everything; and how much longer it would have to be.
 pub(super) fn diagnose(legs: &[Plan], reason: &NoCurve, budget: &Budget<'_>) -> PlanError {
     let mut ways_out: Vec<Vec<Remedy>> = Vec::new();
     if *reason != NoCurve::OutOfTime {
@@ -151,7 +151,7 @@ pub(super) fn diagnose(legs: &[Plan], reason: &NoCurve, budget: &Budget<'_>) -> 
         // The limits are those of all; each leg may have corridors and waypoints of its own.
         let limits: Vec<Limit> = legs[0].limits();
         for &limit in &limits {
-            budget.say(&format!("looking for what is too tight: {limit:?}"));
+            budget.say(&format!("looking for limits that are too tight: {limit:?}"));
             ways_out.extend(tried(legs, &[limit], budget));
         }
         let bounds: Vec<Limit> = limits.iter().copied().filter(|limit| *limit != Limit::Waypoints).collect();
@@ -176,7 +176,7 @@ fn all_solve(legs: &[Plan], budget: &Budget<'_>) -> bool {
     legs.iter().all(|leg| leg.curve_within(budget).is_ok())
 }
 
-/// What is needed of several limits at once, as it is printed and tried.
+/// The values that several limits need at once, as they are printed and tried.
 fn tried(legs: &[Plan], limits: &[Limit], budget: &Budget<'_>) -> Option<Vec<Remedy>> {
     // Of a leg that has a curve nothing is needed.
     let needed: Vec<Vec<f64>> = legs.iter().filter_map(|leg| least(leg, limits, budget)).collect();
@@ -253,7 +253,7 @@ fn enough(plan: &Plan, limit: Limit, budget: &Budget<'_>) -> Option<f64> {
     Some(least)
 }
 
-/// The curve with the least slack in the limits given, which are weighed by their size.
+/// The curve with the least slack in the limits given, each slack over the size of its limit.
 fn relaxed(plan: &Plan, limits: &[Limit], budget: &Budget<'_>) -> Option<BSpline> {
     let origin_m = plan.waypoints().first()?.position_m;
     if origin_m != Vector3::zeros() {
@@ -298,10 +298,10 @@ impl Plan {
         if limit == Limit::ThrustMin { needed < given - TOUCHED } else { needed > given * (1.0 + TOUCHED) + TOUCHED }
     }
 
-    /// A limit and what is needed of it, with room and as it is printed; `None` if it is not too tight at all.
+    /// A limit and the value that it needs, with room and as it is printed; `None` if it is not too tight at all.
     fn remedy(&self, limit: Limit, needed: f64, room: f64) -> Option<Remedy> {
         let given = self.given(limit);
-        // Of a thrust, what counts is its distance to hover.
+        // Of a thrust, its distance to hover counts.
         let hover = if matches!(limit, Limit::ThrustMin | Limit::ThrustMax) { GRAVITY_M_S2 } else { 0.0 };
         let with_room = needed + room * (needed - hover);
         let enough = match limit {
@@ -340,7 +340,7 @@ impl Plan {
         plan
     }
 
-    /// Value of a limit, SI; 0 where none is given, and for corridors and waypoints, which count what is added.
+    /// Value of a limit, SI; 0 where none is given, and for corridors and waypoints, which count the addition.
     fn given(&self, limit: Limit) -> f64 {
         let bounds = &self.bounds;
         let bound = match limit {

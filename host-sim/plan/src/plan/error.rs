@@ -1,4 +1,4 @@
-//! Why a plan gives no curve: what was found wrong in, one line that names it and the remedy out.
+//! Why a plan gives no curve: a fault in, one line that names it and the remedy out.
 
 use std::fmt;
 
@@ -19,9 +19,9 @@ pub enum PlanError {
     /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
     #[error("line {line}: {reason}")]
     Syntax {
-        /// Where, from 1.
+        /// The line, from 1.
         line: usize,
-        /// What the parser says, in one line.
+        /// The parser's message, in one line.
         reason: String,
     },
     /// A value out of range.
@@ -31,7 +31,7 @@ pub enum PlanError {
         field: String,
         /// The value as read.
         value: f64,
-        /// What it must be.
+        /// Its required range, in words.
         must: String,
     },
     /// Fewer than a start and an end.
@@ -50,7 +50,7 @@ pub enum PlanError {
         "has no time_s: give it, or segment_shares for all, or no times at all to have them found from the bounds"
     })]
     WaypointTime {
-        /// Which one.
+        /// The waypoint.
         waypoint: WaypointName,
         /// Whether both were given.
         twice: bool,
@@ -107,7 +107,7 @@ pub enum PlanError {
     /// Rest and motion at one place.
     #[error("{waypoint}: has a velocity_m_s where the flight rests; leave out the one or the other")]
     MovingStop {
-        /// Which one.
+        /// The waypoint.
         waypoint: WaypointName,
     },
     /// A box that would not be one along the axes any more.
@@ -121,7 +121,7 @@ pub enum PlanError {
     Vehicle {
         /// As written.
         name: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
     /// A heading that turns too fast for its bound.
@@ -150,7 +150,7 @@ pub enum PlanError {
     /// A lower bound that is not below its upper one.
     #[error("{field}: lower {lower}, upper {upper}; the lower one must be below")]
     Crossed {
-        /// Which pair.
+        /// The pair.
         field: String,
         /// Lower bound, SI.
         lower: f64,
@@ -171,7 +171,7 @@ pub enum PlanError {
     },
     /// The solver stopped without an answer.
     #[error(
-        "the solver stopped without an answer ({0}): the plan is at the edge of what its bounds allow, or its numbers \
+        "the solver stopped without an answer ({0}): the plan is at the edge of its bounds, or its numbers \
          differ too much in size; loosen a bound or take fewer spans"
     )]
     NotConverged(String),

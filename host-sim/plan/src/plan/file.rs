@@ -16,17 +16,17 @@ use entries::{BoundsEntry, CorridorEntry, PlanFile, WaypointEntry, check, check_
 
 /// More spans than any flight here needs; keeps a slip of the finger from filling the memory.
 const MOST_SPANS: usize = 500;
-/// Longest and shortest flight, s; shorter ones have snaps beyond what the solver can scale.
+/// Longest and shortest flight, s; shorter ones have snaps beyond the solver's scaling.
 const DURATIONS_S: std::ops::RangeInclusive<f64> = 1e-2..=1e5;
 /// Two times closer than this part of the duration are the same; that of a decimal number written in full.
 const SAME_TIME: f64 = 1e-12;
 /// Room that a flight in the least time is given, so that a curve smoother than the fastest meets its bounds.
 const ROOMS: [f64; 4] = [1.005, 1.01, 1.02, 1.05];
 
-/// From the name of a vehicle, as a file has it, to its figures, or to what is wrong with it in one line.
+/// From the name of a vehicle, as a file has it, to its figures, or to its fault in one line.
 pub type FindVehicle<'a> = &'a dyn Fn(&str) -> Result<Vehicle, String>;
 
-/// What goes over the keys of a file, each where it is given.
+/// Values in place of the keys of a file, each where it is given.
 #[derive(Clone, Copy, Default)]
 pub struct Overrides<'a> {
     /// Bounds, SI.
@@ -185,7 +185,7 @@ fn stops(file: &PlanFile, waypoints: &[Waypoint], notes: &mut Vec<String>) -> Re
     Ok(stops)
 }
 
-/// Moves, turns, scales and reverses what the file says, before anything is planned.
+/// Moves, turns, scales and reverses the file's waypoints, before anything is planned.
 fn transform(
     transform: &Transform,
     file: &mut PlanFile,

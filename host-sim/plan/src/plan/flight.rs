@@ -6,21 +6,21 @@ use super::diagnosis::diagnose;
 use super::{BSpline, Overrides, Plan, PlanError, Realised, file, heading};
 use crate::trajectory::polynomial::{PiecewisePolynomial, PolynomialError};
 
-/// What a plan file asks for, with all times known.
+/// The flight of a plan file, with all times known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightPlan {
     /// At least one.
     pub(super) legs: Vec<Plan>,
     /// Whether the times were found from the bounds.
     pub(super) free: bool,
-    /// What was read into the file beyond its letters.
+    /// Interpretations of the file beyond its letters.
     pub(super) notes: Vec<String>,
 }
 
-/// A curve with its plan and what it really does.
+/// A curve with its plan and its largest quantities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlannedLeg {
-    /// What was asked for.
+    /// The plan.
     pub plan: Plan,
     /// The curve.
     pub curve: BSpline,
@@ -42,7 +42,7 @@ impl FlightPlan {
     /// within the bounds are found.
     ///
     /// # Errors
-    /// [`PlanError`] names the key or waypoint, its value and what it must be.
+    /// [`PlanError`] names the key or waypoint, its value and its range.
     pub fn from_toml(text: &str, over: &Overrides<'_>, budget: &Budget<'_>) -> Result<Self, PlanError> {
         file::read(text, over, budget)
     }
@@ -78,7 +78,7 @@ impl FlightPlan {
         self.free
     }
 
-    /// What was read into the file beyond its letters: one line each.
+    /// Interpretations of the file beyond its letters: one line each.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }

@@ -1,4 +1,4 @@
-//! The heading along a curve: where it is given at waypoints in, a B-spline over the curve's own knots out.
+//! The heading along a curve: headings at waypoints (rad) in, a B-spline over the curve's own knots out.
 //!
 //! It is the smoothest one: least square of its second derivative, its own and its rate's zero at both ends. Its rate is
 //! bounded by the control points of the derivative, as the position's is.

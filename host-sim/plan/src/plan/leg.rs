@@ -1,4 +1,4 @@
-//! One curve: its plan in, the B-spline that meets it or what is too tight out.
+//! One curve: its plan in, the B-spline that meets it or the limits that are too tight out.
 
 use super::diagnosis::diagnose;
 use super::error::WaypointName;
@@ -13,7 +13,7 @@ use super::{
 pub(super) enum NoCurve {
     /// There is none.
     Infeasible,
-    /// The solver stopped; near the edge of what the bounds allow, mostly.
+    /// The solver stopped; near the edge of the bounds, mostly.
     Failed(String),
     /// The time is up.
     OutOfTime,
@@ -24,7 +24,7 @@ impl Plan {
     /// docs/plan.md.
     ///
     /// # Errors
-    /// [`PlanError`] names the key or waypoint, its value and what it must be; [`PlanError::SeveralCurves`] for a flight with
+    /// [`PlanError`] names the key or waypoint, its value and its range; [`PlanError::SeveralCurves`] for a flight with
     /// stops, which [`FlightPlan`] plans.
     pub fn from_toml(text: &str) -> Result<Self, PlanError> {
         let plan = FlightPlan::from_toml(text, &file::Overrides::default(), &Budget::unlimited())?;
@@ -170,7 +170,7 @@ impl Plan {
         first.min(self.spans() - 1)..=last.clamp(first, self.spans() - 1) + self.degree()
     }
 
-    /// Schoenberg and Whitney: waypoints can be met exactly, whatever their positions, if and only if each condition can have
+    /// Schoenberg and Whitney: waypoints can be met exactly, at any positions, if and only if each condition can have
     /// a control point of its own, in order, whose basis function is not zero there.
     pub(super) fn check_spans(&self) -> Result<(), PlanError> {
         let [at_start, at_end] = self.points_at_the_ends();

@@ -3,7 +3,7 @@
 //! The method of the paper's reference \[10\], "virtual control points". The flat output `sigma(t) = (x, y, z)` is a
 //! clamped uniform B-spline with control points `P_j`; its `k`-th derivative is a B-spline too, of degree `degree - k`,
 //! whose control points `Pk_j` are scaled differences of those of derivative `k - 1`, and so linear in `P`. In each span a
-//! B-spline is a mean of `degree - k + 1` consecutive control points with weights that are never negative: whatever
+//! B-spline is a mean of `degree - k + 1` consecutive control points with weights that are never negative: any
 //! convex set holds those points holds the curve, for all t and not only at samples. With `g` gravity and
 //! `h = a + g e3` the thrust vector, heading 0, the bounds are second-order cones in the control points:
 //!
@@ -52,12 +52,12 @@ pub use file::{FindVehicle, Overrides};
 pub use flight::{FlightPlan, PlannedFlight, PlannedLeg};
 pub use realised::{Extremes, Realised};
 
-/// Where to be at a time.
+/// A position to pass at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Waypoint {
-    /// When, s.
+    /// The time, s.
     pub time_s: f64,
-    /// Where, m, world frame.
+    /// The position, m, world frame.
     pub position_m: Vector3<f64>,
     /// How far off the curve may pass, m; 0 is to be met exactly.
     pub tolerance_m: f64,
@@ -67,7 +67,7 @@ pub struct Waypoint {
     pub heading_rad: Option<f64>,
 }
 
-/// What the flight must keep to for all t; `None` is no bound.
+/// The bounds of the flight for all t; `None` is no bound.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// Speed, m/s.

@@ -39,7 +39,7 @@ impl Affine {
     }
 }
 
-/// What must hold of a variable vector.
+/// A constraint on the variable vector.
 pub(super) enum Constraint {
     /// Zero.
     Zero(Affine),
@@ -57,7 +57,7 @@ pub(super) struct Program {
     pub(super) quadratic: Vec<(usize, usize, f64)>,
     /// `q`.
     pub(super) linear: Vec<f64>,
-    /// What must hold.
+    /// The constraints.
     pub(super) constraints: Vec<Constraint>,
 }
 

@@ -1,4 +1,4 @@
-//! What a curve really does: a curve in, its largest and least quantities at dense samples out.
+//! The quantities of a curve: a curve in, its largest and least quantities at dense samples out.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;
@@ -26,7 +26,7 @@ pub struct Extremes {
     pub thrust_min_m_s2: f64,
     /// Largest thrust over mass, m/s^2.
     pub thrust_max_m_s2: f64,
-    /// Largest rate at which the thrust axis turns, `sqrt(p^2 + q^2)`, rad/s: what a plan bounds.
+    /// Largest rate at which the thrust axis turns, `sqrt(p^2 + q^2)`, rad/s: a plan bounds it.
     pub turn_rate_max_rad_s: f64,
     /// Largest body rate `|(p, q, r)|` with `q3 = 0`, rad/s; not a number if the thrust vanishes or points straight down.
     pub body_rate_max_rad_s: f64,
@@ -37,7 +37,7 @@ pub struct Extremes {
 pub struct Realised {
     /// At dense samples.
     pub sampled: Extremes,
-    /// What the control points prove for all t, of each bound that they can: the limit and its value, SI.
+    /// The values that the control points prove for all t, for each bound that they can: the limit and its value, SI.
     pub proved: Vec<(Limit, f64)>,
     /// Distance from each waypoint at its time, m.
     pub misses_m: Vec<f64>,

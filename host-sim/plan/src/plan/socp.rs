@@ -9,16 +9,16 @@ use clarabel::solver::{
 use super::budget::Budget;
 use super::program::{Affine, Constraint, Program};
 
-/// What the largest entry of `P` and `q` is scaled to. The gap is absolute for small objectives, so that less loses digits of the
-/// curve (at 1, 4e-5 m of the mild flight's); more only makes rounding end the progress earlier.
+/// The largest entry of `P` and `q` is scaled to this. The gap is absolute for small objectives, so that less loses
+/// digits of the curve (at 1, 4e-5 m of the mild flight's); more only makes rounding end the progress earlier.
 const LARGEST_OBJECTIVE_ENTRY: f64 = 1e4;
 
 /// Residuals and gap asked of the solver.
 #[derive(Clone, Copy)]
 pub(super) struct Accuracy {
-    /// Where it stops.
+    /// Tolerance at which it stops.
     asked: f64,
-    /// What is still taken for a solution where rounding ends the progress before that.
+    /// Still taken for a solution where rounding ends the progress before that.
     accepted: f64,
 }
 
@@ -31,7 +31,7 @@ impl Accuracy {
     pub(super) const THREE_DIGITS: Self = Self { asked: 1e-7, accepted: 1e-5 };
 }
 
-/// What the solver found.
+/// The solver's result.
 pub(super) enum Outcome {
     /// The optimum.
     Solved(Vec<f64>),

@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_stored_is_what_is_planned() {
+    fn the_stored_pieces_are_the_planned_ones() {
         assert_regenerates(pieces(PaperTrajectory::Mild), &paper::mild().unwrap());
         assert_regenerates(pieces(PaperTrajectory::Aggressive), &paper::aggressive().unwrap());
     }

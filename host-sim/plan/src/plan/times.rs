@@ -21,7 +21,7 @@ const GAIN: f64 = 1e-4;
 /// Largest change of a share, as part of the shorter segment beside it: at first, and where the search ends.
 const TRUST: [f64; 2] = [0.4, 0.01];
 
-/// What is to be flown in the least time.
+/// The flight whose time is to be the least.
 pub(super) struct Free<'a> {
     /// Where and how closely, from start to end, which are met at rest.
     pub(super) places: &'a [(Vector3<f64>, f64)],

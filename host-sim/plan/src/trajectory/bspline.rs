@@ -12,7 +12,7 @@ use super::Trajectory;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BSplineError {
-    /// Degree outside 1..=7; 7 is what the on-board pieces carry.
+    /// Degree outside 1..=7; 7 is the degree of the on-board pieces.
     #[error("degree = {0}: must be from 1 to 7")]
     Degree(usize),
     /// Not enough control points for one span.
@@ -20,7 +20,7 @@ pub enum BSplineError {
     TooFewControlPoints {
         /// The spline's degree.
         degree: usize,
-        /// How many there are.
+        /// The number found.
         found: usize,
     },
     /// Zero, negative or not a number.
@@ -29,7 +29,7 @@ pub enum BSplineError {
     /// A control point that is not finite.
     #[error("control point {index} (from 0) has the coordinate {value}: must be a finite number of metres")]
     ControlPoint {
-        /// Which one, from 0.
+        /// Its number, from 0.
         index: usize,
         /// The first coordinate that is not finite.
         value: f64,
@@ -37,13 +37,13 @@ pub enum BSplineError {
     /// Another number of control points of the heading than of the position, or one that is not finite.
     #[error("heading_control_points_rad: must be {expected} finite numbers, one for each control point")]
     Heading {
-        /// How many there must be.
+        /// The number required.
         expected: usize,
     },
 }
 
-/// The basis functions of clamped uniform B-splines of one degree: what a spline is before it has control points, and
-/// what a planner that looks for them needs.
+/// The basis functions of clamped uniform B-splines of one degree: a spline before it has control points, for
+/// a planner that looks for them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniformBasis {
     degree: usize,
@@ -55,7 +55,7 @@ impl UniformBasis {
     /// The basis of `degree` over `[0, duration_s]` cut into `spans` equal spans.
     ///
     /// # Errors
-    /// [`BSplineError`] names what is out of range.
+    /// [`BSplineError`] names the value out of range.
     pub fn new(degree: usize, spans: usize, duration_s: f64) -> Result<Self, BSplineError> {
         if !(1..=7).contains(&degree) {
             return Err(BSplineError::Degree(degree));
@@ -166,7 +166,7 @@ impl UniformBasis {
         self.derivative_by(&self.derivative_weights(order), order, t_s)
     }
 
-    /// The same by what [`Self::derivative_weights`] gave for this order: for many times.
+    /// The same by the rows of [`Self::derivative_weights`] for this order: for many times.
     pub(crate) fn derivative_by(&self, rows: &[Vec<f64>], order: usize, t_s: f64) -> (usize, Vec<f64>) {
         let span = self.span_at(t_s);
         let mut weights = vec![0.0; self.degree + 1];
@@ -193,7 +193,7 @@ impl BSpline {
     /// A spline of `degree` over `[0, duration_s]` with `control_points_m.len() - degree` spans of equal length.
     ///
     /// # Errors
-    /// [`BSplineError`] names what is out of range.
+    /// [`BSplineError`] names the value out of range.
     pub fn new(degree: usize, duration_s: f64, control_points_m: Vec<Vector3<f64>>) -> Result<Self, BSplineError> {
         if (1..=7).contains(&degree) && control_points_m.len() <= degree {
             return Err(BSplineError::TooFewControlPoints { degree, found: control_points_m.len() });
@@ -337,8 +337,8 @@ mod tests {
                     let t_s = 0.05 * f64::from(step);
                     let values = curve.basis(order, curve.span_at(t_s), t_s);
                     assert_eq!(values.len(), degree - order + 1);
-                    // Non-negative and of sum 1 is what makes the curve a mean of its control points; each value comes
-                    // from at most 7 roundings of factors below 1.
+                    // Weights that are not negative and of sum 1 make the curve a mean of its control points; each value
+                    // comes from at most 7 roundings of factors below 1.
                     assert!(values.iter().all(|v| *v >= -1e-15), "degree {degree}, order {order}, t {t_s}: {values:?}");
                     assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-14);
                 }
@@ -434,7 +434,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_spline_is_named() {
+    fn numbers_that_make_no_spline_are_named() {
         let points = vec![Vector3::zeros(); 6];
         assert_eq!(BSpline::new(0, 1.0, points.clone()), Err(BSplineError::Degree(0)));
         assert_eq!(BSpline::new(8, 1.0, points.clone()), Err(BSplineError::Degree(8)));

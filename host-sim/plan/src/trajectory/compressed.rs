@@ -27,9 +27,9 @@ pub enum CompressedError {
          trajectory's origin or fly it by pieces of polynomials", coordinate.unit(), f64::from(i16::MAX) / units(*coordinate)
     )]
     TooFar {
-        /// Which piece, from 1.
+        /// The piece's number, from 1.
         piece: usize,
-        /// What.
+        /// The coordinate.
         coordinate: Coordinate,
         /// Value of the control point, m or rad.
         value: f64,
@@ -39,17 +39,17 @@ pub enum CompressedError {
         "piece {piece}: lasts {duration_s} s; the compressed form holds 0.001 to 65.535 s a piece: split or join it"
     )]
     Duration {
-        /// Which piece, from 1.
+        /// The piece's number, from 1.
         piece: usize,
-        /// How long, s.
+        /// Its duration, s.
         duration_s: f64,
     },
     /// Bytes that end within a piece, or go on behind the end.
     #[error("no compressed trajectory: its {length} bytes end within piece {piece}, or go on behind its end")]
     Length {
-        /// How many bytes.
+        /// The number of bytes.
         length: usize,
-        /// Which piece, from 1.
+        /// The piece's number, from 1.
         piece: usize,
     },
     /// Its pieces make no trajectory.
@@ -89,7 +89,7 @@ fn polynomial(points: &[f64], duration_s: f64) -> [f64; COEFFICIENTS] {
 /// The bytes of a trajectory.
 ///
 /// # Errors
-/// [`CompressedError`] for what 16 bits do not hold.
+/// [`CompressedError`] for a number that 16 bits do not hold.
 pub fn to_bytes(trajectory: &PiecewisePolynomial) -> Result<Vec<u8>, CompressedError> {
     let mut bytes = Vec::new();
     let boundaries_s = trajectory.boundaries_s();
@@ -152,7 +152,7 @@ fn body(first: i16, points: &[f64; COEFFICIENTS]) -> Vec<i16> {
     }
 }
 
-/// The trajectory of bytes; what stands behind the piece of no duration must be nothing.
+/// The trajectory of bytes; nothing may be behind the piece of no duration.
 ///
 /// # Errors
 /// [`CompressedError`] for bytes that are none.
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn what_sixteen_bits_do_not_hold_is_named() {
+    fn numbers_beyond_sixteen_bits_are_named() {
         let far = |value: f64, duration_s: f64| {
             let mut piece = Piece { duration_s, coefficients: [[0.0; COEFFICIENTS]; 4] };
             piece.coefficients[1][0] = value;

@@ -1,4 +1,4 @@
-//! The flat output to its fifth derivative: what motor forces and their rates depend on.
+//! The flat output to its fifth derivative: motor forces and their rates depend on it.
 
 use nalgebra::Vector3;
 
@@ -60,7 +60,7 @@ impl FlatTrajectory for Eight {
 /// Rest at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
-    /// Where, m.
+    /// The position, m.
     pub position_m: Vector3<f64>,
     /// Heading, rad.
     pub heading_rad: f64,
@@ -78,14 +78,14 @@ impl FlatTrajectory for Rest {
     }
 }
 
-/// Rest at one place and, from a time on, at another: what no craft can follow.
+/// Rest at one place and, from a time on, at another: no craft can follow it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jump {
     /// Before, m.
     pub from_m: Vector3<f64>,
     /// After, m.
     pub to_m: Vector3<f64>,
-    /// When, s.
+    /// The time, s.
     pub at_s: f64,
     /// Length in time, s.
     pub duration_s: f64,

@@ -1,4 +1,4 @@
-//! Trajectory files of any accepted form: a path or a text in, what it holds out. The content decides, not the name.
+//! Trajectory files of any accepted form: a path or a text in, its contents out. The content decides, not the name.
 //!
 //! - rows of polynomial pieces in the `uav_trajectories` form ([`super::polynomial::csv`]);
 //! - control points of a clamped uniform B-spline as JSON or TOML: `degree`, `duration_s` (s) and `control_points_m`
@@ -24,7 +24,7 @@ use super::waypoints::{self, Kind};
 /// More than any trajectory takes: a device that never ends is read up to here.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// What a trajectory file holds.
+/// The contents of a trajectory file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TrajectoryFile {
     /// Polynomial pieces, ready to fly.
@@ -35,7 +35,7 @@ pub enum TrajectoryFile {
     Plan(String),
 }
 
-/// Why a file cannot be used: one line with the file, where in it, the value and what to do.
+/// Why a file cannot be used: one line with the file, where in it, the value and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
@@ -70,7 +70,7 @@ pub enum FileError {
     Unrecognised {
         /// The file.
         name: String,
-        /// What it looks like instead.
+        /// The form found instead.
         found: String,
     },
     /// Pieces that cannot be flown.
@@ -109,7 +109,7 @@ pub enum FileError {
     Curves {
         /// The file.
         name: String,
-        /// What is wrong.
+        /// The fault.
         #[source]
         reason: PolynomialError,
     },
@@ -122,7 +122,7 @@ pub enum FileError {
         name: String,
         /// From 1.
         line: usize,
-        /// What is wrong there.
+        /// The fault there.
         reason: String,
     },
     /// Control points that do not make a spline.
@@ -139,9 +139,9 @@ pub enum FileError {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ControlPoints {
-    /// What `quatrack plan` writes before the rest.
+    /// The schema that `quatrack plan` writes before the rest.
     #[serde(default)]
-    #[expect(dead_code, reason = "a file may say what it is")]
+    #[expect(dead_code, reason = "a file may state its schema")]
     schema: Option<String>,
     degree: usize,
     duration_s: f64,
@@ -154,7 +154,7 @@ struct ControlPoints {
 struct Curves {
     /// As of [`ControlPoints`].
     #[serde(default)]
-    #[expect(dead_code, reason = "a file may say what it is")]
+    #[expect(dead_code, reason = "a file may state its schema")]
     schema: Option<String>,
     curves: Vec<ControlPoints>,
 }
@@ -248,7 +248,7 @@ pub fn parse(name: &str, text: &str) -> Result<TrajectoryFile, FileError> {
     match (has("waypoints"), has("control_points_m")) {
         (true, true) => Err(unrecognised("has both waypoints and control_points_m; keep one of them".into())),
         (true, false) => Ok(TrajectoryFile::Plan(text.into())),
-        // Without its points, what has a degree was still meant as a spline: the reader names the missing key.
+        // Without its points, a file with a degree was still meant as a spline: the reader names the missing key.
         (false, points) if points || has("degree") => {
             spline(name, toml::from_str(text).map_err(|error| keys_error(&error))?)
         }
@@ -260,8 +260,8 @@ pub fn parse(name: &str, text: &str) -> Result<TrajectoryFile, FileError> {
     }
 }
 
-/// Whether a table is rows of numbers, rather than keys or prose: its header names what pieces or waypoints have, or its first
-/// row has a number in the first two columns.
+/// Whether a table is rows of numbers, rather than keys or prose: its header names columns of pieces or waypoints, or its
+/// first row has a number in the first two columns.
 fn looks_like_rows(table: &Table) -> bool {
     match &table.header {
         Some(_) => csv::recognises(table) || waypoints::recognise(table).is_some(),

@@ -15,9 +15,9 @@ pub enum OnBoardError {
          to 1 m{0} on board; move the origin", coordinate.unit()
     )]
     Coarse {
-        /// Which piece.
+        /// The piece's number.
         piece: usize,
-        /// What.
+        /// The coordinate.
         coordinate: Coordinate,
         /// Its largest value at the piece's ends, m or rad.
         value: f64,
@@ -27,9 +27,9 @@ pub enum OnBoardError {
     /// Anything else that the board's own check finds.
     #[error("piece {piece}: {reason}")]
     Refused {
-        /// Which piece.
+        /// The piece's number.
         piece: usize,
-        /// What is wrong with it.
+        /// The fault.
         reason: &'static str,
     },
 }
@@ -37,7 +37,7 @@ pub enum OnBoardError {
 /// The pieces as a board stores them, if it flies them.
 ///
 /// # Errors
-/// [`OnBoardError`] names the piece, what is wrong and what to do.
+/// [`OnBoardError`] names the piece, the fault and the remedy.
 pub fn checked(trajectory: &PiecewisePolynomial) -> Result<Vec<Piece>, OnBoardError> {
     let pieces = pieces(trajectory);
     let refused = |index: usize, reason| Err(OnBoardError::Refused { piece: index + 1, reason });
@@ -55,7 +55,7 @@ pub fn checked(trajectory: &PiecewisePolynomial) -> Result<Vec<Piece>, OnBoardEr
         }
         Err(_) => return refused(0, "the board's check refuses it"),
     };
-    // The joint met in 64 bits. Of what both sides add up there, the largest is what 32 bits cannot hold.
+    // The joint met in 64 bits. The largest term of both sides there is the one that 32 bits cannot hold.
     let before = &trajectory.pieces()[index.saturating_sub(1)];
     let size = |coordinate: Coordinate| {
         let terms = before.coefficients[coordinate as usize].iter().zip(0..);
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn what_32_bits_cannot_tell_apart_is_said_with_the_remedy() {
+    fn joints_that_32_bits_cannot_resolve_are_named_with_the_remedy() {
         assert!(checked(&hop(10.0)).is_ok());
         let line = checked(&hop(50_000.0)).unwrap_err().to_string();
         // Between 2^15 and 2^16 a number of 24 bits steps by 2^-8.

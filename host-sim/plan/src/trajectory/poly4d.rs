@@ -14,7 +14,7 @@ use super::polynomial::{COEFFICIENTS, Coordinate, Piece, PiecewisePolynomial, Po
 
 use super::Trajectory;
 
-/// What a piece takes of the memory, bytes: four polynomials and a duration.
+/// Size of a piece in the memory, bytes: four polynomials and a duration.
 pub const PIECE_BYTES: usize = (4 * COEFFICIENTS + 1) * size_of::<f32>();
 
 /// The memory for trajectories, bytes.
@@ -28,7 +28,7 @@ pub const PIECES_MAX: usize = MEMORY_BYTES / PIECE_BYTES;
 pub struct Poly4d {
     /// Of x, y, z (m/s^k) and heading (rad/s^k); ascending powers of the seconds since the piece began.
     pub coefficients: [[f32; COEFFICIENTS]; 4],
-    /// How long it lasts, s.
+    /// Its duration, s.
     pub duration_s: f32,
 }
 
@@ -54,7 +54,7 @@ pub struct StoredTrajectory {
 }
 
 impl StoredTrajectory {
-    /// Rounds a trajectory to what is stored.
+    /// Rounds a trajectory to the stored numbers.
     ///
     /// # Errors
     /// [`StoreError`] if it does not fit, in number or in range.
@@ -73,12 +73,12 @@ impl StoredTrajectory {
         &self.pieces
     }
 
-    /// The same numbers in f64: what a file holds, and the Crazyflie's tools read, without another rounding.
+    /// The same numbers in f64: as a file holds them, and the Crazyflie's tools read them, without another rounding.
     pub fn polynomials(&self) -> &PiecewisePolynomial {
         &self.polynomials
     }
 
-    /// What it takes of the memory, bytes.
+    /// Its size in the memory, bytes.
     pub fn bytes(&self) -> usize {
         self.pieces.len() * PIECE_BYTES
     }

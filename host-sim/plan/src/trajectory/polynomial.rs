@@ -1,6 +1,6 @@
 //! Piecewise polynomials: coefficients per piece in, position, heading and their derivatives at a time out.
 //!
-//! This is what flies on board (degree at most 7, the piece's own time); a B-spline of such a degree becomes one
+//! Trajectories on board have this form (degree at most 7, the piece's own time); a B-spline of such a degree becomes one
 //! without loss. The text form that other tools write is in [`csv`].
 
 pub mod csv;
@@ -15,18 +15,19 @@ use super::bspline::BSpline;
 
 use super::Trajectory;
 
-/// Coefficients per coordinate: degree 7, what the on-board pieces carry.
+/// Coefficients per coordinate: degree 7, that of the on-board pieces.
 pub const COEFFICIENTS: usize = 8;
 
 /// Gap between the end of a piece and the start of the next that is not flown any more, m in position and rad in heading.
 ///
-/// It is what the board refuses; 1 mm and 0.06 degrees are less than what any quadcopter can hold, so that a larger step was
-/// not meant to be flown. Files in the wild have 6 decimals: a piece of 1 s then meets its neighbour to `9 * 0.5e-6` at
-/// worst, the public figure8.csv to 1.1e-6; but a piece of 3 s to 1.6e-3, one of 5 s to 5e-2. The reader of files takes
-/// gaps up to that and closes them ([`PiecewisePolynomial::with_roundings`]).
+/// The board refuses a larger step; 1 mm and 0.06 degrees are less than any quadcopter can hold, so that a larger
+/// step was not meant to be flown. Files in the wild have 6 decimals: a piece of 1 s then meets its neighbour to `9 *
+/// 0.5e-6` at worst, the public figure8.csv to 1.1e-6; but a piece of 3 s to 1.6e-3, one of 5 s to 5e-2. The reader of
+/// files takes gaps up to that and closes them ([`PiecewisePolynomial::with_roundings`]).
 pub const JOINT_TOLERANCE: f64 = 1e-3;
 
-/// Of the tolerance, what is flown as it is. The board computes joints in 32 bits and must find the rest below its own.
+/// The part of the tolerance that is flown as it is. The board computes joints in 32 bits and must find the rest below
+/// its own.
 const FLOWN_AS_IT_IS: f64 = 0.995 * JOINT_TOLERANCE;
 
 /// The four polynomials of a piece.
@@ -113,7 +114,7 @@ pub enum PolynomialError {
     /// Zero, negative or not a number.
     #[error("piece {piece}: duration = {value} s; must be positive and finite")]
     Duration {
-        /// Which piece, from 1.
+        /// The piece's number, from 1.
         piece: usize,
         /// Its duration, s.
         value: f64,
@@ -124,11 +125,11 @@ pub enum PolynomialError {
     /// Not a number.
     #[error("piece {piece}: {coordinate}^{power} = {value}; must be a finite number")]
     Coefficient {
-        /// Which piece, from 1.
+        /// The piece's number, from 1.
         piece: usize,
-        /// Which polynomial.
+        /// The polynomial.
         coordinate: Coordinate,
-        /// Which power.
+        /// The power.
         power: usize,
         /// The coefficient.
         value: f64,
@@ -143,7 +144,7 @@ pub enum PolynomialError {
     Jump {
         /// The piece before the jump, from 1.
         piece: usize,
-        /// What jumps.
+        /// The coordinate that jumps.
         coordinate: Coordinate,
         /// Value at the end of that piece, m or rad.
         end: f64,
@@ -165,8 +166,8 @@ impl PiecewisePolynomial {
     }
 
     /// The same where the pieces' numbers are rounded: joint `i`, behind piece `i`, may be `roundings[i]` apart in x, y, z
-    /// and heading. What is more than the board flies is closed: the piece before it takes the gap up in a smooth step that
-    /// leaves its derivatives to the third at both ends what they are.
+    /// and heading. A gap larger than the board flies is closed: the piece before it takes the gap up in a smooth step
+    /// that leaves its derivatives to the third at both ends unchanged.
     ///
     /// # Errors
     /// Those of [`Self::new`].

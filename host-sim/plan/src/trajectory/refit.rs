@@ -2,7 +2,7 @@
 //!
 //! Between two knots a piece takes position, velocity, acceleration and jerk of the source at both: eight conditions on
 //! eight coefficients (two-point Hermite interpolation; Stoer and Bulirsch, Introduction to Numerical Analysis, 2.1.5).
-//! Neighbours therefore meet up to the third derivative wherever the knots are, start and end stay what they were, and
+//! Neighbours therefore meet up to the third derivative wherever the knots are, start and end stay unchanged, and
 //! where a source that is itself continuous up to jerk has no breakpoint between two knots, the piece is the source's
 //! own. Where the source jumps, a knot takes the mean of both sides. Heading is fitted like a coordinate.
 //!
@@ -111,7 +111,7 @@ impl Parts {
     fn best_knots(&self, pieces: usize) -> Vec<usize> {
         let even: Vec<usize> = (0..=pieces).map(|k| k * self.count() / pieces).collect();
         let bound = even.windows(2).map(|knots| self.error(knots[0], knots[1], f64::INFINITY)).fold(0.0, f64::max);
-        // Entry [to - 1][from]; what is worse than the worst of even knots is of no use.
+        // Entry [to - 1][from]; an error above the worst of even knots is of no use.
         let errors: Vec<Vec<f64>> =
             (1..=self.count()).map(|to| (0..to).map(|from| self.error(from, to, bound)).collect()).collect();
         let (_, worst) = cheapest_path(&errors, pieces, f64::max);
@@ -169,7 +169,7 @@ fn hermite(start: &[f64; 4], end: &[f64; 4], duration_s: f64) -> [f64; COEFFICIE
     let units = [1.0, duration_s, duration_s.powi(2) / 2.0, duration_s.powi(3) / 6.0];
     let [a0, a1, a2, a3]: [f64; 4] = std::array::from_fn(|k| start[k] * units[k]);
     let [b0, b1, b2, b3]: [f64; 4] = std::array::from_fn(|k| end[k] * units[k]);
-    // What a0 to a3 leave of b0 to b3, and the inverse of the binomials C(j, k), j = 4..7, k = 0..3.
+    // The rest that a0 to a3 leave of b0 to b3, and the inverse of the binomials C(j, k), j = 4..7, k = 0..3.
     let (r0, r1, r2, r3) = (b0 - a0 - a1 - a2 - a3, b1 - a1 - 2.0 * a2 - 3.0 * a3, b2 - a2 - 3.0 * a3, b3 - a3);
     [
         a0,
@@ -187,7 +187,7 @@ fn hermite(start: &[f64; 4], end: &[f64; 4], duration_s: f64) -> [f64; COEFFICIE
 /// Entry `[to - 1][from]` is the cost of a step.
 fn cheapest_path(costs: &[Vec<f64>], steps: usize, combine: fn(f64, f64) -> f64) -> (Vec<usize>, f64) {
     let end = costs.len();
-    // What it costs to be at each place after so many steps, and where from.
+    // The cost of each place after so many steps, and the place before.
     let mut reached = vec![f64::INFINITY; end + 1];
     reached[0] = 0.0;
     let mut best = (Vec::new(), f64::INFINITY);

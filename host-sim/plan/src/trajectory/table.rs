@@ -1,10 +1,10 @@
-//! Tables as text: what spreadsheets and scripts write in, rows of cells with their lines out.
+//! Tables as text: the text of spreadsheets and scripts in, rows of cells with their lines out.
 //!
-//! The first line with content decides what separates the columns: tabs, semicolons, commas or spaces. Quotes, trailing
+//! The first line with content decides the separator of columns: tabs, semicolons, commas or spaces. Quotes, trailing
 //! separators, blank lines, lines that begin with `#`, CRLF, a byte order mark, and an unnamed index in the first column
 //! are taken off. Where a comma does not separate columns, it is a decimal comma.
 
-/// What separates the columns of a table.
+/// The separator of a table's columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Separator {
     Tab,
@@ -18,7 +18,7 @@ pub(crate) enum Separator {
 pub(crate) struct Row {
     /// From 1.
     pub(crate) line: usize,
-    /// What is in its columns, without spaces around.
+    /// The text of its columns, without spaces around.
     pub(crate) cells: Vec<String>,
 }
 
@@ -101,7 +101,7 @@ impl Separator {
             .trim(csv::Trim::All)
             .buffer_capacity(line.len().max(1))
             .from_reader(line.as_bytes());
-        // A line of text is a record, whatever its quotes.
+        // A line of text is a record, quotes or not.
         let record = reader.records().next().and_then(Result::ok).unwrap_or_default();
         let mut cells: Vec<String> = record.iter().map(str::to_owned).collect();
         while cells.last().is_some_and(String::is_empty) {
@@ -163,7 +163,7 @@ mod tests {
         ] {
             assert_eq!(cells(text), expected, "{text}");
         }
-        // A first column that does not count is data, whatever its name.
+        // A first column that does not count is data, under any name.
         assert_eq!(cells(",a,b\n0.5,1,2\n")[0], ["0.5", "1", "2"]);
         assert_eq!(Table::of("\n# nothing\n,,\n"), None);
     }

@@ -4,7 +4,7 @@ use nalgebra::{Rotation3, Vector3};
 
 use super::polynomial::{COEFFICIENTS, Coordinate, Piece, PiecewisePolynomial, PolynomialError};
 
-/// What is done, in this order: size, turn and place, then time. Nothing by default.
+/// The steps of a transform, in this order: size, turn and place, then time. Nothing by default.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
     /// Duration over that of the original; positive. 2 flies half as fast.

@@ -12,9 +12,9 @@ use super::table::{Row, Table, finite, shortened};
 pub struct WaypointRow {
     /// Where in the file, from 1.
     pub line: usize,
-    /// When, s.
+    /// The time, s.
     pub time_s: Option<f64>,
-    /// Where, m.
+    /// The position, m.
     pub position_m: Vector3<f64>,
     /// Heading, rad; turns count.
     pub yaw_rad: Option<f64>,
@@ -30,24 +30,24 @@ pub enum WaypointsError {
     /// A row that is too short or too long.
     #[error("line {line}: {found} columns where {expected} are expected")]
     Ragged {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
-        /// How many columns it has.
+        /// Its number of columns.
         found: usize,
-        /// How many the others have.
+        /// The others' number of columns.
         expected: usize,
     },
     /// A cell that is not a finite number.
     #[error("line {line}: {found:?} is not a finite number; write one such as 0.25")]
     Number {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// The text there, shortened.
         found: String,
     },
 }
 
-/// What a column holds.
+/// The quantity of a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Column {
     Time,
@@ -58,7 +58,7 @@ enum Column {
     Other,
 }
 
-/// What rows are by their columns.
+/// The kind of rows, by their columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// Places to pass.
@@ -96,7 +96,7 @@ fn columns(table: &Table) -> Vec<Column> {
     }
 }
 
-/// What the rows of a table are; `None` if nothing of this.
+/// The kind of a table's rows; `None` if none of these.
 pub(super) fn recognise(table: &Table) -> Option<Kind> {
     let columns = columns(table);
     let has = |column| columns.contains(&column);
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_recorded_is_not_a_row_of_waypoints() {
+    fn recorded_rows_are_not_waypoints() {
         let kind = |text: &str| recognise(&Table::of(text).unwrap());
         assert_eq!(kind("t,x,y,z\n0,0,0,1\n"), Some(Kind::Waypoints { timed: true }));
         assert_eq!(kind("t,x,y,z,vx,vy,vz\n0,0,0,1,0,0,0\n"), Some(Kind::Samples));

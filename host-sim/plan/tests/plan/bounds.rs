@@ -28,7 +28,7 @@ fn infeasible(text: &str) -> (Infeasibility, String) {
     }
 }
 
-/// What the report says would do if this limit alone is relaxed, SI.
+/// The value that the report gives if this limit alone is relaxed, SI.
 fn enough(report: &Infeasibility, limit: Limit) -> Option<f64> {
     let alone = report.ways_out.iter().filter(|way| way.len() == 1).flatten();
     alone.filter(|remedy| remedy.limit == limit).map(|remedy| remedy.enough).next()
@@ -65,7 +65,7 @@ fn waypoints_met_exactly_are_beyond_the_mild_bounds() {
     let (report, line) = infeasible(&mild_with(&[("tolerance_m", "0.0")]));
     let more_m = enough(&report, Limit::Waypoints).unwrap();
     assert!(line.contains("the waypoints' tolerance_m is too tight ("), "{line}");
-    // 5 cm is what the paper's plan allows, and there every waypoint uses it up; less does too, down to this.
+    // The paper's plan allows 5 cm, and there every waypoint uses it up; less does too, down to this.
     assert!((0.03..0.05).contains(&more_m), "{line}");
     solved(&mild_with(&[("tolerance_m", &more_m.to_string())]));
     infeasible(&mild_with(&[("tolerance_m", &(0.99 * more_m).to_string())]));
@@ -83,7 +83,7 @@ fn bounds_too_tight_together_are_reported_together() {
 
 #[test]
 fn a_corridor_holds_for_all_of_its_time() {
-    // The free flight stands out of both.
+    // The free flight leaves both.
     let corridors = "\n[[corridors]]\nmin_m = [-1.0, -1.0, -0.05]\nmax_m = [1.0, 0.7, 1.0]\n\
                      \n[[corridors]]\nfrom_s = 10.0\nto_s = 15.0\nmin_m = [-1.0, -1.0, 0.1]\nmax_m = [1.0, 1.0, 0.479]\n";
     let (plan, curve) = solved(&(paper::MILD_TOML.to_owned() + corridors));

@@ -1,4 +1,4 @@
-//! Plan files that cannot be used: each is refused with a line that names what is wrong, its value and what it must be.
+//! Plan files that cannot be used: each is refused with a line that names the fault, its value and its range.
 
 use quatrack_plan::plan::{Plan, PlanError};
 
@@ -34,7 +34,7 @@ fn the_good_plan_is_good() {
 }
 
 #[test]
-fn values_out_of_range_are_named_with_what_they_must_be() {
+fn values_out_of_range_are_named_with_their_range() {
     let cases = [
         ("degree = 5", "degree = 3", "degree = 3: must be from 4"),
         ("degree = 5", "degree = 8", "degree = 8: must be from 4"),
@@ -66,7 +66,7 @@ fn values_out_of_range_are_named_with_what_they_must_be() {
 }
 
 #[test]
-fn impossible_bounds_are_named_with_what_they_must_be() {
+fn impossible_bounds_are_named_with_their_range() {
     let cases = [
         ("[bounds]\nspeed_max_m_s = 0", "bounds.speed_max_m_s = 0: must be above 0"),
         ("[bounds]\nspeed_max_m_s = nan", "bounds.speed_max_m_s = NaN"),
@@ -158,7 +158,7 @@ fn more_exact_waypoints_than_spans_can_meet_are_named() {
 }
 
 #[test]
-fn what_is_no_plan_is_refused_with_its_line() {
+fn a_text_that_is_no_plan_is_refused_with_its_line() {
     for empty in ["", "\n\n", "# only a comment\n"] {
         assert_eq!(Plan::from_toml(empty), Err(PlanError::Empty));
     }

@@ -1,5 +1,5 @@
-//! What a plan file may say beyond places at times: stops, velocities, headings, bounds without times, rows of waypoints; and
-//! what is said when it cannot be met.
+//! Entries of a plan file beyond places at times: stops, velocities, headings, bounds without times, rows of waypoints;
+//! and the message when it cannot be met.
 
 use nalgebra::Vector3;
 use quatrack_plan::plan::{Bounds, Budget, FlightPlan, Limit, Overrides, Plan, PlanError, PlannedFlight, paper};
@@ -142,7 +142,7 @@ fn rows_of_waypoints_are_plans() {
 }
 
 #[test]
-fn what_is_turned_slowed_and_reversed_is_planned_as_such() {
+fn plans_may_be_turned_slowed_and_reversed() {
     let over = |transform| Overrides { transform, ..Overrides::default() };
     let plan = |transform| {
         let plan = FlightPlan::from_toml(paper::MILD_TOML, &over(transform), &Budget::unlimited()).unwrap();
@@ -183,7 +183,7 @@ fn typed(text: &str, line: &str) -> Vec<String> {
 fn every_remedy_as_printed_plans_and_a_longer_duration_is_one() {
     let cases = [
         paper::MILD_TOML.replace("speed_max_m_s = 0.5", "speed_max_m_s = 0.4"),
-        // Just inside the edge of what the mild plan's bounds allow.
+        // Just inside the edge of the mild plan's bounds.
         paper::MILD_TOML.replace("body_rate_max_deg_s = 1.5", "body_rate_max_deg_s = 0.9"),
         "degree = 5\nspans = 9\nduration_s = 1.0471163705755129\nsnap_sample_period_s = 0.025846113604092953\n\
          [[waypoints]]\ntime_s = 0.0\nposition_m = [-1.801, -0.703, -1.826]\n\
@@ -234,7 +234,7 @@ fn a_detour_names_its_waypoint() {
 #[test]
 fn the_time_is_bounded_and_progress_told() {
     let told = std::cell::RefCell::new(Vec::new());
-    let tell = |what: &str| told.borrow_mut().push(what.to_owned());
+    let tell = |stage: &str| told.borrow_mut().push(stage.to_owned());
     let budget = Budget::of_seconds(0.0, &tell);
     let plan = read(paper::MILD_TOML).unwrap();
     assert_eq!(plan.solve(&budget), Err(PlanError::TimeLimit { limit_s: 0.0 }));

@@ -91,7 +91,7 @@ fn derivatives_are_those_of_the_monomials() {
 }
 
 #[test]
-fn what_cannot_be_flown_is_refused_by_piece() {
+fn pieces_that_cannot_be_flown_are_refused_by_number() {
     let second = 1_000_000_000;
     assert_eq!(Trajectory::new(&[]), Err(TrajectoryError::Empty));
     let refused = |pieces: &[Piece]| Trajectory::new(pieces).unwrap_err();

@@ -172,7 +172,7 @@ fn bounds_of_the_mild_flight_bind_its_control_points() {
 }
 
 #[test]
-fn what_is_minimised_is_the_sampled_snap() {
+fn the_objective_is_the_sampled_snap() {
     // Snap sampled at another period has its own optimum, which meets the same waypoints and so may not be better.
     let (_, curve) = aggressive();
     let dense = planned(paper::AGGRESSIVE_TOML, "snap_sample_period_s = 0.1", "snap_sample_period_s = 0.002");

@@ -1,4 +1,4 @@
-//! Polynomial pieces: the same curve as the spline they come from, and only what can be flown.
+//! Polynomial pieces: the same curve as the spline they come from, and only curves that can be flown.
 
 use std::f64::consts::TAU;
 
@@ -62,7 +62,7 @@ fn pieces_take_as_long_as_the_spline_to_the_bit() {
         let spline = BSpline::new(5, duration_s, points).expect("valid control points");
         let pieces = PiecewisePolynomial::from_bspline(&spline).expect("a spline of a metre");
         assert_eq!(pieces.duration_s(), duration_s, "{spans} spans");
-        // The end is flown, and what comes after it is at rest.
+        // The end is flown, and the time after it is at rest.
         assert!(pieces.at(duration_s).velocity_m_s.x != 0.0);
         assert_eq!(pieces.at(duration_s.next_up()).velocity_m_s.x, 0.0);
     }
@@ -94,7 +94,7 @@ fn a_jump_in_position_is_refused_by_name() {
     let jump = |size: f64| PiecewisePolynomial::new(vec![line(1.0, 0.0, 1.0), line(1.0, 1.0 + size, 0.0)]);
     // 1.1e-6 m is the largest gap in the public figure8.csv: 6 decimals.
     assert!(jump(1.1e-6).is_ok());
-    // 9.9e-4 m and 1.01e-3 m stand on either side of the tolerance of 1 mm.
+    // 9.9e-4 m and 1.01e-3 m are on either side of the tolerance of 1 mm.
     assert!(jump(9.9e-4).is_ok());
     let error = jump(-1.01e-3).expect_err("more than a millimetre");
     assert!(matches!(error, PolynomialError::Jump { piece: 1, coordinate: Coordinate::X, .. }));
@@ -126,7 +126,7 @@ fn whole_turns_of_heading_are_taken_off() {
 }
 
 #[test]
-fn what_is_not_a_number_is_refused() {
+fn numbers_that_are_not_finite_are_refused() {
     assert_eq!(PiecewisePolynomial::new(vec![]), Err(PolynomialError::Empty));
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = PiecewisePolynomial::new(vec![line(1.0, 0.0, 0.0), line(value, 0.0, 0.0)]).expect_err("no time");

@@ -1,4 +1,4 @@
-//! The `uav_trajectories` form: what real files hold is read, what cannot be flown is refused by line and column.
+//! The `uav_trajectories` form: real files are read, and rows that cannot be flown are refused by line and column.
 
 use std::path::Path;
 
@@ -38,7 +38,7 @@ fn forms_found_in_the_wild_read_alike() {
         format!("{header}\n{a}\n{b}\n").replace(',', ";").replace('.', ","),
         format!("\"{header}\"\n\"{a}\"\n\"{b}\"\n").replace(',', "\",\""),
         format!(",{header}\n0,{a}\n1,{b}\n"),
-        // By name, in any order, yaw and what is 0 left out.
+        // By name, in any order, yaw and zeros left out.
         "x^0,duration,z^0,y^0\n0.25,1.05,0,0\n0.25,0.5,0,0\n".to_owned(),
     ] {
         assert_eq!(csv::parse(&text).as_ref(), Ok(&pieces), "{text}");
@@ -50,7 +50,7 @@ fn errors_name_line_column_value_and_remedy() {
     let good = row("1", "0");
     assert_eq!(
         error("1,2,3,\n"),
-        "line 1: 3 columns; needs 33 (duration, then 8 coefficients each of x, y, z and yaw; write 0 for what is not \
+        "line 1: 3 columns; needs 33 (duration, then 8 coefficients each of x, y, z and yaw; write 0 for powers that are not \
          used)"
     );
     assert_eq!(
@@ -132,7 +132,7 @@ fn gaps_of_rounding_are_closed_and_others_named_with_their_line() {
         let pieces = csv::parse(&file(gap_m)).unwrap_or_else(|error| panic!("{gap_m}: {error}"));
         let [before, after] = [&pieces.pieces()[0], &pieces.pieces()[1]];
         let left_m = (before.derivative(Coordinate::X, 0, 4.0) - after.coefficients[0][0]).abs();
-        // What the board flies as it is stays.
+        // A gap that the board flies as it is stays.
         assert!(left_m < 0.995e-3, "{gap_m}: {left_m}");
         let kept = (1..4).all(|order| {
             (before.derivative(Coordinate::X, order, 4.0) - exact.derivative(Coordinate::X, order, 4.0)).abs() < 1e-9
@@ -144,7 +144,7 @@ fn gaps_of_rounding_are_closed_and_others_named_with_their_line() {
     // The same gap over 1 s is no rounding.
     let short = error(&format!("{}\n{}\n{}\n", header(), row("1.000000", "0.000000"), row("1.000000", "0.002000")));
     assert!(short.starts_with("line 3: x jumps by 0.002000 m from the end of piece 1"), "{short}");
-    // What numbers of few digits leave is the board's to refuse: 1 mm, whatever the last bit of the difference.
+    // A gap that numbers of few digits leave is the board's to refuse: 1 mm, with any last bit of the difference.
     assert!(error(&format!("{}\n{}\n", row("2.0", "1.0"), row("2.0", "1.001"))).contains("piece 2"));
 }
 
@@ -191,13 +191,13 @@ fn continuous_pieces() -> impl Strategy<Value = PiecewisePolynomial> {
 
 proptest! {
     #[test]
-    fn what_is_written_reads_back_equal(pieces in continuous_pieces()) {
+    fn written_pieces_read_back_equal(pieces in continuous_pieces()) {
         prop_assert_eq!(csv::parse(&csv::write(&pieces)), Ok(pieces));
     }
 
     #[test]
     fn no_text_breaks_the_reader(text in any::<String>()) {
-        // What comes out is free, that it comes out is the property; an error stays one line.
+        // Any result will do, that there is one is the property; an error stays one line.
         if let Err(error) = csv::parse(&text) {
             prop_assert!(!error.to_string().contains('\n'));
         }

@@ -1,4 +1,4 @@
-//! Trajectory files are known by their content, and refused in one line that says what to do.
+//! Trajectory files are known by their content, and refused in one line that names the remedy.
 
 use std::path::{Path, PathBuf};
 
@@ -85,7 +85,7 @@ fn splines_and_pieces_that_cannot_be_flown_say_why() {
 }
 
 #[test]
-fn what_is_nothing_of_this_says_what_is_accepted() {
+fn an_unknown_form_is_refused_with_the_accepted_ones() {
     for (text, found) in [
         ("", "flight: the file is empty; accepted are "),
         (" \r\n\t", "flight: the file is empty; accepted are "),

@@ -1,4 +1,4 @@
-//! What the high-level commander flies: analytic figures, its own take-off and landing, uploaded trajectories.
+//! Courses of the high-level commander: analytic figures, its own take-off and landing, uploaded trajectories.
 
 use nalgebra::Vector3;
 use quatrack_plan::plan::{self, Plan, PlanError};
@@ -79,22 +79,22 @@ impl Course {
         }
     }
 
-    /// Where it comes from: what flies on before the start as it does after it, at a time that may be negative.
+    /// Where it comes from: the figures that go on before the start as they do after it, at a time that may be negative.
     pub(super) fn coming_from(&self, t_s: f64) -> Option<FifthOrder> {
         if let Self::FigureEight(w) = self { Some(figure_eight(*w, t_s)) } else { None }
     }
 
-    /// Where it is at a time, m.
+    /// Its position at a time, m.
     pub fn position_m(&self, t_s: f64) -> Option<Vector3<f64>> {
         self.at(t_s).map(|[position_m, ..]| position_m)
     }
 
-    /// Farthest that pieces are from the curve that they are fitted to, m; 0 for what is flown as it is.
+    /// Farthest that pieces are from the curve that they are fitted to, m; 0 for courses that are flown as they are.
     pub fn fit_error_m(&self) -> f64 {
         if let Self::Septics(septics) = self { septics.fit_error_m() } else { 0.0 }
     }
 
-    /// How long it is flown, s.
+    /// Its duration, s.
     pub fn duration_s(&self) -> f64 {
         match self {
             Self::Hover(_) | Self::Step(..) => 5.0,
@@ -176,7 +176,7 @@ impl Septics {
 fn hermite(from: &Motion, to: &Motion, h: f64) -> [Vector3<f64>; 8] {
     let [p0, v0, a0, j0] = *from;
     let [c0, c1, c2, c3] = [p0, v0, a0 / 2.0, j0 / 6.0];
-    // What is left at the end for the upper four coefficients, in powers of the duration.
+    // The rest at the end for the upper four coefficients, in powers of the duration.
     let p = to[0] - (c0 + c1 * h + c2 * h * h + c3 * h.powi(3));
     let v = (to[1] - (c1 + c2 * (2.0 * h) + c3 * (3.0 * h * h))) * h;
     let a = (to[2] - (c2 * 2.0 + c3 * (6.0 * h))) * (h * h);

@@ -1,8 +1,8 @@
 //! The firmware's stabilizer around the controller: a course, a measured state in; commanded motor forces out, at 1 kHz.
 //!
 //! The high-level commander speaks at 100 Hz, in single precision; estimate and gyroscope at every step, in the firmware's
-//! units. The power distribution is the firmware's: forces in 65535ths of a motor's largest, what is negative cut to 0,
-//! what exceeds the top on one motor taken from all.
+//! units. The power distribution is the firmware's: forces in 65535ths of a motor's largest, a negative one cut to 0,
+//! an excess on one motor taken from all.
 
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -29,7 +29,7 @@ const COMMANDER_STEPS: u32 = 10;
 /// The firmware's numbers for all of a thrust.
 const FULL: f64 = 65_535.0;
 
-/// How setpoints are sent.
+/// The form in which setpoints are sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Setpoints {
     /// By the high-level commander: position to jerk, and yaw.
@@ -64,12 +64,12 @@ pub struct Sensors {
     pub estimate_steps: u32,
 }
 
-/// What the owner has set; the rest is as the craft is switched on.
+/// The owner's settings; the rest is as the craft is switched on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tune {
     /// The table's number.
     pub table: u8,
-    /// The motors' lag as the owner knows it, s; 0 where only what is published is known.
+    /// The motors' lag as the owner knows it, s; 0: the published figures alone.
     pub motor_lag_s: f64,
     /// Drag over mass as the owner knows it, 1/s; the craft's own where he says nothing.
     pub drag_per_s: Option<f64>,
@@ -124,7 +124,7 @@ impl Firmware {
     /// Switches on a craft that the controller does not know, with its own table; why it does not fly where it does not.
     ///
     /// # Errors
-    /// What the object says.
+    /// The object's message.
     pub fn start_own(
         vehicle: &Vehicle,
         built_for: &Platform,
@@ -157,7 +157,7 @@ impl Firmware {
         Self::switched_on(vehicle, tune, sensors, recording, || ffi::quatrackPlatform(platform))
     }
 
-    /// With what the object answered as the app told it which craft this is.
+    /// With the object's answer when the app told it which craft this is.
     fn switched_on<T>(
         vehicle: &Vehicle,
         tune: &Tune,
@@ -228,7 +228,7 @@ impl Firmware {
         self.step_felt(state, &felt_m_s2, setpoint)
     }
 
-    /// The same with what the accelerometer feels, body frame, m/s^2.
+    /// The same with the accelerometer's specific force, body frame, m/s^2.
     pub fn step_felt(
         &mut self,
         state: &RigidState,
@@ -260,7 +260,7 @@ impl Firmware {
         self.distribute()
     }
 
-    /// One step on an estimate and sensors as they are given, whatever they are.
+    /// One step on an estimate and sensors as they are given, unsound ones too.
     pub fn step_given(
         &mut self,
         estimate: &abi::State,
@@ -279,7 +279,7 @@ impl Firmware {
         self.before.table = Some(table);
     }
 
-    /// What has been recorded.
+    /// The calls recorded so far.
     pub fn recorded(&mut self) -> Option<Recording> {
         self.recording.take()
     }
@@ -321,7 +321,7 @@ pub fn knows(vehicle: &Vehicle) -> bool {
     quatrack_crazyflie::craft::Craft::of(&platform(vehicle)).is_some()
 }
 
-/// What the firmware was built for.
+/// The figures that the firmware was built with.
 pub fn platform(vehicle: &Vehicle) -> Platform {
     let motors = vehicle.motors();
     Platform {

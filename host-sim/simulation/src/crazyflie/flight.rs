@@ -1,7 +1,7 @@
-//! One flight: a course, a craft and what is wrong with it in; how far it strayed out.
+//! One flight: a course, a craft and its deviations in; its errors out.
 //!
-//! What moves at its start is flown for some seconds before, as if the craft had come there. What is recorded begins as
-//! switched on.
+//! A course that moves at its start is flown for some seconds before, as if the craft had come there. A recording begins
+//! as switched on.
 
 use std::collections::VecDeque;
 
@@ -25,7 +25,7 @@ const SAMPLE_STEPS: i32 = 10;
 /// Steps for which a course that moves at its start is flown before; a whole number of setpoints.
 const LEAD_IN_STEPS: i32 = 5000;
 
-/// What is not as the controller thinks, and how it is spoken to.
+/// The deviations from the controller's model, and the form of its setpoints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Case {
     /// True lag of the motors, s.
@@ -36,11 +36,11 @@ pub struct Case {
     pub inertia_factor: f64,
     /// Steps of the firmware by which commands act late.
     pub late_steps: usize,
-    /// What the estimate is off by, where it is.
+    /// Errors of the estimate, where there are any.
     pub noise: Option<Noise>,
     /// Sensors.
     pub sensors: Sensors,
-    /// How setpoints come.
+    /// The form of the setpoints.
     pub setpoints: Setpoints,
 }
 
@@ -59,7 +59,7 @@ impl Case {
     }
 }
 
-/// How a flight went.
+/// The errors of a flight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FlightErrors {
     /// Integral of the position error over time, m s; nothing where the craft was lost.
@@ -92,7 +92,7 @@ pub struct Recorded {
     pub then: Option<u8>,
 }
 
-/// Flies a course and keeps what passed between firmware and controller.
+/// Flies a course and keeps the calls between firmware and controller.
 pub fn fly_recorded(vehicle: &Vehicle, course: &Course, tune: &Tune, case: &Case, recorded: Recorded) -> Recording {
     let mut firmware = Firmware::start_recorded(vehicle, tune, case.sensors);
     fly_with(&mut firmware, vehicle, course, case, Some(recorded));

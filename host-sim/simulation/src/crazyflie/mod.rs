@@ -3,9 +3,9 @@
 //!
 //! ```text
 //! report        rows of flights
-//!   flight      a course, a craft and what is wrong with it -> errors
+//!   flight      a course, a craft and its deviations -> errors
 //!     firmware  the stabilizer at 1 kHz: commander, gyroscope, controller, power distribution
-//!       course  what the high-level commander evaluates
+//!       course  the course that the high-level commander evaluates
 //!       own_craft  a craft that the controller does not know, with its table
 //! ```
 

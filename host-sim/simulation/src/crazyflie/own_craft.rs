@@ -46,7 +46,8 @@ const REGION_SHARES: [f64; 2] = [0.5, 1.25];
 /// The craft that the standard weights were found on, kg; the weight of forces goes with the inverse square of the mass.
 const WEIGHED_KG: f64 = 0.034;
 
-/// The design of a vehicle of which nobody has written one: standard weights, and what the built-in tables are certified for.
+/// The design of a vehicle of which nobody has written one: standard weights, and the certified region of the built-in
+/// tables.
 ///
 /// # Errors
 /// [`GainsError`] of a vehicle that cannot be designed for.

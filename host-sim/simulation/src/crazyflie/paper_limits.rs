@@ -1,4 +1,4 @@
-//! The source of what the Crazyflie controller allows of the paper's tables: their designs in; the factor by which all
+//! The source of the Crazyflie controller's limits for the paper's tables: their designs in; the factor by which all
 //! channels may be off at once, and the longest lag of the motors, out.
 
 use std::fmt::Write as _;
@@ -25,12 +25,12 @@ macro_rules! text {
 /// Why there is no source.
 #[derive(Debug, Error)]
 pub enum CodegenError {
-    /// A design is not what it has to be.
+    /// A design is refused.
     #[error("gains/{name}.toml: {error}")]
     Design {
         /// Its name.
         name: &'static str,
-        /// What is wrong with it.
+        /// The reason.
         error: GainsError,
     },
     /// A design without a table.

@@ -7,10 +7,10 @@ use quatrack_crazyflie::abi::{Attitude, Control, Modes, SensorData, Setpoint, St
 /// Bytes of a control on the target.
 pub const CONTROL_BYTES: usize = 20;
 
-/// Calls, one after the other, and what the controller put out at each.
+/// Calls, one after the other, and the controller's output at each.
 #[derive(Clone, Debug, Default)]
 pub struct Recording {
-    /// Step, what is done before, setpoint, sensors, state, of every call.
+    /// Step, the action before, setpoint, sensors, state, of every call.
     pub calls: Vec<u8>,
     /// The control after every call.
     pub controls: Vec<[u8; CONTROL_BYTES]>,
@@ -18,7 +18,7 @@ pub struct Recording {
     pub steps: Vec<u32>,
 }
 
-/// What is done before a call.
+/// The action before a call.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Before {
     /// The controller is selected.

@@ -2,7 +2,7 @@
 //!
 //! The cascade flies with nothing stated where it is certified so, and with the motors' lag stated: every course
 //! with a noisy gyroscope, and a figure eight with exact measurements with one thing wrong at a time. The paper's tables fly at
-//! the lags that they tolerate, the two that hold no position over the ground on what is smooth alone.
+//! the lags that they tolerate, the two that hold no position over the ground on smooth courses alone.
 
 use std::fmt;
 
@@ -35,11 +35,11 @@ pub struct Row {
     pub stated_ms: Option<f64>,
     /// The course.
     pub course: &'static str,
-    /// What is not as it should be.
+    /// The deviation of the case.
     pub case: &'static str,
     /// The motors' true lag, ms.
     pub lag_ms: f64,
-    /// How it went.
+    /// Its errors.
     #[serde(flatten)]
     pub flown: FlightErrors,
 }
@@ -60,7 +60,7 @@ fn noisy(lag_s: f64) -> Case {
     Case { sensors: Sensors { gyro_noise_rad_s: GYRO_NOISE_RAD_S, estimate_steps: 1 }, ..Case::of_lag(lag_s) }
 }
 
-/// With a noisy gyroscope and what else may be wrong.
+/// With a noisy gyroscope and one more deviation each.
 fn noisy_variations(lag_s: f64) -> [(&'static str, Case); 4] {
     let case = noisy(lag_s);
     [
@@ -87,7 +87,7 @@ fn exact_variations(lag_s: f64) -> [(&'static str, Case); 9] {
     ]
 }
 
-/// What is flown, with the figure eights at the end.
+/// The courses, with the figure eights at the end.
 fn courses() -> Result<[Named; 8], CourseError> {
     let up = Vector3::z();
     Ok([

@@ -71,7 +71,7 @@ impl fmt::Display for EndState {
     }
 }
 
-/// What came of a fault on a craft.
+/// The result of a fault on a craft.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
     /// Its name.
@@ -80,7 +80,7 @@ pub struct Row {
     pub vehicle: String,
     /// From its beginning until the supervisor bridges or does something else than flying on, ms; nothing where it never does.
     pub detected_ms: Option<u32>,
-    /// How it ended.
+    /// The supervisor's mode at the end.
     pub end_state: EndState,
     /// From its beginning until the motors are off, ms.
     pub motors_off_ms: Option<u32>,
@@ -90,12 +90,12 @@ pub struct Row {
     pub crashed: bool,
     /// Whether nothing may be lost.
     pub recoverable: bool,
-    /// What PX4 and Bitcraze's firmware do there.
+    /// The answers of PX4 and of Bitcraze's firmware.
     pub others: &'static str,
 }
 
 impl Row {
-    /// Whether it is as it should be: nothing lost of what is recoverable, and motors off or landed otherwise.
+    /// Whether it is as it should be: no craft lost by a recoverable fault, and motors off or landed otherwise.
     pub fn is_as_promised(&self) -> bool {
         if self.recoverable { !self.crashed } else { !self.crashed || self.motors_off_ms.is_some() }
     }
@@ -116,7 +116,7 @@ fn course(t: f64, speed: f64) -> [Vector3<f64>; 3] {
 /// Flies a fault on a craft, by the core's cascade under its supervisor.
 ///
 /// # Errors
-/// [`PlantError`] for what no plant can be.
+/// [`PlantError`] for figures that no plant can have.
 pub fn fly(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
     flown(fault, craft, &mut UnderGuard::armed(&craft.cascade))
 }
@@ -124,7 +124,7 @@ pub fn fly(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
 /// The same by the Crazyflie object, through its C interface.
 ///
 /// # Errors
-/// [`PlantError`] for what no plant can be.
+/// [`PlantError`] for figures that no plant can have.
 pub fn fly_object(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
     flown(fault, craft, &mut Object::hovering(&craft.vehicle))
 }
@@ -227,12 +227,12 @@ fn flown(fault: &Fault, craft: &Crafts, flight: &mut impl Flown) -> Result<Row, 
                 let from = left_at.get_or_insert(state.position_m);
                 (state.position_m - *from).xy().norm()
             };
-            // What is asked for is no excursion.
+            // A motion that is asked for is no excursion.
             if mode != Mode::Flying || !wants_elsewhere {
                 row.farthest_m = row.farthest_m.max(off_m);
             }
         }
-        // At the floor: how fast it came, and whether it stands.
+        // At the floor: its speed of impact, and whether it is upright.
         let is_down = state.position_m.z < Ground::FOOT_DEPTH_M + 5e-3;
         let upright = (state.attitude * Vector3::z()).z;
         row.crashed |= is_down && (last_down > CRASH_M_S || upright < CRASH_UPRIGHT);
@@ -243,7 +243,7 @@ fn flown(fault: &Fault, craft: &Crafts, flight: &mut impl Flown) -> Result<Row, 
     Ok(row)
 }
 
-/// What the sensors give of a true state.
+/// The sensors' readings of a true state.
 fn sensed(truth: &RigidState, felt: &Vector3<f64>, noise: &mut [Stream; 4]) -> (State, Vector3<f32>, Vector3<f32>) {
     let [position, velocity, gyroscope, accelerometer] = noise;
     let [np, nv, nw, na] = NOISE;

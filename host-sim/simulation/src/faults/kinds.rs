@@ -1,10 +1,11 @@
-//! Every kind of fault: what it spoils and from when on, whether a craft has to survive it, and what PX4 and Bitcraze promise there.
+//! Every kind of fault: the signals that it spoils and from when on, whether a craft has to survive it, and the answers
+//! of PX4 and Bitcraze.
 
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use quatrack::supervisor::Mode;
 use quatrack::{Quaternion, State, Tick};
 
-/// What a step is given, to be spoilt.
+/// The inputs of a step, to be spoilt.
 pub struct Signals<'a> {
     /// The estimate; nothing where it does not come.
     pub state: Option<State>,
@@ -12,7 +13,7 @@ pub struct Signals<'a> {
     pub body_rates: Vector3<f32>,
     /// The accelerometer, m/s^2.
     pub felt: Option<Vector3<f32>>,
-    /// What is to be followed: position, velocity, acceleration; m and s.
+    /// The reference: position, velocity, acceleration; m and s.
     pub asked: Option<[Vector3<f32>; 3]>,
     /// Heading that is asked for, rad, and its rate.
     pub heading: [f32; 2],
@@ -41,26 +42,26 @@ impl Signals<'_> {
     }
 }
 
-/// What flies a craft through a fault.
+/// A controller that flies a craft through a fault.
 pub(super) trait Flown {
     /// Motor forces of a step at a tick, N; nothing where the motors are off.
     fn step(&mut self, now: Tick, signals: &Signals<'_>) -> Option<Vector4<f64>>;
 
-    /// What it does.
+    /// Its mode.
     fn mode(&self) -> Mode;
 
     /// Whether the last step was flown on a bridged state.
     fn is_bridging(&self) -> bool;
 }
 
-/// What is wrong with the craft from the start.
+/// Deviations of the craft from the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Craft {
-    /// True mass and inertia over what is told.
+    /// True mass over the told one.
     pub mass: f64,
-    /// See there.
+    /// True inertia over the told one.
     pub inertia: f64,
-    /// True lag of the motors over what is known.
+    /// True lag of the motors over the known one.
     pub lag: f64,
     /// Centre of mass beside the middle, m.
     pub centre_m: f64,
@@ -74,17 +75,17 @@ const SOUND: Craft = Craft { mass: 1.0, inertia: 1.0, lag: 1.0, centre_m: 0.0, w
 
 /// A kind of fault.
 pub struct Fault {
-    /// What it is called.
+    /// Its name.
     pub name: &'static str,
     /// Whether nothing may be lost.
     pub recoverable: bool,
     /// Speed of the course at which it happens, m/s; 0 hovers.
     pub speed_m_s: f64,
-    /// What it spoils.
+    /// Spoils the inputs of a step.
     pub spoil: fn(&mut Signals<'_>),
-    /// What is wrong from the start.
+    /// Deviations of the craft from the start.
     pub craft: Craft,
-    /// What PX4 and Bitcraze's firmware do there.
+    /// The answers of PX4 and of Bitcraze's firmware.
     pub others: &'static str,
 }
 
@@ -128,7 +129,7 @@ fn delay(s: &mut Signals<'_>, steps: usize, rates: bool) {
     }
 }
 
-/// All kinds, by what they befall.
+/// All kinds, by the part that they befall.
 pub fn kinds() -> Vec<Fault> {
     let mut all = Vec::new();
     let mut add = |name, recoverable, speed_m_s, others, craft, spoil: fn(&mut Signals<'_>)| {

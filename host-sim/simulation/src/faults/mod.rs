@@ -1,12 +1,12 @@
 //! Flights with something wrong: a kind of fault and a craft in; when it was noticed, how the flight ended and where, out.
 //!
-//! The core's cascade under the core's supervisor, or the Crazyflie object, at 500 Hz, on the plant in air with what is known of
-//! each craft; estimates with noise at every step. What happens in flight begins after two seconds of it.
+//! The core's cascade under the core's supervisor, or the Crazyflie object, at 500 Hz, on the plant in air with the known
+//! figures of each craft; estimates with noise at every step. A fault in flight begins after two seconds of it.
 //!
 //! ```text
 //! bench                  one flight
-//!   under_guard, object  what flies it: the core's cascade under the core's supervisor; the Crazyflie object
-//!     kinds              every kind of fault: what it spoils, and what others promise there
+//!   under_guard, object  its controller: the core's cascade under the core's supervisor; the Crazyflie object
+//!     kinds              every kind of fault: the signals it spoils, and others' answers
 //! ```
 
 mod bench;

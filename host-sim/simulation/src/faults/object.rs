@@ -1,4 +1,4 @@
-//! The Crazyflie object, through its C interface: what a step is given in, the firmware's motor forces out.
+//! The Crazyflie object, through its C interface: the inputs of a step in, the firmware's motor forces out.
 
 use std::sync::atomic::Ordering::Relaxed;
 

@@ -1,4 +1,5 @@
-//! The core's cascade under the core's supervisor, as a product of the core has it: what a step is given in, motor forces out.
+//! The core's cascade under the core's supervisor, as a product of the core has it: the inputs of a step in, motor forces
+//! out.
 
 use nalgebra::{Vector3, Vector4};
 use quatrack::cascade::Cascade;

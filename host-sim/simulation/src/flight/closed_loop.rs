@@ -52,7 +52,7 @@ pub struct Flight {
 /// The end of a flight that did not reach its end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lost {
-    /// When, s.
+    /// The time, s.
     pub time_s: f64,
     /// Why.
     pub reason: String,

@@ -10,7 +10,7 @@ use super::reference::Reference;
 const PARTS: u32 = 20_000;
 
 /// Largest differences over the whole time; vectors by their Euclidean norm. Not a number where either reference asks for
-/// what has no attitude (free fall, thrust downwards).
+/// an acceleration that has no attitude (free fall, thrust downwards).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Deviation {
     /// Position, m.

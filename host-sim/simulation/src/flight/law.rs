@@ -1,6 +1,6 @@
 //! The laws in f64, as the paper writes them: state and reference point in, input out.
 //!
-//! They share no line with the `f32` core; that the two agree is what the parity tests are about.
+//! They share no line with the `f32` core; the parity tests check that the two agree.
 
 use nalgebra::{Rotation3, SMatrix, SVector, UnitQuaternion, Vector3, Vector4};
 use quatrack_design::model::flat::{ReferencePoint, phi, scalar_first, unit};

@@ -18,7 +18,7 @@ pub struct Metrics {
     pub rms_error_m: f64,
     /// Lowest height, m.
     pub min_z_m: f64,
-    /// When it was lowest, s.
+    /// Time at which it was lowest, s.
     pub min_z_time_s: f64,
     /// Largest tilt of the thrust axis from the vertical, degrees.
     pub max_tilt_deg: f64,

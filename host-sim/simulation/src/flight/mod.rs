@@ -4,7 +4,7 @@
 //! closed_loop        plant (1) under a law in continuous time, or under held commands at a rate
 //!   core_loop        the f32 core in the loop: f64 states in, its commands out
 //!   law, reference   the laws in f64; references sampled as in the paper, or exact
-//!   reference_check  what a reference asks for that no law can follow
+//!   reference_check  the parts of a reference that no law can follow
 //! deviation          how far one reference is from another
 //! rigid_loop         a craft with motors under commands at a rate, late and with noise if asked for
 //!   motor_loop       the f32 core down to the motors in the loop

@@ -13,7 +13,7 @@ pub struct Noise {
     pub velocity_m_s: f64,
     /// Of the body rates, rad/s.
     pub body_rates_rad_s: f64,
-    /// Where the numbers begin.
+    /// The seed.
     pub seed: u64,
 }
 

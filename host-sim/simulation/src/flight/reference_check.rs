@@ -1,4 +1,4 @@
-//! What is wrong with a reference before anything flies it: a trajectory and limits in; where it starts in motion, jumps in
+//! Faults of a reference before anything flies it: a trajectory and limits in; where it starts in motion, jumps in
 //! velocity, or asks for more than the limits out, in one line.
 
 use std::fmt;
@@ -16,7 +16,7 @@ const SAME_VELOCITY_M_S: f64 = 1e-2;
 /// Most samples of the reference's thrust and body rates.
 const SAMPLES: usize = 20_000;
 
-/// What no law can follow, as far as there is any.
+/// The parts of a reference that no law can follow, as far as there are any.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReferenceCheck {
     /// Speed at the start, m/s.
@@ -27,12 +27,12 @@ pub struct ReferenceCheck {
     pub beyond: Option<Beyond>,
 }
 
-/// What is asked for beyond a limit.
+/// A demand beyond a limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beyond {
-    /// When, s.
+    /// The time, s.
     pub time_s: f64,
-    /// What: thrust, m/s^2, or a body rate, rad/s.
+    /// The quantity: thrust, m/s^2, or a body rate, rad/s.
     pub quantity: &'static str,
     /// Asked for, SI.
     pub asked: f64,
@@ -86,7 +86,7 @@ fn velocity_jump(trajectory: &PiecewisePolynomial) -> Option<(usize, f64, f64)> 
     jumps.filter(|(.., size)| *size > SAME_VELOCITY_M_S).max_by(|a, b| a.2.total_cmp(&b.2))
 }
 
-/// The sample with the largest part of what is asked for beyond a limit.
+/// The sample with the largest demand beyond a limit, as a share of it.
 fn beyond(trajectory: &PiecewisePolynomial, limits: &Limits) -> Option<Beyond> {
     const NAMES: [&str; 4] = ["a thrust, m/s^2,", "a roll rate, rad/s,", "a pitch rate, rad/s,", "a yaw rate, rad/s,"];
     let reference = Exact(trajectory);

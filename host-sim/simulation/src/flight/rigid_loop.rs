@@ -12,14 +12,14 @@ use crate::plant::{Craft, RigidState};
 /// A position error beyond which a flight is lost, m: several times the size of any manoeuvre flown here.
 const LOST_M: f64 = 10.0;
 
-/// How a flight is run.
+/// The settings of a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// Length, s.
     pub duration_s: f64,
     /// Control steps a sample of 10 ms: 5 are 500 Hz.
     pub steps_a_sample: u32,
-    /// How late commands act, s.
+    /// Delay of the commands, s.
     pub delay_s: f64,
     /// The errors of measurements.
     pub noise: Option<Noise>,
@@ -126,8 +126,8 @@ impl Latency {
     }
 }
 
-/// Flies `craft` from `start`. `target_m` is where it should be; `control` is given the tick and what is measured, and
-/// an error of it ends the flight. Before the first command acts, the motors are told to keep what they have.
+/// Flies `craft` from `start`. `target_m` is where it should be; `control` is given the tick and the measurements, and
+/// an error of it ends the flight. Before the first command acts, the motors keep their forces.
 pub fn fly_rigid(
     craft: &Craft,
     start: &RigidState,

@@ -47,7 +47,7 @@ pub struct Case {
     pub mass_factor: f64,
     /// True lag over the assumed one.
     pub lag_factor: f64,
-    /// How late commands act, s.
+    /// Delay of the commands, s.
     pub delay_s: f64,
     /// Inertia over that of the vehicle.
     pub inertia_factor: f64,
@@ -86,9 +86,9 @@ pub const LAGS_S: [f64; 2] = [0.0635, 0.126];
 /// One flight.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Which law.
+    /// The law.
     pub law: &'static str,
-    /// Which case.
+    /// The case.
     pub case: &'static str,
     /// Lag that the case starts from, ms: that of the design, but for the default table.
     pub lag_ms: f64,
@@ -103,7 +103,7 @@ pub struct Row {
 /// A law that is not certified for the vehicle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Grounded {
-    /// Which law.
+    /// The law.
     pub law: &'static str,
     /// Lag, ms.
     pub lag_ms: f64,

@@ -19,7 +19,7 @@ use super::table::Table;
 /// A file to be written or compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Artifact {
-    /// Where it belongs.
+    /// Its path.
     pub path: PathBuf,
     /// Its bytes.
     pub contents: Vec<u8>,
@@ -92,7 +92,7 @@ pub(super) fn document(certified: &Certified) -> Value {
     document
 }
 
-/// Every figure that a design can ask for, in the units that it asks in, beside what this one asks. No limit is null.
+/// Every figure that a design can ask for, in the design's units, beside the minimum of this one. No limit is null.
 fn figures(certified: &Certified) -> Value {
     let judged = judge(&certified.certificate, &certified.design.minimum).into_iter();
     let figure = |Judged { figure, quantity, found, asked }: Judged| {
@@ -172,7 +172,7 @@ pub fn rust_source(certified: &Certified) -> String {
     text
 }
 
-/// A table of the cascade as Rust writes it, with the paths of the crate that is called so, or of what is in scope.
+/// A table of the cascade as Rust writes it, with the paths of the crate that is called so, or of the items in scope.
 pub(super) fn cascade_source(table: &CascadeTable, of: &str) -> String {
     let (tables, cascade) = match of {
         "" => (String::new(), String::new()),

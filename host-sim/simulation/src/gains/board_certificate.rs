@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 use super::design::Design;
 use super::designed::Designed;
 
-/// What is taken off a figure, as a share of it, before it is rounded down.
+/// Share of a figure that is taken off before it is rounded down.
 const GUARD: f64 = 1e-6;
 /// Unit of the distance from the f64 gain, which is rounded up.
 const DISTANCE_UNIT: f64 = 1e-10;
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn figures_are_stated_below_what_was_found_and_the_same_around_round_numbers() {
+    fn figures_are_stated_below_the_computed_ones_and_the_same_around_round_numbers() {
         assert_eq!(safe(1.234_567), 1.234);
         assert_eq!(safe(0.017_091_3), 0.017_09);
         assert_eq!(safe(999.96), 999.9);

@@ -10,8 +10,8 @@ use super::GainsError;
 use super::artifacts::cascade_source;
 use super::design::Design;
 
-/// A craft: what its array is called, what is said of it, the place of its default, and its designs with the constant of each, for
-/// the shortest lags first.
+/// A craft: the name of its array, its name in words, the place of its default, and its designs with the constant of
+/// each, for the shortest lags first.
 struct Craft {
     constant: &'static str,
     called: &'static str,
@@ -58,7 +58,7 @@ const CRAFTS: [Craft; 3] = [
 pub struct BuiltInError {
     /// Its name.
     pub name: &'static str,
-    /// What is wrong with it; nothing where it is for another law.
+    /// The reason why it is refused; nothing where it is for another law.
     pub error: Option<GainsError>,
 }
 

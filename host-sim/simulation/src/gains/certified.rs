@@ -16,12 +16,12 @@ use super::kinds::{Gains, TableRows};
 use super::table::Table;
 use crate::vehicles;
 
-/// A design with its gains, and what they promise.
+/// A design with its gains and their certificate.
 #[derive(Debug, Clone)]
 pub struct Certified {
     /// The design.
     pub design: Design,
-    /// SHA-256 of what the design asks for.
+    /// SHA-256 of the design's entries.
     pub design_hash: Hash,
     /// Its gains in f64.
     pub designed: Designed,
@@ -31,13 +31,13 @@ pub struct Certified {
     pub region: Option<RegionCertificate>,
     /// Over the region that a design of the cascade asks for.
     pub cascade_region: Option<CascadeRegionCertificate>,
-    /// What the table says of them.
+    /// The certificate that the table carries.
     pub statement: BoardCertificate,
     /// The table; none where no law on board flies the gains, as those that remember past commands.
     pub table: Option<Table>,
 }
 
-/// What the hash of a design is taken of: all that its gains, its limits and its acceptance depend on.
+/// The entries over which the hash of a design is taken: all that its gains, its limits and its acceptance depend on.
 #[derive(Debug, Serialize)]
 pub(super) struct Essence<'a> {
     vehicle: String,
@@ -71,7 +71,7 @@ impl Design {
                 return Err(GainsError::Region { spectral_radius: found.spectral_radius, worst: found.worst });
             }
             region = Some(found);
-            // The plant has its motors' lag already: what is told is the whole of it, not what may come on top.
+            // The plant has its motors' lag already: the limit is of the whole lag, not of one on top.
             certificate.lag = vec![motor_lag_limit(&self.vehicle, gain, *motor_lag_s, period_s)?];
         }
         let cascade_region = self.cascade_region(&designed)?;

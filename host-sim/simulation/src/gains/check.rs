@@ -1,5 +1,5 @@
-//! Committed files against what their designs give today: designs and their files in; the first difference of each file
-//! out, and what belongs in it.
+//! Committed files against the output of their designs today: designs and their files in; the first difference of each
+//! file out, and its right contents.
 //!
 //! Rust and binary tables are compared byte for byte. In the JSON, gains in f64 agree to 1e-9 and figures of the
 //! certificate to 1e-6 of themselves beyond their rounding to six digits; everything else is the same.
@@ -17,18 +17,18 @@ use super::rounding::{SAME_GAIN, is_same_figure};
 /// A decimal of an f64 is read to one rounding.
 const READ: f64 = 1e-15;
 
-/// A file and what is wrong with it.
+/// A file and its difference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Checked {
     /// The file.
     pub path: PathBuf,
-    /// The first difference; none if it is what its design gives.
+    /// The first difference; none if it is its design's output.
     pub difference: Option<String>,
-    /// What belongs in it; none if no design gives it.
+    /// Its right contents; none if no design gives it.
     pub contents: Option<Vec<u8>>,
 }
 
-/// How a file is compared.
+/// The comparison of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Comparison {
     /// Byte for byte.
@@ -38,7 +38,7 @@ pub(crate) enum Comparison {
 }
 
 impl Checked {
-    /// A file against what belongs in it.
+    /// A file against its right contents.
     pub(crate) fn against(path: PathBuf, contents: Vec<u8>, comparison: Comparison) -> Self {
         let difference = match std::fs::read(&path) {
             Err(error) => Some(format!("cannot be read ({error}); make it with `cargo gains generate`")),
@@ -61,7 +61,7 @@ pub struct Failed {
 /// Designs of a folder, in the order of their names; those of folders in it are not among them.
 ///
 /// # Errors
-/// What the system says of the folder.
+/// The system's error about the folder.
 pub fn designs(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
     with_extension(folder, &["toml"])
 }
@@ -156,7 +156,7 @@ fn is_near(committed: &[u8], computed: &[u8], comparison: Comparison) -> bool {
     }
 }
 
-/// Two numbers with a point, each with what ends it.
+/// Two numbers with a point, each with the character that ends it.
 fn is_near_number(here: &str, there: &str, share: f64) -> bool {
     let parted = |word: &str| {
         let (at, end) = word.char_indices().next_back()?;
@@ -194,7 +194,7 @@ fn byte_difference(committed: &[u8], computed: &[u8]) -> Option<String> {
     })
 }
 
-/// How numbers are compared.
+/// The comparison of numbers.
 #[derive(Clone, Copy)]
 enum Rule {
     Figure,

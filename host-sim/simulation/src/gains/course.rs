@@ -47,8 +47,8 @@ impl OnBoardTrajectory {
                 TrajectoryFile::Plan(_) => {
                     return Err(refused(
                         "\"mild\", \"aggressive\", or a file of pieces or control points: a plan ends with other last \
-                         digits on another processor, and gains belong to the bits of a trajectory; give what \
-                         `quatrack plan FILE --toml OUT` writes"
+                         digits on another processor, and gains belong to the bits of a trajectory; give the output of \
+                         `quatrack plan FILE --toml OUT`"
                             .into(),
                     ));
                 }
@@ -64,7 +64,7 @@ impl OnBoardTrajectory {
         Ok(Self { trajectory, checksum })
     }
 
-    /// What is flown, in f64; every number is that of the board.
+    /// The trajectory, in f64; every number is that of the board.
     pub fn trajectory(&self) -> &PiecewisePolynomial {
         &self.trajectory
     }

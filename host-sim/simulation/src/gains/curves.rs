@@ -1,4 +1,4 @@
-//! What a design does, as curves: loop gain and sensitivity by frequency, and the answer to a step.
+//! The loops of a design as curves: loop gain and sensitivity by frequency, and the answer to a step.
 
 use num_complex::Complex64;
 use quatrack_design::certify::cascade::{

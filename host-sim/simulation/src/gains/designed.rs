@@ -1,4 +1,4 @@
-//! What a design computes: a validated problem in; the model, the gain in f64 and the plant it is certified on out.
+//! A design, solved: a validated problem in; the model, the gain in f64 and the plant it is certified on out.
 
 use nalgebra::{DMatrix, SMatrix};
 use num_complex::Complex64;
@@ -46,7 +46,7 @@ pub struct Designed {
     pub relative_residual: f64,
     /// An actuator-aware gain with forces in parts, in which it is certified.
     pub gain_in_parts: Option<DMatrix<f64>>,
-    /// What the gain was designed for, where that is a vehicle with its motors and their lag, s.
+    /// The object of the gain's design, where that is a vehicle with its motors and their lag, s.
     motors: Option<(Vehicle, f64)>,
     /// The problem per sample that P and the gain solve, if it is one.
     pub sampled: Option<SampledProblem>,

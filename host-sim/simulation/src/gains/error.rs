@@ -1,4 +1,4 @@
-//! Why a design gives no table, in one line each: which key, its value, what to do.
+//! Why a design gives no table, in one line each: which key, its value, the remedy.
 
 use quatrack::gains::table::{NameError, TableError};
 use quatrack_design::certify::cascade::{CascadeChain, CascadeVariation};
@@ -13,7 +13,7 @@ pub enum GainsError {
     /// The file cannot be read.
     #[error("cannot read this design ({reason}); give the path of a design, a TOML file")]
     Unreadable {
-        /// What the system says.
+        /// The system's message.
         reason: String,
     },
     /// Not TOML, a key that is unknown or missing, or a value of another type.
@@ -23,7 +23,7 @@ pub enum GainsError {
         line: usize,
         /// The text of it.
         written: String,
-        /// What the reader says.
+        /// The reader's message.
         reason: String,
     },
     /// A value out of range.
@@ -33,7 +33,7 @@ pub enum GainsError {
         key: String,
         /// Its value.
         value: String,
-        /// What it must be.
+        /// Its required range, in words.
         must: String,
     },
     /// A key that the method or the linearisation needs.
@@ -41,9 +41,9 @@ pub enum GainsError {
     Missing {
         /// The key.
         key: String,
-        /// What needs it.
+        /// The entry that needs it.
         with: String,
-        /// How it is written.
+        /// An example of the entry.
         example: &'static str,
     },
     /// A key that means nothing here.
@@ -53,7 +53,7 @@ pub enum GainsError {
         key: String,
         /// Its value.
         value: String,
-        /// Where it is written.
+        /// The entry that states it.
         with: String,
     },
     /// The file's name is no name for a table.
@@ -64,7 +64,7 @@ pub enum GainsError {
     Vehicle {
         /// As written in the design.
         vehicle: String,
-        /// What is wrong with it.
+        /// The fault.
         reason: String,
     },
     /// The equations have no solution.
@@ -73,9 +73,9 @@ pub enum GainsError {
     /// The same, with the states that are to blame.
     #[error("{error}; {blamed}")]
     Unsolved {
-        /// What the solver says.
+        /// The solver's error.
         error: DesignError,
-        /// Which states, and what to do.
+        /// The states to blame, and the remedy.
         blamed: String,
     },
     /// The gains cannot be certified.
@@ -92,7 +92,7 @@ pub enum GainsError {
     Region {
         /// The largest spectral radius.
         spectral_radius: f64,
-        /// Where.
+        /// The least stable point.
         worst: quatrack_design::certify::Variation,
     },
     /// The loop of the cascade is not stable all over the region that the design asks for.
@@ -101,11 +101,11 @@ pub enum GainsError {
          change motor_lag_ms, lower the weights or narrow [region]"
     )]
     CascadeRegion {
-        /// Which chain.
+        /// The chain.
         chain: CascadeChain,
         /// The largest spectral radius.
         spectral_radius: f64,
-        /// Where.
+        /// The least stable point.
         worst: Box<CascadeVariation>,
     },
     /// The core would refuse the table.

@@ -1,4 +1,4 @@
-//! Design files: TOML in, what is written in them out, key by key. What belongs together is checked in
+//! Design files: TOML in, their entries out, key by key. Entries that depend on each other are checked in
 //! [`super::design`].
 
 use quatrack_plan::quote::{one_line, quoted};
@@ -49,7 +49,7 @@ pub(super) enum MethodName {
     Cascade,
 }
 
-/// What the cascade is told of the air.
+/// The air that the cascade is told.
 #[derive(Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AirEntry {
@@ -178,14 +178,13 @@ pub(super) fn read(text: &str) -> Result<DesignFile, GainsError> {
         Some(c) => Err(GainsError::Value {
             key: "description".to_owned(),
             value: format!("a text with U+{:04X}", u32::from(c)),
-            must: "plain text: it becomes a comment in Rust, where such a character turns or hides what follows"
-                .to_owned(),
+            must: "plain text: it becomes a comment in Rust, where such a character turns or hides the rest".to_owned(),
         }),
     }
 }
 
 /// Whether a character may be in a description: no control character but the end of a line, and none that changes the direction of
-/// what is read.
+/// the text.
 fn is_plain(c: char) -> bool {
     let turns = matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     !turns && (c == '\n' || !c.is_control())

@@ -35,7 +35,7 @@ pub enum TableRows {
 }
 
 impl Gains {
-    /// Which table it makes.
+    /// The kind of its table.
     pub fn kind(&self) -> TableKind {
         match self {
             Self::Equilibrium(_) => TableKind::Equilibrium,
@@ -61,7 +61,7 @@ impl Gains {
 
     /// As the core flies it, every entry the nearest f32.
     ///
-    /// `motor_lag_s` is what gains for motor forces reckon with.
+    /// `motor_lag_s` is the lag for which gains for motor forces are flown.
     pub fn rows(&self, motor_lag_s: f32) -> TableRows {
         TableRows::Fixed(Box::new(match self {
             Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),

@@ -1,7 +1,7 @@
 //! Gain tables that somebody may fly: design files in; gains, certificates and tables out, or the figure that fails.
 //!
 //! ```text
-//! check          committed files against what their designs give today
+//! check          committed files against their designs' output today
 //!   built_in     the core's own tables of the cascade
 //!   artifacts    NAME.json, NAME.rs, NAME.bin
 //!     certified  gains, certificate, the table; the design's own minimum
@@ -11,7 +11,7 @@
 //!         kinds    gains by the law that flies them
 //!         model    the linear model, and the weights
 //!         unsolved why there is none: the states to blame
-//!         design   what belongs together and is in range
+//!         design   entries in range that fit together
 //!           file   TOML
 //!           course the trajectory of gains over time, as the board stores it
 //! curves         loop gain, sensitivity and steps, to be drawn

@@ -46,7 +46,7 @@ pub struct Weights {
 }
 
 impl LinearModel {
-    /// What a design is solved for; of gains over time the hover at their end.
+    /// The model that a design is solved for; of gains over time the hover at their end.
     pub(super) fn with_weights(design: &Design) -> (Self, Option<Weights>) {
         match &design.problem {
             Problem::Equilibrium(Method::Lyapunov { .. }) => (Self::equilibrium(), None),

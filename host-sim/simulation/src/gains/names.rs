@@ -139,7 +139,7 @@ pub(super) const PART_STATES: [Signal; 16] = [
 pub(super) const PART_INPUTS: [Signal; 4] =
     [signal("u_thrust", "N"), signal("u_roll", "N"), signal("u_pitch", "N"), signal("u_yaw", "N")];
 
-/// The gains of the cascade, chain by chain: of what they are, and to which part of a motor's force.
+/// The gains of the cascade, chain by chain: the error of each, and which part of a motor's force.
 pub(super) const CHAIN_GAINS: [Signal; 16] = [
     signal("z", "N/m"),
     signal("vz", "N s/m"),
@@ -159,7 +159,7 @@ pub(super) const CHAIN_GAINS: [Signal; 16] = [
     signal("f_yaw", "1"),
 ];
 
-/// What the gains of the cascade give: a part of a motor's force.
+/// The output of the gains of the cascade: a part of a motor's force.
 pub(super) const CHAIN_OUTPUT: [Signal; 1] = [signal("part", "N")];
 
 /// The signals of the rows and the columns of a table.

@@ -8,7 +8,7 @@ const DIGITS: usize = 6;
 pub(super) const SAME_FIGURE: f64 = 1e-6;
 /// Gains in f64 agree to this share.
 pub(super) const SAME_GAIN: f64 = 1e-9;
-/// What is below this share of the largest of its list is zero but for rounding: imaginary parts of real poles.
+/// A number below this share of the largest of its list is zero but for rounding: imaginary parts of real poles.
 const DUST: f64 = 1e-7;
 
 /// Every number that is no integer, rounded to six digits.
@@ -16,7 +16,7 @@ pub(super) fn rounded(value: Value) -> Value {
     each_number(value, &to_digits)
 }
 
-/// Every list of numbers, or of lists of them, with what is only rounding beside its largest set to zero.
+/// Every list of numbers, or of lists of them, with numbers that are only rounding beside its largest set to zero.
 pub(super) fn without_dust(value: Value) -> Value {
     match value {
         Value::Array(entries) => {

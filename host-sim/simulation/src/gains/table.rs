@@ -91,12 +91,12 @@ impl Table {
         Some(self.bytes.clone())
     }
 
-    /// What it says beside its gains.
+    /// Its head: all but the gains.
     pub fn head(&self) -> &TableHead {
         &self.head
     }
 
-    /// Which law it is for.
+    /// The law that it is for.
     pub fn kind(&self) -> TableKind {
         self.kind
     }
@@ -111,7 +111,7 @@ impl Table {
         self.along.as_ref()
     }
 
-    /// What it says of the cascade, if that is its kind.
+    /// The cascade's fields, if that is its kind.
     pub fn cascade(&self) -> Option<&CascadeTable> {
         self.cascade.as_ref()
     }

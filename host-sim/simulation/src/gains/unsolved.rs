@@ -7,10 +7,10 @@ use quatrack_design::design::DesignError;
 use super::model::{LinearModel, Weights};
 use super::names::Signal;
 
-/// What a singular value, or a part of a vector, is below that counts as zero, over the largest.
+/// A singular value, or a part of a vector, below this share of the largest counts as zero.
 const ZERO: f64 = 1e-9;
 
-/// The states that are to blame, and what to do; nothing where none can be told.
+/// The states that are to blame, and the remedy; nothing where none can be told.
 pub(super) fn blamed(
     error: &DesignError,
     model: &LinearModel,
@@ -36,7 +36,7 @@ fn unseen(model: &LinearModel, weights: &Weights, eigenvalue: Complex<f64>) -> O
     let mut stacked = DMatrix::zeros(2 * n, n);
     let shifted = complex(&model.a) - DMatrix::from_diagonal_element(n, n, eigenvalue);
     stacked.rows_mut(0, n).copy_from(&shifted);
-    // Which weights are zero tells what is seen, not how large the others are.
+    // The zero weights decide which modes are seen, not the sizes of the others.
     let sees = weights.q.map(|weight| if weight == 0.0 { 0.0 } else { 1.0 });
     stacked.rows_mut(n, n).copy_from(&complex(&sees));
     let svd = stacked.svd(false, true);
@@ -49,8 +49,8 @@ fn unseen(model: &LinearModel, weights: &Weights, eigenvalue: Complex<f64>) -> O
     };
     let names: Vec<String> =
         (0..n).filter(|state| in_kernel(*state)).map(|state| of_row(model.states, state, weights)).collect();
-    let what = "no feedback can be optimal in a state that costs nothing for ever: give it a weight";
-    (!names.is_empty()).then(|| format!("unseen is {}; {what}", names.join(", ")))
+    let remedy = "no feedback can be optimal in a state that costs nothing for ever: give it a weight";
+    (!names.is_empty()).then(|| format!("unseen is {}; {remedy}", names.join(", ")))
 }
 
 /// The weights that lie farthest apart.

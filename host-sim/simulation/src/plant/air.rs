@@ -1,4 +1,5 @@
-//! The air's action on a craft that moves through it: velocity through the air in, force and torque out.
+//! The air's action on a craft: velocity through the air (body frame, m/s) in; drag (N) and airflow moment (N m), body
+//! frame, out.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! A rigid body: force and torque in, accelerations out.
+//! A rigid body: force (world frame, N) and torque (body frame, N m) in, linear and angular acceleration out.
 
 use nalgebra::{Matrix3, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;

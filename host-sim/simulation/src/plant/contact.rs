@@ -1,4 +1,5 @@
-//! Walls to lean on: a plane that pushes the tips of the rotors' guards and holds them by friction.
+//! Contact with walls: a plane that pushes the tips of the rotors' guards by spring and damper and holds them by
+//! friction; state in, force and torque on the craft out.
 
 use nalgebra::{Unit, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;

@@ -31,7 +31,7 @@ pub struct LinearWind {
     pub from_s: f64,
     /// Velocity of the air then, world frame, m/s.
     pub from_m_s: Vector3<f64>,
-    /// How it changes, m/s^2.
+    /// Derivative of the velocity, m/s^2.
     pub slope_m_s2: Vector3<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! Commands on their way to the motors.
+//! A transport delay: commands (N) with their times in; the command that acts at a time out.
 
 use std::collections::VecDeque;
 

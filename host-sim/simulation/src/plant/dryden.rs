@@ -2,7 +2,7 @@
 //! of a wind on a grid of times out.
 //!
 //! The forming filters are continuous in time, driven by white noise, and discretised exactly: on the grid mean, variance and
-//! correlation are the formula's, whatever the period. They start from the distribution that they stay in.
+//! correlation are the formula's, at any period. They start from the distribution that they stay in.
 
 use nalgebra::{Vector2, Vector3};
 

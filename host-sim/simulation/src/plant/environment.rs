@@ -31,7 +31,8 @@ impl Air {
     pub const VACUUM: Self =
         Self { drag_per_s: [0.0; 3], moment_n_m_per_m_s: [0.0; 2], lift_per_m: 0.0, wind_max_m_s: Self::WIND_MAX_M_S };
 
-    /// The figures known of the vehicle: forces as they were identified, whatever the mass then. Unknown figures are 0.
+    /// The figures known of the vehicle: forces as they were identified, not over the mass of that craft. Unknown figures
+    /// are 0.
     pub fn of(vehicle: &Vehicle) -> Option<Self> {
         let known = vehicle.flown().air.as_ref()?;
         let mass_ratio = known.mass_kg / vehicle.mass_kg();
@@ -121,7 +122,7 @@ impl Environment {
     }
 }
 
-/// The true figures of the craft, whatever the law believes.
+/// The true figures of the craft, apart from the law's beliefs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
     /// Mass, kg.
@@ -132,7 +133,7 @@ pub struct Truth {
     pub rise_lag_s: f64,
     /// Of one that falls, s.
     pub fall_lag_s: f64,
-    /// How late commands act, s.
+    /// Delay of the commands, s.
     pub delay_s: f64,
     /// Thrust over the commanded one at the start.
     pub thrust_factor: f64,

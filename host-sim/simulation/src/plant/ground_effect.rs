@@ -1,4 +1,5 @@
-//! The cushion of air below a rotor near the ground.
+//! Ground effect, by Cheeseman and Bennett: height of each rotor over the floor in; the additional thrust of each rotor,
+//! as force and torque on the craft, out.
 
 use nalgebra::Vector3;
 
@@ -11,7 +12,7 @@ use super::{Load, MotorBank, RigidState, Wrench};
 pub struct GroundEffect {
     /// Radius of a rotor, m.
     pub radius_m: f64,
-    /// Where the rotors stand, body frame, m.
+    /// Places of the rotors, body frame, m.
     pub rotors_m: [Vector3<f64>; 4],
 }
 

@@ -90,7 +90,7 @@ impl Converter {
     fn acting(&self, commands_n: &Vector4<f64>) -> Acting {
         let [least_n, most_n] = self.limits_n;
         let mapped = commands_n.map(|command_n| {
-            // By comparison: what is no number becomes the least, and f64::max costs five times as much.
+            // By comparison: a NaN becomes the least, and f64::max costs five times as much.
             let command_n = if command_n > least_n { command_n } else { least_n };
             let command_n = if command_n < most_n { command_n } else { most_n };
             self.map.map_or(command_n, |map| map.share(command_n / most_n))
@@ -159,7 +159,7 @@ impl Plant {
         self
     }
 
-    /// From here on each motor gives this share of what a sound one would; none where all are off.
+    /// From here on each motor gives this share of a sound one's force; none where all are off.
     pub fn set_motor_strength(&mut self, strength: [f64; 4]) {
         self.converter.strength = strength;
     }
@@ -178,7 +178,7 @@ impl Plant {
         self.end(&way);
     }
 
-    /// Gives commands; what follows goes a time from there.
+    /// Gives commands; the way is a time from there.
     #[inline]
     pub(super) fn begin(&mut self, commands_n: &Vector4<f64>, duration_s: f64) -> Way {
         self.line.give(self.time_s, commands_n);
@@ -191,7 +191,7 @@ impl Plant {
         self.steady && self.plain.is_some() && duration_s / STEP_MAX_S - 1e-9 <= 1.0
     }
 
-    /// That step: what [`Self::begin`] and [`Self::next_step`] then come to, for less.
+    /// That step: the same as [`Self::begin`] and [`Self::next_step`] together, for less.
     #[inline]
     pub(super) fn steady_step(&mut self, commands_n: &Vector4<f64>, duration_s: f64) -> SteadyStep {
         self.line.give(self.time_s, commands_n);
@@ -283,7 +283,7 @@ impl Plant {
         })
     }
 
-    /// Where it is.
+    /// Its state.
     pub fn state(&self) -> &RigidState {
         &self.state
     }
@@ -332,7 +332,7 @@ impl Plant {
         self.converter.limits_n.map(|limit_n| self.goals_n(Some(self.converter.acting(&Vector4::repeat(limit_n)))))
     }
 
-    /// What an accelerometer at the centre of mass reads, body frame, m/s^2: that of [`Self::motion`], for less.
+    /// The reading of an accelerometer at the centre of mass, body frame, m/s^2: that of [`Self::motion`], for less.
     pub fn specific_force_m_s2(&mut self) -> Vector3<f64> {
         match &self.plain {
             Some((figures, has_air)) => kernel::felt_m_s2(figures, *has_air, &self.state, &self.wind_m_s),

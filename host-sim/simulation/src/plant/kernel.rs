@@ -18,7 +18,7 @@ pub(super) use self::equations::{Figures, LANES};
 use super::craft::LinearWind;
 use super::{Craft, RigidState};
 
-/// What one step of one plant needs besides its figures and its state.
+/// The inputs of one step of one plant besides its figures and its state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
     pub(super) goals_n: Vector4<f64>,
@@ -154,13 +154,13 @@ impl SideBySide {
         }
     }
 
-    /// Where a lane is.
+    /// Sets the state of a lane.
     pub(super) fn put_state(&mut self, lane: usize, state: &RigidState) {
         let x = <[f64; 17]>::from(state.to_vector());
         self.state.iter_mut().zip(x).for_each(|(row, value)| row[lane] = value);
     }
 
-    /// What a lane flies next from where it is.
+    /// The next step of a lane, from its present state.
     #[inline]
     pub(super) fn put_step(&mut self, lane: usize, step: &Step) {
         for i in 0..4 {

@@ -2,7 +2,7 @@
 //!
 //! A [`Craft`] is put together from parts that know nothing of each other: a [`RigidBody`] that turns forces and torques
 //! into motion, a [`MotorBank`] that turns commands into thrusts and their sum into force and torque, an [`Airflow`]
-//! for what the air does to it, and any number of [`Load`]s, whatever else pushes the body. Its state is position,
+//! for the air's action on it, and any number of [`Load`]s for other forces on the body. Its state is position,
 //! velocity (world frame), attitude, body rates (body frame) and the four thrusts. A [`Plant`] is a craft in one
 //! flight: with a wind that blows, commands on their way, and a battery that empties. Sensors belong to the flight.
 //!

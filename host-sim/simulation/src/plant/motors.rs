@@ -8,7 +8,7 @@ use super::{Propeller, RotorDrag, Wrench};
 /// One motor with its rotor, whose axis is the body's z axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motor {
-    /// Where the rotor stands, body frame, m.
+    /// Place of the rotor, body frame, m.
     pub position_m: Vector3<f64>,
     /// Torque about body z per thrust, with its sign, m.
     pub torque_per_thrust_m: f64,

@@ -23,7 +23,7 @@ pub enum Source {
     Attitude = 5,
     /// Measurements that are lost on their way.
     Dropout = 6,
-    /// When measurements arrive.
+    /// Arrival times of measurements.
     Timing = 7,
 }
 

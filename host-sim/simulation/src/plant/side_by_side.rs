@@ -33,7 +33,7 @@ impl PlantGroup {
         self.plants.get(lane)
     }
 
-    /// One of them, to be asked what it feels, and not to be moved.
+    /// One of them, to be asked for its specific force, and not to be moved.
     pub(crate) fn plant_mut(&mut self, lane: usize) -> Option<&mut Plant> {
         self.plants.get_mut(lane)
     }

@@ -39,7 +39,7 @@ impl RigidState {
 
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
-        // Times 0 each is 0 or no number.
+        // Times 0 each is 0 or NaN.
         let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] =
             <[f64; 17]>::from(self.to_vector()).map(|value| 0.0 * value);
         ((a + b) + (c + d)) + ((e + f) + (g + h)) + ((i + j) + (k + l)) + ((m + n) + (o + p)) + q == 0.0

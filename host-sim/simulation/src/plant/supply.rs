@@ -79,7 +79,7 @@ pub enum Supply {
     Constant(f64),
     /// A battery with a charge from 0 to 1 at the start.
     Battery {
-        /// Which.
+        /// The battery.
         battery: Battery,
         /// Its charge at the start.
         charge: f64,

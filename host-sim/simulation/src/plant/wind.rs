@@ -14,11 +14,11 @@ const PERIOD_S: f64 = 0.002;
 pub struct Gust {
     /// At its height, world frame, m/s.
     pub peak_m_s: Vector3<f64>,
-    /// When it begins, s.
+    /// Its beginning, s.
     pub from_s: f64,
     /// How long it rises, and how long it falls, s.
     pub rise_s: f64,
-    /// How long it stays, s.
+    /// Time at its full strength, s.
     pub stay_s: f64,
 }
 
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn turbulence_has_the_intensity_that_is_asked_for_and_says_what_came_of_it() {
+    fn turbulence_has_the_intensity_that_is_asked_for_and_tells_the_realised_one() {
         let rms_m_s = Vector3::new(0.5, 0.5, 0.5);
         let turbulence = Dryden { rms_m_s, scale_m: Vector3::repeat(1.0), airspeed_m_s: 5.0 };
         let mut wind = Blowing::new(
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn it_blows_the_same_for_the_same_seed_at_whatever_steps() {
+    fn it_blows_the_same_for_the_same_seed_at_any_steps() {
         let turbulence = Dryden::at_low_altitude(Vector3::repeat(0.5), 1.0, 0.0);
         let wind = Wind { turbulence: Some(turbulence), ..Wind::default() };
         let (mut coarse, mut fine) = (Blowing::new(&wind, 5), Blowing::new(&wind, 5));

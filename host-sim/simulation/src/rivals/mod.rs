@@ -52,7 +52,7 @@ impl Actuation {
     }
 
     /// The forces that make a force and a torque. Where one exceeds the most that a motor does, the excess is taken off all
-    /// four; what is then negative is 0 (`powerDistributionForceTorque` and `powerDistributionCap` in
+    /// four; a force that is then negative is 0 (`powerDistributionForceTorque` and `powerDistributionCap` in
     /// `power_distribution_quadrotor.c`, without their rounding to whole numbers).
     pub fn forces_n(&self, wanted: &ForceTorque) -> Vector4<f64> {
         let (torque, a) = (wanted.torque_n_m, self.half_arm_m);
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn forces_within_range_make_what_was_asked() {
+    fn forces_within_range_make_the_wanted_force_and_torque() {
         let vehicle = vehicles::by_name("crazyflie-2.1").unwrap();
         let wanted = ForceTorque { force_n: 0.25, torque_n_m: Vector3::new(8e-4, -5e-4, 1e-4) };
         let made = vehicle.motors().mixing() * Actuation::of(&vehicle).forces_n(&wanted);
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_the_firmware_come_to_what_its_mixing_makes() {
+    fn numbers_of_the_firmware_come_to_the_forces_of_its_mixing() {
         // Roll 1000: 500 numbers on each motor, up on the left, at 0.12 N for 65535 and 0.03 m; yaw 1000: all of it.
         let torque = actuation().torque_per_number() * 1000.0;
         assert!((torque.x - 4.0 * 0.03 * 500.0 * 0.12 / 65535.0).abs() < 1e-18);

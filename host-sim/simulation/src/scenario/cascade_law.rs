@@ -49,7 +49,7 @@ impl CascadeLaw {
         cascade_of_table(vehicle, told, table).map(Self::hovering)
     }
 
-    /// Takes what it is told along a track from now on, evaluated once for this and its copies.
+    /// Takes the setpoints of a track from now on, evaluated once for this and its copies.
     pub(super) fn share(&mut self, track: &Track) {
         let mut law = self.clone();
         let told = track.told(RATE.hz());
@@ -137,7 +137,7 @@ fn is_brushless(vehicle: &Vehicle) -> bool {
     vehicle.name().starts_with("crazyflie-2.1-brushl")
 }
 
-/// What is told of the air, and for the rest what is known of Crazyflies; of another vehicle nothing but what it learns.
+/// The told air, and for the rest that of Crazyflies; another vehicle begins with none and learns it.
 fn air(vehicle: &Vehicle, told: &ToldFigures) -> Result<Air, FlightError> {
     let known = if is_brushless(vehicle) {
         Air::BRUSHLESS

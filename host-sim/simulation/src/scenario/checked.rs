@@ -1,4 +1,4 @@
-//! A scenario whose every value has been looked at: a file in, craft, conditions and what a law is told out.
+//! A scenario whose every value has been looked at: a file in, craft, conditions and the figures that a law is told out.
 
 use std::path::Path;
 
@@ -27,7 +27,7 @@ impl Scenario {
         Self::checked(&ScenarioFile::read(path)?, &path.display().to_string(), folder)
     }
 
-    /// From what a file says; relative paths in it begin at a folder.
+    /// From the contents of a file; relative paths in it begin at a folder.
     ///
     /// # Errors
     /// [`ScenarioError::Value`] and [`ScenarioError::Named`] with `origin` for the file's name.
@@ -117,7 +117,7 @@ fn course(
     })
 }
 
-/// Height at which turbulence is what it is in a scenario, m.
+/// Height whose turbulence a scenario has, m.
 const TURBULENCE_HEIGHT_M: f64 = 1.0;
 /// Of the vertical component over the horizontal ones there: MIL-F-8785C, 3.7.3.4, at its lowest height of 10 ft,
 /// `(0.177 + 0.000823 h)^0.4`.

@@ -22,13 +22,13 @@ impl Checks<'_> {
         value: Option<f64>,
         default: f64,
         [least, most]: [f64; 2],
-        what: &str,
+        meaning: &str,
     ) -> Result<f64, ScenarioError> {
         let value = value.unwrap_or(default);
         if (least..=most).contains(&value) {
             return Ok(value);
         }
-        Err(self.refuse(key, &value, format!("from {least} to {most}, {what}")))
+        Err(self.refuse(key, &value, format!("from {least} to {most}, {meaning}")))
     }
 
     /// Likewise every component.
@@ -37,10 +37,10 @@ impl Checks<'_> {
         key: &'static str,
         values: Option<[f64; N]>,
         bounds: [f64; 2],
-        what: &str,
+        meaning: &str,
     ) -> Result<[f64; N], ScenarioError> {
         let values = values.unwrap_or([0.0; N]);
-        values.iter().try_for_each(|value| self.one(key, Some(*value), 0.0, bounds, what).map(|_| ()))?;
+        values.iter().try_for_each(|value| self.one(key, Some(*value), 0.0, bounds, meaning).map(|_| ()))?;
         Ok(values)
     }
 }

@@ -6,13 +6,13 @@ use serde::Serialize;
 
 use crate::flight::rigid_loop::RigidFlight;
 
-/// What the file says that it is.
+/// The schema that the file states.
 pub const SCHEMA: &str = "quatrack/compare/1";
 
 /// One law's flight.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Row {
-    /// Which law.
+    /// The law.
     pub law: String,
     /// Sum of the position error's norm over samples of 10 ms, times 10 ms, m s; nothing for a flight that was lost.
     pub iae_m_s: Option<f64>,

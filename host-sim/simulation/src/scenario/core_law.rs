@@ -52,7 +52,7 @@ pub(super) struct BeyondJerk {
 }
 
 impl BeyondJerk {
-    /// The setpoint with what its jerk says of its higher derivatives; unchanged where it has them.
+    /// The setpoint with higher derivatives fitted to its jerks; unchanged where it has them.
     pub(super) fn filled(&mut self, setpoint: &Setpoint) -> Setpoint {
         if setpoint.snap_m_s4 != Vector3::zeros() || setpoint.crackle_m_s5 != Vector3::zeros() {
             return *setpoint;

@@ -1,4 +1,4 @@
-//! What is flown in a scenario: 2 s of hover, 3 s in which an eight comes up to speed, then what is measured.
+//! The course of a scenario: 2 s of hover, 3 s in which an eight comes up to speed, then the measured part.
 
 use nalgebra::Vector3;
 
@@ -14,7 +14,7 @@ const HEIGHT_M: f64 = 1.0;
 
 /// A course with the part of it that counts.
 pub struct Flown {
-    /// From before the start of what is measured to its end.
+    /// From before the start of the measured part to its end.
     pub course: Box<dyn FlatTrajectory>,
     /// From when it is measured, s.
     pub measured_from_s: f64,

@@ -15,39 +15,39 @@ pub enum ScenarioError {
     /// The file cannot be read.
     #[error("{}: cannot be read ({reason})", path.display())]
     Unreadable {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The system's message.
         reason: String,
     },
     /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
     #[error("{origin}, line {line}, `{text}`: {reason}")]
     Syntax {
-        /// Whose it is.
+        /// The file or flag that it is of.
         origin: String,
-        /// Where, from 1.
+        /// The line, from 1.
         line: usize,
-        /// What is written there.
+        /// The text there.
         text: String,
-        /// What the parser says, in one line.
+        /// The parser's message, in one line.
         reason: String,
     },
     /// A value without sense.
     #[error("{origin}: {key} = {value}: must be {must}")]
     Value {
-        /// Whose it is.
+        /// The file or flag that it is of.
         origin: String,
         /// The key with its table.
         key: &'static str,
         /// The value as read.
         value: String,
-        /// What it must be.
+        /// Its required range, in words.
         must: String,
     },
     /// A vehicle or a trajectory that cannot be had.
     #[error("{origin}: {key}: {reason}")]
     Named {
-        /// Whose it is.
+        /// The file or flag that it is of.
         origin: String,
         /// The key.
         key: &'static str,
@@ -57,9 +57,9 @@ pub enum ScenarioError {
     /// A figure of the plant that is out of range.
     #[error("{origin}: {error}")]
     Plant {
-        /// Whose it is.
+        /// The file or flag that it is of.
         origin: String,
-        /// Which, and the remedy.
+        /// The fault, and the remedy.
         #[source]
         error: PlantError,
     },
@@ -78,7 +78,7 @@ pub enum StartError {
     /// The filter's figures or start.
     #[error("the filter does not start: {0}")]
     Filter(#[from] EstimatorError),
-    /// The start asks for what no thrust does.
+    /// No thrust gives the acceleration at the start.
     #[error("the course cannot be flown from its start: {0}")]
     Start(#[from] ReferenceError),
 }

@@ -31,11 +31,11 @@ pub struct ScenarioFile {
     pub speed_m_s: Option<f64>,
     /// Length of a step, m.
     pub step_m: Option<f64>,
-    /// How long is measured, s.
+    /// Duration of the measured part, s.
     pub duration_s: Option<f64>,
-    /// Whose law.
+    /// The law that flies.
     pub law: Option<Law>,
-    /// Whose laws, where a campaign flies several.
+    /// The laws, where a campaign flies several.
     pub laws: Option<Vec<Law>>,
     /// 100hz or exact.
     pub setpoints: Option<Setpoints>,
@@ -45,10 +45,10 @@ pub struct ScenarioFile {
     pub seed: Option<u64>,
     /// The air; vacuum where absent.
     pub air: Option<Air>,
-    /// What the true craft differs in from its vehicle.
+    /// Deviations of the true craft from its vehicle.
     #[serde(default)]
     pub errors: Errors,
-    /// What the law is told otherwise than its vehicle says.
+    /// Figures that the law is told, where they are not its vehicle's.
     #[serde(default)]
     pub told: Told,
     /// Noise of sensors and, where the estimator is exact, of its estimate.
@@ -57,7 +57,7 @@ pub struct ScenarioFile {
     /// The estimator's, where it is a filter.
     #[serde(default)]
     pub filter: Filter,
-    /// Where the craft begins.
+    /// The start of the craft.
     #[serde(default)]
     pub start: Start,
     /// The motors' supply.
@@ -81,7 +81,7 @@ pub enum Estimator {
 /// `air = "vehicle"`, or a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Air {
-    /// What the vehicle's file says of its air, but for the figures that are given.
+    /// The air of the vehicle's file, but for the figures that are given.
     Vehicle(OwnAir),
     /// Figures of one's own.
     Own(OwnAir),
@@ -91,7 +91,7 @@ pub enum Air {
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct OwnAir {
-    /// Whose figures these go over; vacuum's where absent.
+    /// The air that these figures go over; vacuum where absent.
     pub of: Option<AirOf>,
     /// Linear drag over mass along body x, y, z, 1/s.
     pub drag_per_s: Option<[f64; 3]>,
@@ -103,15 +103,15 @@ pub struct OwnAir {
     pub gust_rms_m_s: Option<f64>,
 }
 
-/// Whose air.
+/// The air that figures go over.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub enum AirOf {
-    /// What the vehicle's file says.
+    /// The vehicle's own.
     Vehicle,
 }
 
-/// What the true craft differs in from its vehicle.
+/// Deviations of the true craft from its vehicle.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Errors {
@@ -127,7 +127,7 @@ pub struct Errors {
     pub lag_fall_ms: Option<f64>,
     /// How late commands act, ms.
     pub delay_ms: Option<f64>,
-    /// Thrust that comes of a command over what should.
+    /// Thrust of a command over its nominal thrust.
     pub thrust_factor: Option<f64>,
     /// The same at the end of the flight.
     pub thrust_factor_end: Option<f64>,
@@ -143,7 +143,7 @@ pub struct Errors {
     pub accelerometer_bias_m_s2: Option<[f64; 3]>,
 }
 
-/// What the law is told; the vehicle's own where absent.
+/// Figures that the law is told; the vehicle's own where absent.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Told {
@@ -203,7 +203,7 @@ pub struct Start {
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Battery {
-    /// Charge at the start, from 0 to 1. Absent: forces are what is commanded, whatever the battery.
+    /// Charge at the start, from 0 to 1. Absent: forces are the commanded ones, at any battery.
     pub charge: Option<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! The estimate of a Kalman filter: gyroscope, accelerometer and late positions in; what a law is told out.
+//! The estimate of a Kalman filter: gyroscope, accelerometer and late positions in; the estimate that a law is told out.
 
 use std::collections::VecDeque;
 
@@ -11,8 +11,8 @@ use super::whole::FilterFigures;
 use crate::control_law::{Estimate, STEPS_HZ};
 use crate::plant::RigidState;
 
-/// Least deviation of a measured position that the filter is told, m: what the firmware takes every position from outside for
-/// (`extPosStdDev` in `crtp_localization_service.c`), however good it is.
+/// Least deviation of a measured position that the filter is told, m: the firmware takes every position from outside as
+/// this exact (`extPosStdDev` in `crtp_localization_service.c`), however good it is.
 const POSITION_DEVIATION_MIN_M: f64 = 1e-2;
 /// How well the start is known: the craft hovers there.
 const AT_START: DeviationsAtStart =
@@ -35,12 +35,12 @@ impl Estimation {
         }
     }
 
-    /// Whether it makes anything of what is felt but to pass it on.
+    /// Whether it uses the specific force beyond passing it on.
     pub(super) fn feels(&self) -> bool {
         matches!(self, Self::Filtered(_))
     }
 
-    /// Steps of the flight that nobody looks at: what an estimate draws is drawn.
+    /// Steps of the flight whose estimate nobody looks at: its random numbers are drawn all the same.
     #[inline]
     pub(super) fn pass_over(&mut self, steps: u32) {
         if let Self::Exact(sensors) = self {
@@ -48,7 +48,7 @@ impl Estimation {
         }
     }
 
-    /// Sees what is known after one step of the flight.
+    /// Takes the sensors' readings after one step of the flight.
     #[inline]
     pub(super) fn estimate(
         &mut self,
@@ -130,7 +130,7 @@ impl Filtered {
         })
     }
 
-    /// What is known after one step of the flight; the filter's part of it is as old as its last prediction.
+    /// The estimate after one step of the flight; the filter's part of it is as old as its last prediction.
     ///
     /// # Errors
     /// The filter's own words, where it takes no measurement any more.

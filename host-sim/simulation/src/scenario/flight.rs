@@ -1,4 +1,4 @@
-//! The flight of a law: a craft, what is wrong with what is known of it, a course and a law in; where it went out.
+//! The flight of a law: a craft, its deviations, a course and a law in; its motion out.
 
 use nalgebra::{Vector3, Vector4};
 use serde::Deserialize;
@@ -15,7 +15,7 @@ use crate::plant::{Plant, PlantGroup, RigidState};
 /// Farther than this from its course a craft counts as lost, m.
 const LOST_M: f64 = 5.0;
 
-/// How setpoints come.
+/// The form of the setpoints.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 pub enum Setpoints {
     /// At 100 Hz to the jerk, as from the Crazyflie's high-level commander; held in between.
@@ -27,11 +27,11 @@ pub enum Setpoints {
     Exact,
 }
 
-/// A flight outside a scenario: what is flown, how the law is told of it, and where its estimate comes from.
+/// A flight outside a scenario: the course, how the law is told of it, and where its estimate comes from.
 pub struct Bench<'a> {
     /// The course.
     pub flown: &'a Flown,
-    /// How setpoints come.
+    /// The form of the setpoints.
     pub setpoints: Setpoints,
     /// The estimate.
     pub estimation: Estimation,
@@ -48,7 +48,7 @@ impl Bench<'_> {
     }
 }
 
-/// A law on its way along a track: what is between the craft and the law, and what came of it so far.
+/// A law on its way along a track: the sensors between craft and law, and the result so far.
 pub(super) struct Flying<'a> {
     track: &'a Track,
     law: &'a mut dyn ControlLaw,
@@ -59,7 +59,7 @@ pub(super) struct Flying<'a> {
     /// Whether anybody looks at the accelerometer.
     feels: bool,
     commands_n: Vector4<f64>,
-    /// What the law was told last.
+    /// The law's last input.
     told: Input,
     pub(super) saturated_steps: u64,
     pub(super) lost: Option<Lost>,
@@ -107,7 +107,7 @@ impl<'a> Flying<'a> {
         f64::from(self.stride) * STEP_S
     }
 
-    /// What is looked at before the craft goes on; whether it goes on. Rows every 10 ms of what is measured, and where it
+    /// The checks before the craft goes on; whether it goes on. Rows every 10 ms of the measured part, and where it
     /// was lost, also before anything is measured.
     fn decide<K: Keep>(&mut self, step: u32, plant: &mut Plant, keep: &mut K) -> bool {
         let (time_s, state) = (f64::from(step) * STEP_S, plant.state());
@@ -135,7 +135,7 @@ impl<'a> Flying<'a> {
             }
             (self.told.time_s, self.told.battery_v) = (time_s, plant.voltage_v());
             match self.law.step(&self.told) {
-                // Times 0 each is 0 or no number.
+                // Times 0 each is 0 or NaN.
                 Ok(asked_n) if (asked_n * 0.0).sum() == 0.0 => self.commands_n = asked_n,
                 Ok(_) => return self.lose(step, "a force that is not finite".to_owned(), plant, keep),
                 Err(reason) => return self.lose(step, reason, plant, keep),

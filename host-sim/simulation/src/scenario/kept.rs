@@ -1,4 +1,4 @@
-//! What is kept of a flight: every row of it, or what they come to.
+//! The record of a flight: every row of it, or their sums.
 
 use nalgebra::{Vector3, Vector4};
 
@@ -10,7 +10,7 @@ use crate::plant::Plant;
 
 /// Takes the rows of a flight.
 pub(super) trait Keep {
-    /// Whether estimates are part of what is kept.
+    /// Whether estimates are part of the record.
     const SEES_ESTIMATES: bool;
 
     /// One row.
@@ -40,7 +40,7 @@ impl Keep for Rows {
     }
 }
 
-/// What the position errors of the rows come to, in the order in which they came.
+/// Sums over the position errors of the rows, in the order in which they came.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Errors {
     sum_m: f64,
@@ -57,7 +57,7 @@ impl Keep for Errors {
     }
 }
 
-/// What came of a flight, to the bit as [`crate::flight::rigid_loop::RigidFlight`] has it.
+/// The result of a flight, to the bit as [`crate::flight::rigid_loop::RigidFlight`] has it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tally {
     /// Sum of the position error's norm over samples of 10 ms, times 10 ms, m s; none for a flight that was lost.
@@ -66,7 +66,7 @@ pub struct Tally {
     pub max_error_m: f64,
     /// Control steps with a motor at its limit.
     pub saturated_steps: u64,
-    /// When and why it was lost.
+    /// Time and reason of its loss.
     pub lost: Option<Lost>,
 }
 

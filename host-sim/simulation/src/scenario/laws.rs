@@ -41,7 +41,7 @@ pub enum Law {
     Pid,
 }
 
-/// What a law is told of the craft.
+/// The figures of the craft that a law is told.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ToldFigures {
     /// Mass, kg.
@@ -69,12 +69,12 @@ pub enum LawError {
     /// The Crazyflie controller has no table for it.
     #[error(
         "{law}: the Crazyflie controller has no table for {vehicle} told {mass_kg} kg; tell a mass within 20 % of a built-in \
-         vehicle's; of a vehicle file its own, and `quatrack gains craft` says what is wrong with it"
+         vehicle's; of a vehicle file its own, and `quatrack gains craft` names the fault"
     )]
     NoTable {
-        /// Which law.
+        /// The law.
         law: &'static str,
-        /// Whose name.
+        /// The law's name.
         vehicle: String,
         /// The mass that it was told, kg.
         mass_kg: f64,
@@ -82,9 +82,9 @@ pub enum LawError {
     /// The core flies no such vehicle.
     #[error("{law} on {vehicle}: {error}")]
     Core {
-        /// Which law.
+        /// The law.
         law: &'static str,
-        /// Whose name.
+        /// The law's name.
         vehicle: String,
         /// Why not.
         #[source]
@@ -93,7 +93,7 @@ pub enum LawError {
 }
 
 impl Law {
-    /// All of them: ours, the rivals, and what came before.
+    /// All of them: ours, the rivals, and the older ones.
     pub const ALL: [Self; 10] = [
         Self::Quatrack,
         Self::Mellinger,

@@ -1,6 +1,6 @@
 //! Flights that leave the linear range: take-off, landing, a step, a shove, a gust, a start upside down.
 //!
-//! In go the conditions of a scenario (craft, air, what is wrong, what a law is told) and a law; out comes the flight.
+//! In go the conditions of a scenario (craft, air, deviations, told figures) and a law; out comes the flight.
 
 use nalgebra::{UnitQuaternion, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;

@@ -1,4 +1,4 @@
-//! A scenario: a craft, its air, what is wrong with what is known of it, a course and a law, in one file that every command
+//! A scenario: a craft, its air, its deviations, a course and a law, in one file that every command
 //! flies.
 //!
 //! ```text
@@ -10,10 +10,10 @@
 //!       flight       a plant, sensors and a law at 1 kHz
 //!         filtered   the estimate of a Kalman filter
 //!           sensors  noise and biases
-//!         kept       rows of a flight, or what they come to
-//!         recording  a flight with what was around it, as CSV
+//!         kept       rows of a flight, or their sums
+//!         recording  a flight with its estimates and surroundings, as CSV
 //!         track      a course evaluated once
-//!         course     hover, ramp, and what is measured
+//!         course     hover, ramp, and the measured part
 //!       prototype    a law designed once for many flights
 //!       laws         laws by name
 //!         object_law the Crazyflie controller as a law

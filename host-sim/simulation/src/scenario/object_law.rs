@@ -59,7 +59,7 @@ impl ControlLaw for ObjectLaw {
     }
 }
 
-/// What the firmware is told, its thrusts apart.
+/// The state that the firmware is told, its thrusts apart.
 fn state(estimate: &Estimate) -> RigidState {
     RigidState {
         position_m: estimate.position_m,

@@ -1,4 +1,4 @@
-//! A law that has been designed once, for any number of flights.
+//! A law that is designed once for many flights: a campaign flies copies of it, and solves no equation twice.
 
 use quatrack_design::vehicle::Vehicle;
 
@@ -10,7 +10,7 @@ use crate::control_law::ControlLaw;
 use crate::flight::motor_laws::FlightError;
 use quatrack::gains::paper as gains;
 
-/// A law at the start of a flight, and what it shares with others.
+/// A law at the start of a flight, and the parts that it shares with others.
 #[derive(Clone)]
 pub struct Prototype {
     law: Law,
@@ -49,7 +49,7 @@ impl Prototype {
         Ok(Self { law, made: made.map_err(refused)?, vehicle, told })
     }
 
-    /// With what it takes from a track, evaluated once for all flights along it.
+    /// With the setpoints of a track, evaluated once for all flights along it.
     pub fn along(mut self, track: &Track) -> Self {
         match &mut self.made {
             Made::Cascade(law) => law.share(track),
@@ -59,7 +59,7 @@ impl Prototype {
         self
     }
 
-    /// Which law.
+    /// The law.
     pub fn law(&self) -> Law {
         self.law
     }

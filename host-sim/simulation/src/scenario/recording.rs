@@ -1,4 +1,4 @@
-//! A flight with what was around the craft and known of it, row by row; CSV with named columns and units out.
+//! A flight with surroundings and estimates, row by row; CSV with named columns and units out.
 
 use std::fmt::Write as _;
 
@@ -8,14 +8,14 @@ use crate::control_law::Estimate;
 use crate::flight::rigid_loop::RigidFlight;
 use crate::plant::Plant;
 
-/// What was around a craft, and what its law knew, as a row was taken.
+/// Surroundings of a craft and its law's estimate, as a row was taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Around {
     /// Velocity of the air, world frame, m/s.
     pub wind_m_s: Vector3<f64>,
     /// Least and most thrust of each motor, N.
     pub thrust_limits_n: [Vector4<f64>; 2],
-    /// What the law was told of the state.
+    /// The estimate that the law was told.
     pub estimate: Estimate,
     /// Voltage at the motors, V; 0 where nothing depends on it.
     pub voltage_v: f64,
@@ -33,7 +33,7 @@ impl Around {
     }
 }
 
-/// A flight and what was around it.
+/// A flight with surroundings and estimates.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// The flight.
@@ -50,14 +50,14 @@ const STATE: [&str; 13] =
     ["x_m", "y_m", "z_m", "v_x_m_s", "v_y_m_s", "v_z_m_s", "q_w", "q_x", "q_y", "q_z", "p_rad_s", "q_rad_s", "r_rad_s"];
 
 impl Recording {
-    /// As CSV: time, where the craft was to be (`ref_...`), where it was, what its law took it for (`est_...`), commands and
+    /// As CSV: time, where the craft was to be (`ref_...`), where it was, its law's estimate (`est_...`), commands and
     /// thrusts of the motors with the thrusts' limits, and the wind.
     pub fn to_csv(&self) -> String {
         let mut names: Vec<String> = ["t_s", "ref_x_m", "ref_y_m", "ref_z_m"].map(str::to_owned).to_vec();
         names.extend(STATE.map(str::to_owned));
         names.extend(STATE.map(|name| format!("est_{name}")));
-        for what in ["command", "thrust", "thrust_min", "thrust_max"] {
-            names.extend((1..=4).map(|motor| format!("{what}_{motor}_n")));
+        for column in ["command", "thrust", "thrust_min", "thrust_max"] {
+            names.extend((1..=4).map(|motor| format!("{column}_{motor}_n")));
         }
         names.extend(["wind_x_m_s", "wind_y_m_s", "wind_z_m_s"].map(str::to_owned));
         let mut text = names.join(",");

@@ -1,4 +1,4 @@
-//! What is between a craft and a law: white noise and biases, the same for the same seed.
+//! Sensors between a craft and a law: white noise and biases, the same for the same seed.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -29,7 +29,7 @@ pub struct Sensors {
     accelerometer_bias_m_s2: Vector3<f64>,
     draws: bool,
     biased: bool,
-    /// Gyroscope, accelerometer, position, velocity, attitude: what one of them draws leaves the others as they are.
+    /// Gyroscope, accelerometer, position, velocity, attitude: the draws of one leave the others as they are.
     streams: [Stream; 5],
 }
 
@@ -53,7 +53,7 @@ impl Sensors {
         Self::new(SensorNoise::default(), Vector3::zeros(), Vector3::zeros(), 0)
     }
 
-    /// What is measured and estimated of a state.
+    /// Measurements and estimate of a state.
     pub(super) fn estimate(&mut self, state: &RigidState, specific_force_m_s2: &Vector3<f64>) -> Estimate {
         let (truth, noise) = (truth(state, specific_force_m_s2), self.noise);
         let [gyro, accelerometer, position, velocity, attitude] = &mut self.streams;
@@ -70,7 +70,7 @@ impl Sensors {
         }
     }
 
-    /// Draws what estimates at this many steps would have drawn.
+    /// Draws as many numbers as estimates at this many steps.
     #[inline]
     pub(super) fn pass_over(&mut self, steps: u32) {
         if self.draws() {
@@ -88,13 +88,13 @@ impl Sensors {
         }
     }
 
-    /// Whether what is measured is the truth.
+    /// Whether the measurements are the truth.
     #[inline]
     pub(super) fn are_exact(&self) -> bool {
         !self.draws && !self.biased
     }
 
-    /// Whether an estimate changes those after it: each draws from the streams of what is noisy.
+    /// Whether an estimate changes those after it: each draws from the streams of the noisy sensors.
     pub(super) fn draws(&self) -> bool {
         self.draws
     }

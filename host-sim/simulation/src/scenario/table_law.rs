@@ -1,4 +1,4 @@
-//! A table of gains for motor forces as a law: the core's controller of the table, at 500 Hz, told what setpoints say.
+//! A table of gains for motor forces as a law: the core's controller of the table, at 500 Hz, told the setpoints.
 
 use nalgebra::Vector4;
 
@@ -8,7 +8,8 @@ use crate::flight::motor_laws::CraftLaw;
 use crate::flight::motor_loop::{MotorLoop, RATE};
 use crate::plant::RigidState;
 
-/// The law of a table on its craft. It believes the vehicle that the table was made for, whatever a scenario tells.
+/// The law of a table on its craft. It believes the vehicle that the table was made for, not the figures that a scenario
+/// tells.
 pub struct TableLaw<'a> {
     flying: MotorLoop<'a>,
     beyond_jerk: BeyondJerk,

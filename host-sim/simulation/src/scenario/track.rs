@@ -1,4 +1,5 @@
-//! A course as a flight meets it, step by step: where the craft is to be, and what its law is told. Many flights share one.
+//! A course as a flight meets it, step by step: where the craft is to be, and the setpoints of its law. Many flights
+//! share one.
 
 use nalgebra::Vector3;
 
@@ -11,7 +12,7 @@ pub(super) const STEP_S: f64 = 1.0 / STEPS_HZ as f64;
 /// Steps between two samples, and between two setpoints at 100 Hz.
 pub(super) const SAMPLE_STEPS: u32 = 10;
 
-/// What is flown, evaluated once.
+/// The course, evaluated once.
 #[derive(Clone, Debug)]
 pub struct Track {
     targets_m: Vec<Vector3<f64>>,
@@ -62,13 +63,13 @@ impl Track {
         self.targets_m.get(step as usize).or(self.targets_m.last()).copied().unwrap_or_default()
     }
 
-    /// What was sent last at a step.
+    /// The last setpoint sent at a step.
     pub(super) fn setpoint(&self, step: u32) -> &Setpoint {
         // There is one for the first step of every course.
         &self.setpoints[((step / self.setpoint_steps) as usize).min(self.setpoints.len() - 1)]
     }
 
-    /// What a law of a rate is told at its own steps: when, and what.
+    /// The setpoints of a law of a rate at its own steps, each with its time.
     pub(super) fn told(&self, rate_hz: u32) -> impl Iterator<Item = (f64, &Setpoint)> {
         let law_steps = (STEPS_HZ / rate_hz.clamp(1, STEPS_HZ)) as usize;
         (0..=self.steps).step_by(law_steps).map(|step| (f64::from(step) * STEP_S, self.setpoint(step)))

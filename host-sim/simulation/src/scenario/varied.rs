@@ -1,11 +1,11 @@
-//! A scenario with one more thing wrong at a time: the cases of the robustness flights on top of whatever it says.
+//! A scenario with one more deviation at a time: the cases of the robustness flights on top of its own.
 
 use crate::flight::robustness::{Case, NOISE, RATE_RAD_S};
 use crate::scenario::{CourseChoice, Scenario, SensorNoise};
 
 impl Scenario {
-    /// With what a case has different, over the scenario's own: factors multiply, delays add, and noise goes before a smaller
-    /// one. The case of a faster eight is absent where no eight is flown.
+    /// With the deviations of a case, on top of the scenario's own: factors multiply, delays add, and noise goes before a
+    /// smaller one. The case of a faster eight is absent where no eight is flown.
     pub fn varied(&self, case: &Case) -> Option<Self> {
         let mut scenario = self.clone();
         let faster = case.rate_rad_s / RATE_RAD_S;
@@ -46,7 +46,7 @@ mod tests {
     }
 
     #[test]
-    fn cases_come_on_top_of_what_a_scenario_says() {
+    fn cases_come_on_top_of_a_scenario() {
         let own = scenario("vehicle = \"crazyflie-2.1\"\n[errors]\nmass_factor = 1.2\ndelay_ms = 3.0\nlag_ms = 80.0\n");
         let varied = CASES.map(|case| (case.name, own.varied(&case).unwrap()));
         let of = |name: &str| &varied.iter().find(|(known, _)| *known == name).unwrap().1;

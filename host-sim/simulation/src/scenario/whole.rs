@@ -1,4 +1,4 @@
-//! A scenario whose every value has been looked at: craft, conditions and what a law is told, in SI.
+//! A scenario whose every value has been looked at: craft, conditions and the told figures, in SI.
 
 use std::fmt;
 
@@ -27,7 +27,7 @@ pub(super) const EIGHT_MEASURED_S: f64 = 12.0;
 pub(super) const HOVER_MEASURED_S: f64 = 10.0;
 pub(super) const STEP_MEASURED_S: f64 = 5.0;
 
-/// What is flown.
+/// The course of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CourseChoice {
     /// An eight with its highest speed, m/s.
@@ -67,13 +67,13 @@ pub struct StartOffset {
 /// A scenario that can be flown.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
-    /// The vehicle that the craft and what the law is told differ from.
+    /// The vehicle from which the true craft and the told figures differ.
     pub vehicle: Vehicle,
-    /// What is flown.
+    /// The course.
     pub course: CourseChoice,
     /// How long is measured, s; a trajectory's own length where absent.
     pub duration_s: Option<f64>,
-    /// Whose law.
+    /// The law that flies.
     pub law: Law,
     /// How a law is told of the course.
     pub setpoints: Setpoints,
@@ -81,19 +81,19 @@ pub struct Scenario {
     pub estimator: EstimateFrom,
     /// Where noise and gusts begin.
     pub seed: u64,
-    /// What the craft is surrounded by.
+    /// The surroundings of the craft.
     pub environment: Environment,
-    /// What the true craft is.
+    /// The figures of the true craft.
     pub truth: Truth,
-    /// Of the gyroscope, rad/s.
+    /// Bias of the gyroscope, rad/s.
     pub gyro_bias_rad_s: Vector3<f64>,
     /// Of the accelerometer, m/s^2.
     pub accelerometer_bias_m_s2: Vector3<f64>,
-    /// What the law is told.
+    /// The figures that the law is told.
     pub told: ToldFigures,
     /// Standard deviations of a sample.
     pub noise: SensorNoise,
-    /// Of the filter.
+    /// The figures of the filter.
     pub filter: FilterFigures,
     /// Where the craft begins beside its course.
     pub start: StartOffset,
@@ -101,13 +101,13 @@ pub struct Scenario {
 
 /// One of several flights side by side.
 pub struct Side<'a> {
-    /// What is flown in.
+    /// The scenario.
     pub scenario: &'a Scenario,
-    /// What is flown.
+    /// The course.
     pub flown: &'a Flown,
     /// The same, evaluated.
     pub track: &'a Track,
-    /// At its start.
+    /// The law, at its start.
     pub law: Box<dyn ControlLaw>,
 }
 
@@ -117,7 +117,7 @@ impl Scenario {
         Plant::new(&self.vehicle, &self.environment, &self.truth, start, self.seed)
     }
 
-    /// Flies a law along what [`Self::flown`] gives. The same scenario and law give the same flight to the bit.
+    /// Flies a law along the course of [`Self::flown`]. The same scenario and law give the same flight to the bit.
     ///
     /// # Errors
     /// [`StartError`] where the course cannot be flown from its start, or figures that were changed since have no sense.
@@ -125,7 +125,7 @@ impl Scenario {
         Ok(self.record(law, flown)?.flight)
     }
 
-    /// The same, with what was around the craft and known of it.
+    /// The same, with surroundings and estimates.
     ///
     /// # Errors
     /// As [`Self::fly`].
@@ -198,7 +198,7 @@ impl Scenario {
             .collect()
     }
 
-    /// What is flown, with the part that is measured. A trajectory is not planned here; see [`CourseChoice::Trajectory`].
+    /// The course, with the part that is measured. A trajectory is not planned here; see [`CourseChoice::Trajectory`].
     pub fn flown(&self, trajectory: Option<PiecewisePolynomial>) -> Flown {
         match (&self.course, trajectory) {
             (CourseChoice::Eight(speed_m_s), _) => {
@@ -247,7 +247,7 @@ impl fmt::Display for CourseChoice {
     }
 }
 
-/// What a flight is flown in, without its course, as one line.
+/// The conditions of a flight, without its course, as one line.
 pub struct InConditions<'a>(&'a Scenario);
 
 impl Scenario {

@@ -19,7 +19,7 @@ pub enum VehicleFileError {
     /// The file cannot be read.
     #[error("{}: cannot be read ({reason})", path.display())]
     Unreadable {
-        /// Which file.
+        /// The file.
         path: PathBuf,
         /// The system's message.
         reason: String,
@@ -27,7 +27,7 @@ pub enum VehicleFileError {
     /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
     #[error("vehicle, line {line}: {reason}")]
     Syntax {
-        /// Where, from 1.
+        /// The line, from 1.
         line: usize,
         /// The parser's message, in one line.
         reason: String,
@@ -35,7 +35,7 @@ pub enum VehicleFileError {
     /// An error in a file.
     #[error("{}: {error}", path.display())]
     File {
-        /// Which.
+        /// The file.
         path: PathBuf,
         /// The error.
         #[source]

@@ -1,4 +1,4 @@
-//! What an actuator-aware gain is certified for: its own loop, a region of craft, and where it ends.
+//! Certificates of actuator-aware gains: its own loop, a region of craft, and where it ends.
 
 use quatrack_design::certify::{Controller, Plant, Region, Timing, certify, certify_region, motor_lag_limit};
 use quatrack_design::design::actuator_aware::{ActuatorAwareDesign, ActuatorAwareWeights, actuator_aware};

@@ -73,7 +73,7 @@ fn the_hover_model_is_the_derivative_of_the_rigid_plant() {
             for row in 0..16 {
                 let entry = if column < 16 { a[(row, column)] } else { b[(row, column - 16)] };
                 let difference = (up[row] - down[row]) / (2.0 * by);
-                // The step of 1 us moves the largest slope, the torque's 4e3 / s^2, by h / 2 of what feeds it; central
+                // The step of 1 us moves the largest slope, the torque's 4e3 / s^2, by h / 2 of its own slope; central
                 // differences of 1e-5 round to 1e-16 / (h by).
                 assert!(
                     (difference - entry).abs() < 3e-2 + 1e-5 * entry.abs(),

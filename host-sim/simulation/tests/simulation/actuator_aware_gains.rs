@@ -1,4 +1,4 @@
-//! The actuator-aware method of the gain tool: the committed designs, their tables, and what is refused.
+//! The actuator-aware method of the gain tool: the committed designs, their tables, and the refusals.
 
 use std::path::{Path, PathBuf};
 

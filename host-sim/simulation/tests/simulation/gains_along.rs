@@ -1,5 +1,5 @@
 //! Gains over time from the design to the table: the certificate against that of a hover, gains that do not hold, the grid,
-//! and what the committed tables say.
+//! and the committed tables' certificates.
 
 use std::path::Path;
 
@@ -113,7 +113,7 @@ fn a_spoiled_gain_does_not_decrease() {
     let error = certify_along(&reference, &away, None).unwrap_err();
     let CertifyError::UnstableAtKnot { knot: 20, spectral_radius, .. } = error else { panic!("{error}") };
     assert!(spectral_radius > 1.0);
-    // Frozen it is stable; but what the design counts on is not there.
+    // Frozen it is stable; but the decrease that the design counts on is not there.
     assert!(!holds(&edited(&|gain| *gain *= 0.3)));
     // A thousandth of an entry costs a thousandth of a step's decrease, at most.
     assert!(holds(&edited(&|gain| *gain *= 1.001)));
@@ -136,7 +136,7 @@ fn the_grid_gives_the_same_gains_on_any_processor() {
             let (free, fixed) = (free[(row, column)], fixed[(row, column)]);
             assert!((free - fixed).abs() <= 0.5 * step && fixed == f64::from(table[row][column]));
             // Far from the edge between two steps beside the 1e-12 by which processors differ.
-            assert!((0.5 - ((free - fixed) / step).abs()) > 1e-7, "{free} stands on the edge");
+            assert!((0.5 - ((free - fixed) / step).abs()) > 1e-7, "{free} is at the edge");
         }
     }
 }
@@ -158,7 +158,7 @@ fn the_committed_tables_are_for_the_trajectories_on_board() {
         }
         let certificate = &document["certificate"];
         assert_eq!(certificate["sampled"]["decrease"]["holds"], true);
-        // What is stated is just below what was found: rounded down to four digits.
+        // The stated figure is just below the computed one: rounded down to four digits.
         let stated = table.head().certificate;
         let least = |limits: &Value| {
             limits.as_array().unwrap().iter().map(|limit| limit["stable_to_s"].as_f64().unwrap()).fold(10.0, f64::min)

@@ -1,4 +1,5 @@
-//! Design files: what is read, and what is refused with a line that names the key, its value and the remedy.
+//! Design files: values that are read, and values that are refused with a line that names the key, its value and the
+//! remedy.
 
 use std::path::Path;
 
@@ -35,7 +36,7 @@ fn the_committed_designs_are_the_papers() {
 }
 
 #[test]
-fn what_cannot_be_used_is_named_with_its_value_and_the_remedy() {
+fn entries_that_cannot_be_used_are_named_with_value_and_remedy() {
     let cases: &[(&str, &str, &str, &[&str])] = &[
         (LQR_E, "method", "methid", &["line 4", "`methid = \"lqr\"`", "expected one of", "`method`"]),
         (LQR_E, "\"lqr\"", "\"lqg\"", &["line 4", "lqg", "`sampled-lqr`"]),
@@ -139,7 +140,7 @@ fn tighter_limits_and_a_vehicle_of_a_file_go_into_the_table() {
 }
 
 #[test]
-fn hashes_follow_what_they_are_of() {
+fn hashes_follow_their_contents() {
     let hashes = |text: &str| {
         let certified = read(text).unwrap().certify().unwrap();
         (certified.design_hash, certified.table.unwrap().head().certificate.hash)

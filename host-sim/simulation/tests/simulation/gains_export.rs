@@ -1,4 +1,4 @@
-//! What is exported determines its gain: residuals of the equations, from the JSON alone.
+//! An exported design determines its gain: residuals of the equations, from the JSON alone.
 
 use std::path::Path;
 
@@ -21,8 +21,8 @@ fn matrix(export: &Value, name: &str) -> DMatrix<f64> {
 }
 
 /// Rounding of a few products of matrices of this size.
-fn assert_small(residual: &DMatrix<f64>, terms: f64, what: &str) {
-    assert!(residual.norm() <= 1e-12 * terms, "{what}: {:e}", residual.norm() / terms);
+fn assert_small(residual: &DMatrix<f64>, terms: f64, equation: &str) {
+    assert!(residual.norm() <= 1e-12 * terms, "{equation}: {:e}", residual.norm() / terms);
 }
 
 #[test]

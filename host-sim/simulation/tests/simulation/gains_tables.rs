@@ -1,5 +1,5 @@
-//! The committed tables: Rust and binary hold the same gains, the board accepts them, and what they promise is what was
-//! certified, rounded to the safe side.
+//! The committed tables: Rust and binary hold the same gains, the board accepts them, and their stated figures are those
+//! of the certificate, rounded to the safe side.
 
 use quatrack::gains::paper;
 use quatrack::gains::table::{GainTable, Name, Rows, TableKind, Vehicle};
@@ -84,7 +84,7 @@ fn the_board_accepts_every_table_for_its_vehicle_and_rate_alone() {
 }
 
 #[test]
-fn what_a_table_promises_is_just_below_what_was_found() {
+fn a_tables_figures_are_just_below_the_computed_ones() {
     for (name, ..) in FILES {
         let (table, document) = file(name);
         let stated = table.head().certificate;

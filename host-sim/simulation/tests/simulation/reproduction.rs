@@ -55,7 +55,7 @@ fn every_cell_agrees_with_an_independent_implementation() {
 }
 
 #[test]
-fn feed_forward_leaves_only_what_the_integrator_leaves() {
+fn feed_forward_leaves_only_the_integrators_error() {
     let report = serde_json::to_value(reproduction().report()).unwrap();
     for course in ["mild", "aggressive"] {
         for controller in ["LYAP-F", "LYAP-E", "LQR-F", "LQR-E"] {

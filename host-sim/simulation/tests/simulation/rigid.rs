@@ -1,4 +1,4 @@
-//! The rigid plant alone, against what mechanics says: free fall, hover, conservation, analytic rotations, lag, order.
+//! The rigid plant alone, against analytic mechanics: free fall, hover, conservation, analytic rotations, lag, order.
 
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use quatrack_design::vehicle::Vehicle;
@@ -20,7 +20,7 @@ fn skewed() -> Vehicle {
     vehicles::from_toml(&text).expect("valid")
 }
 
-/// A craft whose motors may stand still.
+/// A craft whose motors may be off.
 fn without_thrust(vehicle: &Vehicle) -> Craft {
     let mut craft = Craft::new(vehicle);
     craft.motors.motors.iter_mut().for_each(|motor| motor.thrust_min_n = 0.0);

@@ -160,7 +160,7 @@ fn cost_of_return(
 
 #[test]
 fn along_the_w_the_table_brings_errors_back_at_less_cost_than_the_stationary_gain() {
-    let trajectory = paper::aggressive().expect("the plan file stands").solve().expect("feasible");
+    let trajectory = paper::aggressive().expect("the plan file is sound").solve().expect("feasible");
     let reference = Exact(&trajectory);
     let (weights, rate_hz) = (EquilibriumWeights::paper(), 100);
     let sampling = Sampling::at_rate(rate_hz);
@@ -175,7 +175,7 @@ fn along_the_w_the_table_brings_errors_back_at_less_cost_than_the_stationary_gai
             displacement[direction] = 0.05;
             let plain = cost_of_return(&reference, &|_| stationary, &weights, start_s, &displacement);
             let table = cost_of_return(&reference, &|t_s| along.at(t_s), &weights, start_s, &displacement);
-            // Optimal for the linearisation: what the model's curvature and the interpolation take is a few per cent.
+            // Optimal for the linearisation: the model's curvature and the interpolation take a few per cent.
             assert!(table < 1.03 * plain, "{start_s} s, {direction}: {table} {plain}");
             plain_cost += plain;
             along_cost += table;

@@ -71,9 +71,9 @@ fn pieces_that_were_cut_in_two_are_joined_again() {
     assert!(off.velocity_m_s < 1e-6 && off.acceleration_m_s2 < 1e-5, "{off:?}");
 }
 
-/// What rounding may leave of a condition on a derivative at the end of a fitted piece. Hermite's formula multiplies what
-/// is left of the values by up to 35 + 84 + 70 + 20 in all, each product rounded by a share of the largest term; degree
-/// 7 makes each derivative at most 7 / duration times as large.
+/// The error that rounding may leave in a condition on a derivative at the end of a fitted piece. Hermite's formula
+/// multiplies the error of the values by up to 35 + 84 + 70 + 20 in all, each product rounded by a share of the largest
+/// term; degree 7 makes each derivative at most 7 / duration times as large.
 fn rounding(piece: &Piece, coordinate: Coordinate, order: usize) -> f64 {
     let coefficients = &piece.coefficients[coordinate as usize];
     let terms = coefficients.iter().rev().fold(0.0, |sum, c| sum * piece.duration_s + c.abs());
@@ -327,7 +327,7 @@ fn a_piece_is_132_little_endian_bytes() {
 }
 
 #[test]
-fn what_cannot_be_stored_says_why() {
+fn a_trajectory_that_cannot_be_stored_is_refused_by_reason() {
     let many = StoredTrajectory::new(&wavy(5, 32)).unwrap_err();
     assert_eq!(many, StoreError::TooManyPieces(32));
     assert_eq!(many.to_string(), "32 pieces of 132 bytes: the Crazyflie's memory holds 31; fit them with fewer");
@@ -344,7 +344,7 @@ fn what_cannot_be_stored_says_why() {
 }
 
 #[test]
-fn deviations_are_what_was_put_in() {
+fn deviations_are_the_ones_put_in() {
     let hover = |x: f64, slope: f64, heading: f64| {
         let mut coefficients = [[0.0; 8]; 4];
         (coefficients[0][0], coefficients[1][1], coefficients[3][0]) = (x, slope, heading);

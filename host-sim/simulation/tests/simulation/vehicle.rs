@@ -1,4 +1,4 @@
-//! Vehicles: the built-in files, what their figures come to, and what is refused.
+//! Vehicles: the built-in files, derived figures, and refusals.
 
 use quatrack_design::vehicle::VehicleError;
 use quatrack_simulation::vehicles::{self, VehicleFileError};

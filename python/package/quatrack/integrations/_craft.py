@@ -1,4 +1,4 @@
-"""What a simulator says of its craft, as a vehicle of ours."""
+"""A simulator's figures of its craft, as a vehicle of ours."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The eight at 2.1 m/s in other people's simulators: ours beside the controller that comes with each.
 
 Every plant is the package's own, its state known exactly, all controllers told the same craft; ours is told the drag of the plant's
-parameters and the lag of its motors, as the package states them. 2 s of hover, 3 s to come up to speed, then what is measured:
+parameters and the lag of its motors, as the package states them. 2 s of hover, 3 s to come up to speed, then the measured part:
 the position error every 10 ms, summed up.
 """
 
@@ -48,7 +48,7 @@ class Flown:
 
     @classmethod
     def eight(cls, measured_s: float, *, up_to_speed: bool = False, speed_m_s: float = 2.1) -> Flown:
-        """What flies it counts for nothing."""
+        """The law that flies it counts for nothing."""
         keys = {"vehicle": "crazyflie-2.1", "course": "eight", "speed_m_s": speed_m_s, "duration_s": measured_s}
         course = Scenario(keys).course()
         return cls(course, course.measured_from if up_to_speed else 0.0)

@@ -31,7 +31,7 @@ def lqr(system: Any, q: ArrayLike, r: ArrayLike, s: ArrayLike | None = None) -> 
 
 
 def certify(system: Any, gain: ArrayLike, rate_hz: float, **keywords: Any) -> dict[str, Any]:
-    """What a feedback of a continuous system promises as it is flown; keywords of quatrack.certify."""
+    """The certificate of a continuous system's feedback as it is flown; keywords of quatrack.certify."""
     if system.isdtime(strict=True):
         raise ValueError("system: sampled; give the one in continuous time, which is sampled at rate_hz here")
     return certify_pair(np.asarray(system.A), np.asarray(system.B), gain, rate_hz, **keywords)

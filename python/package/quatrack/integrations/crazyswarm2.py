@@ -27,7 +27,7 @@ class QuatrackBackend:
     """Called as the firmware's controllers are: (control, setpoint, sensors, state, tick). Writes `control`.
 
     firm: the module of the firmware's Python bindings, for the number of its control modes
-    vehicle: what the object is built for; the mass is the simulator's
+    vehicle: the craft that the object is built for; the mass is the simulator's
     own: fly the core's cascade, one for each craft, instead of the object; setpoints must be positions then
     """
 

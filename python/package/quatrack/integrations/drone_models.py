@@ -64,7 +64,7 @@ class RotorControl:
     drone: its name
     law: any law of quatrack.Controller that gives motor forces
     told_air: whether the law is told the drag of the model; it learns the air by itself otherwise
-    told: what else the law is told, as keywords of quatrack.Controller
+    told: further figures for the law, as keywords of quatrack.Controller
     """
 
     def __init__(self, drone: str, law: str = "quatrack", *, told_air: bool = True, **told: Any) -> None:

@@ -5,7 +5,7 @@
 
 A craft is to come to a goal and stay there. Its reward is 1 there at rest and falls with the distance; an episode ends where the
 craft is lost (5 m from its goal or its thrust downwards), and is cut after a number of steps. The plant is that of
-`quatrack fly`: drag, airflow moment, wind, motor lag, delay, whatever the scenario says.
+`quatrack fly`: drag, airflow moment, wind, motor lag, delay, as in the scenario.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A controller for RotorPy's `Environment`: the cascade of the core, told what the vehicle's parameters say.
+"""A controller for RotorPy's `Environment`: the cascade of the core, told the vehicle's parameters.
 
     from rotorpy.vehicles.crazyfliebrushless_params import quad_params
     from rotorpy.vehicles.multirotor import Multirotor
@@ -50,8 +50,8 @@ def vehicle_of(quad_params: Mapping[str, Any]) -> tuple[Vehicle, Array]:
 
 
 def _of_a_body(inertia: Array) -> Array:
-    """The same inertia where a body has it. That of RotorPy's Crazyflie 2.1 exceeds about z what it has about x and y, by a hundredth,
-    and is cut to what they come to."""
+    """The same inertia where a body has it. That of RotorPy's Crazyflie 2.1 exceeds about z the sum of those about x and y, by a hundredth,
+    and is cut to that sum."""
     x, y, z = np.diag(inertia)
     # Room for the rounding of the sum.
     inertia[2, 2] = min(z, (x + y) * (1.0 - 1e-6))
@@ -70,7 +70,7 @@ class QuatrackControl:
     quad_params: parameters of the vehicle
     law: any law of quatrack.Controller that gives motor forces
     told_air: whether the law is told the drag of the parameters; it learns the air by itself otherwise
-    told: what else the law is told, as keywords of quatrack.Controller
+    told: further figures for the law, as keywords of quatrack.Controller
     """
 
     def __init__(

@@ -126,7 +126,7 @@ fn a_wait_on_the_ground_winds_nothing_up() {
                     ..Flight::of(cascade, craft, course)
                 };
                 let found = flight.fly();
-                // From where it stood to where it was sent, and no more than 6 cm.
+                // From its start to its goal, and no more than 6 cm.
                 assert!(!found.lost && found.largest < from.norm() + 0.06, "{from:?}: {found:?}");
                 assert!(found.final_error < 0.01, "{from:?}: {found:?}");
             }

@@ -44,10 +44,10 @@ fn unit(q: &[f32]) -> UnitQuaternion<f32> {
 }
 
 /// The firmware has the velocity in the body frame and we in the world's: the same filter to the first order. On this
-/// flight, whose drag neither is told of, both are off by up to 0.24 m/s and 0.13 rad; what is of second order is to be
-/// a tenth of that. The position is measured to a millimetre; a tenth of that is left.
+/// flight, whose drag neither is told of, both are off by up to 0.24 m/s and 0.13 rad; the second-order difference is to
+/// be a tenth of that. The position is measured to a millimetre; a tenth of that is left.
 #[test]
-fn told_as_the_crazyflie_is_it_estimates_what_the_crazyflie_does() {
+fn told_as_the_crazyflie_is_it_estimates_as_the_crazyflie_does() {
     let mut most = [0.0_f32; 4];
     fly(EstimatorConfig::CRAZYFLIE, |estimate, answer| {
         let State { position_m, attitude: Quaternion { w, x, y, z }, velocity_m_s } = estimate.state();

@@ -1,4 +1,4 @@
-//! Whatever is put in: an error or an estimate of numbers, never a panic.
+//! Any input gives an error or an estimate of finite numbers, never a panic.
 
 use nalgebra::{SMatrix, Vector3};
 use proptest::collection::vec;

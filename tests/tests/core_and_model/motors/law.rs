@@ -168,7 +168,7 @@ fn either_sign_of_the_quaternion_gives_the_same_forces() {
 }
 
 #[test]
-fn what_is_not_finite_is_refused_by_name_and_leaves_the_memory_alone() {
+fn inputs_that_are_not_finite_are_refused_by_name_and_leave_the_memory_alone() {
     let airframe = Airframe::CRAZYFLIE_2_1;
     let decoupled = designed("crazyflie-2.1", 0.126);
     let reference = MotorReference::hover(Vector3::new(0.0, 0.0, 1.0), 0.5, &airframe).unwrap();

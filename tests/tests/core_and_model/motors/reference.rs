@@ -106,7 +106,7 @@ fn the_player_gives_derivatives_of_the_monomials() {
 }
 
 #[test]
-fn what_the_papers_laws_get_is_their_reference() {
+fn the_papers_laws_get_their_own_reference() {
     let airframe = Airframe::CRAZYFLIE_2_1;
     for k in 0..40 {
         let sample = Eight::TURNING.at(0.2 * f64::from(k));
@@ -125,7 +125,7 @@ fn what_the_papers_laws_get_is_their_reference() {
 }
 
 #[test]
-fn what_cannot_be_flown_is_named() {
+fn references_that_cannot_be_flown_are_named() {
     let airframe = Airframe::CRAZYFLIE_2_1;
     let rest = FifthOrderSample::at_rest(Vector3::new(0.0, 0.0, 1.0), 0.0);
     let refused = |sample: FifthOrderSample| MotorReference::from_flat(&sample, &airframe).unwrap_err();

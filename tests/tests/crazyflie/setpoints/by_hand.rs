@@ -31,7 +31,7 @@ fn angles_by_hand_have_cflibs_signs() {
 
 #[test]
 fn rates_by_hand_have_the_signs_of_angles() {
-    // A stick that is pushed lowers the nose, whether it stands for an angle or for a rate.
+    // A stick that is pushed lowers the nose, whether it means an angle or a rate.
     for (rates, axis) in [([40.0, 0.0, 0.0], 0), ([0.0, 40.0, 0.0], 1), ([0.0, 0.0, 40.0], 2)] {
         let mut flight = Flight::hovering();
         let thrust = flight.hover_thrust();
@@ -51,7 +51,7 @@ fn rates_by_hand_have_the_signs_of_angles() {
 }
 
 #[test]
-fn thrust_by_hand_is_a_share_of_what_four_motors_can_do() {
+fn thrust_by_hand_is_a_share_of_the_most_of_four_motors() {
     for name in CRAFTS {
         let mut flight = Flight::of(name, 0, 0.0);
         let share = 1.1 * flight.hover_thrust() / 65_535.0;

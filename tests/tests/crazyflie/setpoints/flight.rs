@@ -16,7 +16,7 @@ use super::sent::position;
 const QUIET: Sensors = Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 };
 pub(crate) const CRAFTS: [&str; 3] = ["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"];
 
-/// A craft in the air, its firmware and whoever sends it setpoints.
+/// A craft in the air, its firmware and the sender of its setpoints.
 pub(crate) struct Flight {
     pub(crate) vehicle: Vehicle,
     pub(crate) craft: Craft,
@@ -49,7 +49,7 @@ impl Flight {
         self.sent = Setpoint { timestamp: self.firmware.next_step(), ..*setpoint };
     }
 
-    /// One step with what supervisor or collision avoidance make of the setpoint.
+    /// One step with the setpoint as supervisor or collision avoidance change it.
     pub(crate) fn step(&mut self, change: impl Fn(&Setpoint, &RigidState) -> Setpoint) {
         let setpoint = change(&self.sent, &self.state);
         let commands_n = self.firmware.step(&self.state, Some(&setpoint));

@@ -1,4 +1,4 @@
-//! Positions, velocities and full states that a script sends, and what is left of them when it stops.
+//! Positions, velocities and full states that a script sends, and their effect after it stops.
 
 use std::f64::consts::PI;
 
@@ -32,7 +32,7 @@ fn velocities_turn_with_the_craft_or_not() {
 }
 
 #[test]
-fn level_out_is_flown_whatever_was_flown_before() {
+fn level_out_is_flown_after_any_setpoint() {
     let hover_thrust = Flight::hovering().hover_thrust();
     let tilted = UnitQuaternion::from_euler_angles(0.1_f32, 0.0, 0.0);
     let q = tilted.quaternion();

@@ -104,8 +104,8 @@ fn a_trajectory_turned_on_its_start_is_flown_though_its_jerk_is_not_turned() {
 
 #[test]
 fn collision_avoidance_may_change_a_setpoint_at_every_step() {
-    // What collisionAvoidanceUpdateSetpoint does to a trajectory whose horizon leaves the cell: the velocity is scaled,
-    // by a factor that depends on where the craft is.
+    // The change that collisionAvoidanceUpdateSetpoint makes to a trajectory whose horizon leaves the cell: the velocity
+    // is scaled, by a factor that depends on where the craft is.
     let (strayed_m, jumps) = figure_strayed_m(0.0, |sent, state| {
         let mut changed = *sent;
         let away = (sent.position.x - state.position_m.x as f32).abs();

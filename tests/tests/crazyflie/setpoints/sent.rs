@@ -33,7 +33,7 @@ pub(crate) struct FlightMode {
 }
 
 /// `Commander.send_setpoint` and `crtpCommanderRpytDecodeSetpoint`: cflib turns the sign of pitch, the firmware that of a
-/// yaw rate, and what the setpoint had before stays where nothing is written.
+/// yaw rate, and fields that are not written keep their earlier values.
 pub(crate) fn rpyt(setpoint: &mut Setpoint, flight: FlightMode, [roll, pitch, yaw]: [f32; 3], thrust: u16) {
     let (pitch, mode) = (-pitch, &mut setpoint.mode);
     setpoint.thrust = if thrust < 1000 { 0.0 } else { f32::from(thrust).min(60_000.0) };

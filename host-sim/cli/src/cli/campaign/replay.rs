@@ -16,10 +16,10 @@ pub(super) struct Args {
     /// The campaign's folder.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Which run.
+    /// The run's number.
     #[arg(long, value_name = "K")]
     run: u64,
-    /// Whose law; the campaign's first where absent.
+    /// The law; the campaign's first where absent.
     #[arg(long, value_name = "NAME")]
     law: Option<Law>,
     /// Folder for the log of the flight as CSV, created where it is missing.

@@ -1,4 +1,4 @@
-//! `quatrack campaign summary`: a campaign's folder in; what its rows say of each law out.
+//! `quatrack campaign summary`: a campaign's folder in; the summary of each law out.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use quatrack_campaign::summary::{Summary, View};
 use super::refused;
 use crate::cli::{Failure, output};
 
-/// Says what came of a campaign, also while it flies: success of each law with Wilson's interval of 95 %, errors at 50, 95 and
+/// Summarises a campaign, also while it flies: success of each law with Wilson's interval of 95 %, errors at 50, 95 and
 /// 99 %, the worst flights with the command that flies each again, and which figure matters most.
 #[derive(clap::Args)]
 pub(super) struct Args {

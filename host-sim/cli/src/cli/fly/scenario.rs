@@ -12,7 +12,7 @@ use super::{Args, NOTHING, Precision, picture, table, transformed};
 use crate::cli::transform::TransformArgs;
 use crate::cli::{Failure, output};
 
-/// What the figures' file says that it is.
+/// The schema that the figures' file states.
 const SCHEMA: &str = "quatrack/fly/1";
 
 /// The figures of a flight.
@@ -195,7 +195,7 @@ fn text(scenario: &Scenario, figures: &Report) -> String {
 }
 
 impl Outputs<'_> {
-    /// Writes what is asked for; exit code 3 for a craft that was lost.
+    /// Writes the files asked for; exit code 3 for a craft that was lost.
     pub(in crate::cli) fn write(
         &self,
         scenario: &Scenario,
@@ -230,7 +230,7 @@ impl Outputs<'_> {
     }
 }
 
-/// What the craft would have recorded: what its law knew, and the commands as shares of the most that the law asks for.
+/// The log that the craft would have recorded: its law's estimate, and the commands as shares of the law's largest.
 fn log(scenario: &Scenario, recording: &Recording) -> String {
     let most_n = scenario.vehicle.motors().thrust_max_n;
     let rows: Vec<Row> = (recording.flight.samples.iter().zip(&recording.around))

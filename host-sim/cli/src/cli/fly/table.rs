@@ -144,10 +144,10 @@ pub(in crate::cli) fn in_scenario<T>(
     fly(&mut flying.ok_or_else(|| refused(path, &"becomes no controller"))?, head.name.as_str())
 }
 
-/// A file that is no table: text is named for what it is, with the table beside it.
+/// A file that is no table: text is named as such, with the table beside it.
 fn no_table(path: &Path, bytes: &[u8], error: &dyn std::fmt::Display) -> Failure {
     let Ok(text) = std::str::from_utf8(bytes) else { return refused(path, error) };
-    let what = match text.trim_start().chars().next() {
+    let kind = match text.trim_start().chars().next() {
         None => "an empty file",
         Some('{' | '[') => "JSON, a certificate perhaps",
         Some(_) => "text",
@@ -158,7 +158,7 @@ fn no_table(path: &Path, bytes: &[u8], error: &dyn std::fmt::Display) -> Failure
     } else {
         "give the binary table (.bin) or the design (.toml) that it comes from".to_owned()
     };
-    refused(path, &format!("is {what}, not a binary gain table; {remedy}"))
+    refused(path, &format!("is {kind}, not a binary gain table; {remedy}"))
 }
 
 /// A table, and the vehicle of the design that it was made of.

@@ -49,7 +49,7 @@ pub(super) fn show(path: &Path, json: Option<&Path>, plot: Option<&Path>) -> Res
     json.map_or(Ok(()), |path| output::write_json(path, &output::Named::new("gains-show", &document)))
 }
 
-/// What a document says of its design and its gains.
+/// The text of a document about its design and its gains.
 fn of_document(document: &Value) -> String {
     let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
     let mut out = format!("{}: {}\n", text(&document["name"]), text(&document["description"]).replace('\n', " "));
@@ -114,7 +114,7 @@ fn over_time(rows: &[String], columns: &[String], gains: &[Vec<Vec<f64>>]) -> St
     out
 }
 
-/// What a binary table says.
+/// The text of a binary table.
 fn of_table(table: &Table) -> String {
     let (head, certificate) = (table.head(), &table.head().certificate);
     let rates = head.limits.body_rates_max_rad_s();

@@ -1,4 +1,4 @@
-//! What was identified as pictures: prediction against flight, what the torque balance leaves over, the lag curve.
+//! Identified figures as pictures: prediction against flight, the residual of the torque balance, the lag curve.
 
 use std::path::Path;
 

@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::cli::scenario::ScenarioArgs;
 use crate::cli::{Failure, fly as flights, output};
 
-/// What the figures' file says that it is.
+/// The schema that the figures' file states.
 const SCHEMA: &str = "quatrack/robustness-scenario/1";
 
 #[derive(Serialize)]

@@ -54,7 +54,7 @@ pub(super) fn over_list<const N: usize>(file: &mut Option<[f64; N]>, flag: Optio
     over(file, &flag.map(|List(values)| values));
 }
 
-/// A path of the command line, whatever folder the file's begin at.
+/// A path of the command line, beside the file's, which begin at its folder.
 pub(super) fn from_here(path: &str) -> String {
     std::path::absolute(path).map_or_else(|_| path.to_owned(), |path| path.display().to_string())
 }

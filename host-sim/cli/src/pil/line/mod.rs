@@ -59,7 +59,7 @@ impl Line {
             .timeout(PATIENCE)
             .open()
             .map_err(|error| PilError::io(doing())(error.into()))?;
-        // What an earlier session left behind is of no use; that it cannot be dropped is no reason to stop.
+        // Bytes that an earlier session left behind are of no use; that they cannot be dropped is no reason to stop.
         let _ = port.clear(ClearBuffer::All);
         Ok(Self(Kind::Port(port)))
     }
@@ -79,7 +79,7 @@ impl Line {
         }
     }
 
-    /// Reads what comes within a time; 0 if nothing does.
+    /// Reads the bytes that come within a time; 0 if nothing does.
     ///
     /// # Errors
     /// [`PilError::Io`].

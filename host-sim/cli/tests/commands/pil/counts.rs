@@ -1,4 +1,4 @@
-//! Instructions a step: what the control path may cost at its worst.
+//! Instructions a step: the most that the control path may cost.
 
 use quatrack_cli::pil::image::{self, Image};
 use quatrack_cli::pil::measure::{Images, InstructionReport, count};
@@ -6,7 +6,7 @@ use quatrack_cli::pil::measure::{Images, InstructionReport, count};
 use super::emulated::pipes_image;
 use super::support::has_emulator;
 
-/// Steps of each flight: the costs do not depend on the values, but for what is limited and which sign a quaternion has.
+/// Steps of each flight: the costs do not depend on the values, but for limits and the sign of a quaternion.
 const STEPS: usize = 200;
 
 fn report() -> InstructionReport {
@@ -40,7 +40,7 @@ fn every_part_stays_within_its_bound_when_everything_is_turned_fed_forward_and_l
     // 27 more products than the paper's tables have, each with a load and an addition.
     let (dense, structured) = (report.law["any E table"], report.law["LQR-E"]);
     assert!(dense.max <= structured.max + 3 * 27, "{dense:?}, {structured:?}");
-    // What is not limited, in the heading frame or not, costs less: the counts do depend on the case.
+    // A step without limits, in the heading frame or not, costs less: the counts do depend on the case.
     assert!(structured.min + 30 <= structured.max, "{structured:?}");
     assert!(report.reference.max <= 300, "{:?}", report.reference);
     assert!(report.reference_turning.max <= report.reference.max + 130, "{:?}", report.reference_turning);
@@ -73,7 +73,7 @@ fn every_part_stays_within_its_bound_when_everything_is_turned_fed_forward_and_l
 }
 
 #[test]
-fn every_call_of_the_crazyflies_stabilizer_stays_within_what_its_own_controllers_take() {
+fn every_call_of_the_crazyflies_stabilizer_stays_within_its_own_controllers_counts() {
     if !has_emulator() {
         return;
     }

@@ -1,4 +1,4 @@
-//! The image on the emulated board: every bit, twice the same, and what ends a flight.
+//! The image on the emulated board: every bit, twice the same, and the causes that end a flight.
 
 use std::path::PathBuf;
 use std::process::Stdio;

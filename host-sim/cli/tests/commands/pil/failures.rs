@@ -1,4 +1,4 @@
-//! `quatrack pil` where something is wrong: one line that says what, exit code 2, and nothing left behind.
+//! `quatrack pil` where something is wrong: one line that names the fault, exit code 2, and nothing left behind.
 
 use std::fs;
 

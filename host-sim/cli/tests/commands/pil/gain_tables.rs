@@ -39,7 +39,7 @@ fn limits() -> Limits {
     Limits::new(0.0, 16.5, Vector3::new(20.0, 20.0, 20.0)).unwrap()
 }
 
-/// The figures only have to be possible ones: no test here is about what they claim.
+/// The figures only have to be possible ones: no test here is about them.
 fn head(name: &str, vehicle: Vehicle, rate: Rate) -> TableHead {
     TableHead {
         name: Name::new(name).unwrap(),
@@ -125,13 +125,13 @@ impl Flight {
         self.client.request(message).unwrap();
     }
 
-    /// Some steps, each of which is to give what `expected` gives.
+    /// Some steps, each of which is to give the output of `expected`.
     fn fly(&mut self, steps: u32, mut expected: impl FnMut(&State, &quatrack::Reference) -> Step) {
         for _ in 0..steps {
             let tick = self.step * TICKS_PER_STEP;
             let reference = self.player.reference(tick).unwrap();
             let mut state = *reference.state();
-            // Off by what changes from step to step, so that no two laws agree.
+            // Off by an amount that changes from step to step, so that no two laws agree.
             let off = 0.01 + 1e-4 * (self.step % 7) as f32;
             state.position_m += Vector3::new(off, -0.01, 0.005);
             state.velocity_m_s += Vector3::new(-0.1, 0.05, off);
@@ -218,7 +218,7 @@ fn a_table_uploaded_in_flight_is_swapped_in_bit_for_bit() {
     flight.request(&ToBoard::UploadCommit { id });
     flight.fly(ahead, &mut way);
 
-    // Back to the one before, and on the ground to it again: what is on board and chosen survives a disarm.
+    // Back to the one before, and on the ground to it again: the tables on board and the choice survive a disarm.
     flight.request(&ToBoard::SelectLaw(choice(Table::Loaded(1))));
     let mut way = fading(second_law, first_law);
     flight.fly(25, &mut way);
@@ -253,7 +253,7 @@ fn bad_tables_are_refused_each_for_its_reason_and_the_flight_goes_on() {
         assert_eq!(flight.client.telemetry().unwrap().mode, Mode::Flying);
         reason
     };
-    assert!(matches!(refusal(&good, 1), Refusal::Upload(_)), "not what was announced");
+    assert!(matches!(refusal(&good, 1), Refusal::Upload(_)), "not the announced blob");
     let mut table_error = |blob: &[u8]| match refusal(blob, 0) {
         Refusal::Blob(BlobError::GainTable(error)) => error,
         other => panic!("refused as {other:?}"),
@@ -302,7 +302,7 @@ fn tables_that_remember_or_follow_a_clock_fly_bit_for_bit() {
         let id = flight.upload(blob, 0);
         flight.request(&ToBoard::UploadCommit { id });
         flight.request(&ToBoard::SelectLaw(choice(Table::Loaded(0))));
-        // Over the way to it and on for a second: what it integrates, and where on the trajectory it is, counts.
+        // Over the way to it and on for a second: its integral, and its place on the trajectory, count.
         let mut memory = Memory::at_rest();
         let mut way = Handover::begin(FADE_STEPS, built_in.law(), new.law(), &mut memory);
         let mut tick = 20 * TICKS_PER_STEP;

@@ -14,7 +14,7 @@ use quatrack_cli::pil::line::Line;
 use super::emulated::pipes_image;
 use super::support::has_emulator;
 
-/// What a debugger says to set the program counter to 0xf0000000, and what each is answered with. QEMU knows single
+/// A debugger's requests that set the program counter to 0xf0000000, and the answer to each. QEMU knows single
 /// registers only after it has been asked for their list.
 const TO_NOWHERE: [(&str, &str); 4] =
     [("?", "T"), ("qXfer:features:read:target.xml:0,fff", "<?xml"), ("Pf=000000f0", "OK"), ("D", "OK")];

@@ -1,4 +1,4 @@
-//! The image on the emulated board with keys that it was given, and what it keeps while its power is off.
+//! The image on the emulated board with keys that it was given, and the uploads that it keeps while its power is off.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -57,7 +57,7 @@ fn is_ack(answer: &FromBoard) -> bool {
 }
 
 #[test]
-fn with_a_key_every_bit_is_as_without_and_the_host_says_what_is_protected() {
+fn with_a_key_every_bit_is_as_without_and_the_host_names_its_protection() {
     if !has_emulator() {
         return;
     }

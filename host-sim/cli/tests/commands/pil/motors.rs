@@ -1,4 +1,4 @@
-//! The emulated board down to its motors: forces in answer to states with body rates, and what ends them.
+//! The emulated board down to its motors: forces in answer to states with body rates, and the causes that end them.
 
 use quatrack::cascade::CascadeLimits;
 use quatrack::gains::table::{GainTable, Name, Vehicle};

@@ -1,4 +1,4 @@
-//! What the tests of `quatrack pil` share: a folder of their own, small images, and a look at what is left behind.
+//! Shared by the tests of `quatrack pil`: a folder of their own, small images, and a check for files left behind.
 
 use std::fs;
 use std::path::{Path, PathBuf};

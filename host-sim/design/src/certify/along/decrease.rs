@@ -29,7 +29,7 @@ pub struct MovingDecrease {
     pub steps: usize,
     /// Largest V after a step over V before it, over all errors.
     pub largest_ratio: f64,
-    /// When that step is, s.
+    /// Time of that step, s.
     pub largest_ratio_at_s: f64,
     /// Least of the smallest eigenvalues of P over its largest.
     pub p_smallest_over_largest: f64,

@@ -161,7 +161,7 @@ pub(super) fn margins(knots: &[Frozen]) -> Result<(LoopMargins, usize), CertifyE
         let mut worst = (0.0, 0.0, 0);
         for (number, knot) in swept.iter().enumerate().filter(|(_, knot)| highest(knot) >= contender) {
             let at = |frequency: f64| measure.of(&knot.held.sensitivity(frequency * timing.period_s)?);
-            // A peak that is no number is as bad as it gets.
+            // A peak that is NaN is as bad as it gets.
             let (height, frequency) =
                 refined_peak(&knot.points_rad_s, &knot.measures[index], at).unwrap_or((f64::INFINITY, 0.0));
             if height > worst.0 * WORSE {

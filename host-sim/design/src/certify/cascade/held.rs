@@ -1,4 +1,5 @@
-//! A chain of the plant under commands that are held over a control period and act late by whole periods.
+//! A chain of the plant under commands that are held over a control period and act late by whole periods: its exact
+//! discrete matrices.
 
 use nalgebra::{DMatrix, DVector};
 

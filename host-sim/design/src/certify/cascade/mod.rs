@@ -140,7 +140,7 @@ impl CascadeVariation {
     }
 }
 
-/// Which chain.
+/// A chain of the cascade.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum CascadeChain {
     /// x with pitch.

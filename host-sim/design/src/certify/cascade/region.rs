@@ -1,4 +1,5 @@
-//! The least stable point of a region of crafts and air.
+//! A region of crafts and air for a cascade: gains and the region's grid in; its least stable point with the spectral
+//! radius there out.
 
 use serde::Serialize;
 
@@ -26,7 +27,7 @@ pub struct CascadeRegion {
     /// Forces over commands of roll, pitch and yaw, over the motors' learned share: 1 after some seconds of
     /// flight.
     pub torque_factors: Vec<f64>,
-    /// How late commands act, s.
+    /// Delay of the commands, s.
     pub delays_s: Vec<f64>,
     /// Drag, 1/s.
     pub drags_per_s: Vec<f64>,
@@ -41,7 +42,7 @@ pub struct CascadeRegion {
 /// The result of one chain over a region.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CascadeCertificate {
-    /// Which chain.
+    /// The chain.
     pub chain: CascadeChain,
     /// Points that were looked at.
     pub points: usize,

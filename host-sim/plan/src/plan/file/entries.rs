@@ -101,7 +101,7 @@ impl PlanFile {
             let start = error.span().map_or(0, |span| span.start);
             let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
             let words: Vec<&str> = error.message().split_whitespace().collect();
-            // What the parser quotes may be as long as the file.
+            // The parser's quotation may be as long as the file.
             let reason = words.join(" ").chars().take(200).collect();
             PlanError::Syntax { line, reason }
         })

@@ -24,9 +24,9 @@ pub enum CsvError {
         y^7, z^0 to z^7 and yaw^0 to yaw^7, each once"
     )]
     Header {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
-        /// Which column.
+        /// The column.
         column: usize,
         /// The text there.
         found: String,
@@ -34,7 +34,7 @@ pub enum CsvError {
     /// A header without a column that must be there.
     #[error("line {line}: the header has no {missing}; only yaw and the higher powers may be left out, and are 0 then")]
     Missing {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// The column.
         missing: String,
@@ -47,7 +47,7 @@ pub enum CsvError {
         }
     )]
     Degree {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// The degree.
         degree: usize,
@@ -56,11 +56,11 @@ pub enum CsvError {
     },
     /// A row that is too short or too long.
     #[error("line {line}: {found} columns; needs {COLUMNS} (duration, then 8 coefficients each of x, y, z and yaw; write 0 \
-         for what is not used){}", if *.decimal_commas {
+         for powers that are not used){}", if *.decimal_commas {
         "; if its numbers have decimal commas, separate the columns by semicolons"
     } else { "" })]
     Columns {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// How many columns it has, trailing separators not counted.
         found: usize,
@@ -70,17 +70,17 @@ pub enum CsvError {
     /// A row with another number of columns than the header.
     #[error("line {line}: {found} columns where the header has {expected}")]
     Ragged {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
-        /// How many columns it has.
+        /// Its number of columns.
         found: usize,
-        /// How many the header has.
+        /// The header's number of columns.
         expected: usize,
     },
     /// A cell that is not a finite number.
     #[error("line {line}, {column}: {found:?} is not a finite number; write one such as 0.25")]
     Number {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// Name of the column.
         column: String,
@@ -90,7 +90,7 @@ pub enum CsvError {
     /// A duration that is zero or negative.
     #[error("line {line}, duration: {value} s; must be positive: remove the row or correct it")]
     Duration {
-        /// Which line.
+        /// The line, from 1.
         line: usize,
         /// The duration, s.
         value: f64,
@@ -100,7 +100,7 @@ pub enum CsvError {
     Pieces {
         /// The line of the piece in question; of the later one at a jump.
         line: usize,
-        /// What is wrong.
+        /// The fault.
         #[source]
         reason: PolynomialError,
     },
@@ -192,7 +192,7 @@ impl Place {
     }
 }
 
-/// What the columns hold, by the header; without one in the order of the format.
+/// The quantities of the columns, by the header; without one in the order of the format.
 fn places(table: &Table) -> Result<Vec<Place>, CsvError> {
     let Some(Row { line, cells }) = &table.header else {
         let columns = table.columns();
@@ -248,7 +248,7 @@ fn piece(table: &Table, places: &[Place], Row { line, cells }: &Row) -> Result<P
     Ok(piece)
 }
 
-/// Most that is taken for rounding at a joint, m or rad: what a step smooth over the piece adds, a craft still follows.
+/// Most that is taken for rounding at a joint, m or rad: a craft still follows the smooth step that closes it.
 const LARGEST_ROUNDING: f64 = 0.05;
 
 /// How finely the numbers of a file are written.
@@ -287,7 +287,7 @@ impl Decimals {
     }
 
     /// How far two pieces that met can be apart at their joint by the rounding of their numbers, for each coordinate.
-    /// Numbers of few places were written by hand, and a coordinate that stands still is meant to.
+    /// Numbers of few places were written by hand, and a coordinate at rest is meant to be.
     fn roundings_at_joint(self, before: &Piece, after: &Piece) -> [f64; 4] {
         const FEWEST_PLACES: i32 = 4;
         let t_s = before.duration_s;

@@ -19,7 +19,7 @@ pub(super) fn along(file: &DesignFile, weights: &Weights, folder: &Path, rate: R
     }
     let weights = equilibrium_weights(weights)?;
     if let Some(weight) = weights.state.iter().find(|weight| **weight <= 0.0) {
-        let must = "above 0 for each error with method = \"along\": what costs nothing need not decrease";
+        let must = "above 0 for each error with method = \"along\": an error without a cost need not decrease";
         return Err(GainsError::Value { key: "weights".into(), value: weight.to_string(), must: must.into() });
     }
     let written = file

@@ -72,7 +72,7 @@ fn principal_axes(vehicle: &Vehicle) -> Result<(), GainsError> {
     })
 }
 
-/// As written, and for the rest a part of what was identified of the vehicle; none where nothing was.
+/// As written, and for the rest a share of the vehicle's identified air; none where nothing was.
 fn air(entry: Option<&AirEntry>, vehicle: &Vehicle) -> Result<CascadeAir, GainsError> {
     let none = AirEntry::default();
     let entry = entry.unwrap_or(&none);

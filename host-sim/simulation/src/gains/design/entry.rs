@@ -1,4 +1,4 @@
-//! One entry of a design file: what it may be, and the refusal that names it.
+//! One entry of a design file: its range, and the refusal that names it.
 
 use crate::gains::GainsError;
 

@@ -1,4 +1,4 @@
-//! A design: what is written in its file in; a problem whose numbers are in range and belong together out.
+//! A design: the entries of its file in; a problem whose numbers are in range and belong together out.
 
 mod actuator_aware;
 mod along;
@@ -29,17 +29,17 @@ use crate::vehicles;
 pub struct Design {
     /// Name of the design and of its table: that of the file.
     pub name: Name,
-    /// What it is for, in its author's words.
+    /// Its purpose, in its author's words.
     pub description: String,
-    /// Whom it is for.
+    /// The vehicle that it is for.
     pub vehicle: Vehicle,
-    /// Model, method and what is asked of them.
+    /// Model, method and their numbers.
     pub problem: Problem,
     /// Rate of the control loop.
     pub rate: Rate,
     /// Gain of the vehicle's body rate loop, 1/s, for lag limits behind it.
     pub rate_loop_gain_1_s: Option<f64>,
-    /// What commands are cut to.
+    /// The limits of commands.
     pub limits: Limits,
     /// The least that its certificate must show.
     pub minimum: Minimum,
@@ -49,7 +49,7 @@ impl Design {
     /// Reads a design; paths in it are relative to its folder.
     ///
     /// # Errors
-    /// [`GainsError`], with the key, its value and what it must be.
+    /// [`GainsError`], with the key, its value and its range.
     pub fn from_file(path: &Path) -> Result<Self, GainsError> {
         let text =
             std::fs::read_to_string(path).map_err(|error| GainsError::Unreadable { reason: error.to_string() })?;
@@ -68,7 +68,8 @@ impl Design {
         Self::of(&file, name, vehicle, folder)
     }
 
-    /// A design from the text of one, for this vehicle whatever the text names; the table has the vehicle's name.
+    /// A design from the text of one, for this vehicle instead of the one that the text names; the table has the
+    /// vehicle's name.
     ///
     /// # Errors
     /// As [`Self::from_file`].

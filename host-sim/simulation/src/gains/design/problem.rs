@@ -1,4 +1,4 @@
-//! What a design asks for: a linearisation, a method that is defined for it, and the method's numbers.
+//! The problem of a design: a linearisation, a method that is defined for it, and the method's numbers.
 
 use quatrack_design::certify::RegionBounds;
 use quatrack_design::certify::cascade::{CascadeAir, CascadeBounds};
@@ -47,14 +47,14 @@ pub enum Problem {
     Along {
         /// Diagonals of Q and R.
         weights: EquilibriumWeights,
-        /// Which trajectory.
+        /// The trajectory.
         trajectory: OnBoardTrajectory,
         /// Control steps from one knot to the next.
         steps_per_knot: u16,
     },
 }
 
-/// How the gain is computed.
+/// The method by which the gain is computed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Method<W> {

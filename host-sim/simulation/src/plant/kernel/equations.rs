@@ -22,7 +22,7 @@ pub(in crate::plant) const LANES: usize = 4;
 /// A number of each plant.
 pub(super) type Row = [f64; LANES];
 
-/// What a plain craft is, in the order of the constants below.
+/// The figures of a plain craft, in the order of the constants below.
 pub(in crate::plant) type Figures = [f64; FIGURES];
 
 pub(super) const RISE: usize = 0;
@@ -110,8 +110,8 @@ pub(super) struct InLanes<S: Simd> {
 
 pub(super) type State<S> = [Number<S>; 17];
 
-// No closures from here on: what the standard library calls back is compiled without the vector unit's instructions. And no loops
-// over states: an array that is indexed by a variable stays in memory.
+// No closures from here on: a callback of the standard library is compiled without the vector unit's instructions. And no
+// loops over states: an array that is indexed by a variable stays in memory.
 
 /// The classical Runge-Kutta method, in the order of [`crate::integrator::Method`].
 #[inline(always)]

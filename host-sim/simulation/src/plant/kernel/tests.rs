@@ -1,3 +1,5 @@
+//! The kernel's steps against the craft's own equations, to the bit.
+
 use nalgebra::{Matrix3, UnitQuaternion, Vector3, Vector4};
 use proptest::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Our Mellinger beside that of drone-controllers 0.1.0, step by step, with that package's own gains.
 //!
 //! The package reckons with the mass that the firmware has for each craft and keeps the firmware's factor of force to command,
-//! which is for motors of 0.124 N: what it calls a thrust is 0.967 to 1.611 of what the law asks for, so that its craft hover
+//! which is for motors of 0.124 N: its thrust is 0.967 to 1.611 of the law's, so that its craft hover
 //! at 0.88, 1.24 and 1.46 of their weight. Both figures are parameters here, so that the laws are compared and not the craft.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};

@@ -1,5 +1,5 @@
-//! Ours on the craft of RotorPy 3.0.0 and crazyflow 0.4.0, told the mass and at most the lag: what the firmware's best controllers
-//! reach there, and what ours has to.
+//! Ours on the craft of RotorPy 3.0.0 and crazyflow 0.4.0, told the mass and at most the lag: held against the firmware's
+//! best controllers there.
 
 use quatrack_plan::plan::paper;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
@@ -29,7 +29,7 @@ fn hold(name: &str, found: [f64; 2], bound: f64) {
 
 /// Their air is not the one that ours is told by default, which has a moment where there is none here. The firmware's best is PID,
 /// Mellinger, Lee, Brescianini or INDI in C (crazyflie-firmware 2a18fc29) on the same craft and course; ours is held to a fifth above
-/// what it does, which is a third of that and less on the eight.
+/// its measured error, which is a third of that and less on the eight.
 #[test]
 fn told_the_mass_alone_ours_is_closer_than_the_firmware_s_best() {
     let w = PiecewisePolynomial::from_bspline(&paper::aggressive().unwrap().solve().unwrap()).unwrap();
@@ -76,8 +76,8 @@ fn told_lag_and_drag_it_is_closer_still() {
     }
 }
 
-/// Through a filter that reckons with the drag, the firmware's are between 0.33 and 1.28 m s off. Ours is held to a fifth above what it
-/// does on the worst.
+/// Through a filter that reckons with the drag, the firmware's are between 0.33 and 1.28 m s off. Ours is held to a fifth
+/// above its measured error on the worst.
 #[test]
 fn through_a_filter_with_drag_ours_stays_close() {
     let eight = Flown::eight(2.1, 12.0);

@@ -138,8 +138,8 @@ fn on_published_plants_the_rivals_fly_as_the_firmware_does() {
         // The position loop asks for 1.1 m/s at most.
         assert!(pid > 5.0, "{}: {pid}", of.1);
 
-        // In vacuum the firmware's are between 0.09 and 0.13, and 0.07 and 0.09. What is left is the age of setpoints that are
-        // held for 10 ms, 4 ms in the mean at control steps: 0.07 m s at a mean of 1.4 m/s.
+        // In vacuum the firmware's are between 0.09 and 0.13, and 0.07 and 0.09. The rest is the age of setpoints that
+        // are held for 10 ms, 4 ms in the mean at control steps: 0.07 m s at a mean of 1.4 m/s.
         let [lee, mellinger, _] = craft.errors(&eight, false);
         println!("{:<20} eight in vacuum {lee:.4} {mellinger:.4}", of.1);
         assert!((0.085..0.135).contains(&lee) && (0.065..0.095).contains(&mellinger), "{}: {lee} {mellinger}", of.1);

@@ -1,4 +1,4 @@
-//! Scenario files: what is read, what is refused and how, and that a flight repeats.
+//! Scenario files: values that are read, values that are refused and how, and that a flight repeats.
 
 use std::path::Path;
 
@@ -91,7 +91,7 @@ fn all_but_the_vehicle_may_be_left_out() {
 }
 
 #[test]
-fn the_vehicles_own_air_is_what_its_file_says() {
+fn the_vehicles_own_air_is_that_of_its_file() {
     let read = scenario("vehicle = \"crazyflie-2.1-brushless\"\nair = \"vehicle\"").unwrap();
     // arXiv 2512.14450, at 45 g; on the 39.3 g of the vehicle's file the same force is more a kilogram.
     let air = &read.environment.air;
@@ -100,7 +100,7 @@ fn the_vehicles_own_air_is_what_its_file_says() {
 }
 
 #[test]
-fn what_has_no_sense_is_refused_in_one_line_with_key_value_and_range() {
+fn values_without_sense_are_refused_in_one_line_with_key_value_and_range() {
     let with = |line: &str| format!("vehicle = \"crazyflie-2.1\"\n{line}\n");
     for (text, parts) in [
         (with("speed = 2.0"), &["my.toml, line 2", "`speed = 2.0`", "unknown field `speed`", "`speed_m_s`"][..]),
@@ -145,7 +145,7 @@ fn a_flight_is_the_same_to_the_bit_for_the_same_seed_and_another_for_another() {
     let last = |flight: &quatrack_simulation::flight::rigid_loop::RigidFlight| flight.samples.last().unwrap().state;
     assert_eq!(last(&first), last(&again));
     assert_ne!(last(&first), last(&other));
-    // Every 10 ms of what is measured, both ends.
+    // Every 10 ms of the measured part, both ends.
     assert_eq!((first.samples.len(), first.samples[0].time_s), (301, 5.0));
 }
 

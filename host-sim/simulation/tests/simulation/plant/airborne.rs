@@ -1,4 +1,4 @@
-//! What the air does: energy, terminal velocity, the direction of the moment, wind.
+//! The air's action on a craft: energy, terminal velocity, the direction of the moment, wind.
 
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 use quatrack_design::vehicle::Vehicle;
@@ -21,7 +21,7 @@ fn airflow() -> Airflow {
     }
 }
 
-/// A craft whose motors may stand still.
+/// A craft whose motors may be off.
 fn gliding(air: Airflow) -> Craft {
     let mut craft = Craft { air: Some(air), ..Craft::new(&vehicle()) };
     craft.motors.motors.iter_mut().for_each(|motor| motor.thrust_min_n = 0.0);
@@ -29,7 +29,7 @@ fn gliding(air: Airflow) -> Craft {
 }
 
 #[test]
-fn what_the_air_takes_is_missing_from_the_energy() {
+fn the_airs_work_is_missing_from_the_energy() {
     let craft = gliding(airflow());
     let (mass_kg, inertia) = (craft.body.mass_kg(), *craft.body.inertia_kg_m2());
     let energy = |x: &RigidState| {

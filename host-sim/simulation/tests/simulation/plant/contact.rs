@@ -17,15 +17,15 @@ fn a_craft_that_leans_on_a_wall_is_held_by_it() {
         plant.advance(&hover, 0.002);
         furthest = furthest.max(plant.state().position_m.x);
     }
-    // The tips are (0.046 + 0.03) / sqrt 2 = 53.7 mm ahead: the centre stops 46.3 mm from where it was, plus what the wall
-    // gives way: v sqrt(m/k) of two tips is 0.3 sqrt(1e-3 / 9.81 / 2) = 2.1 mm, and less with damping.
+    // The tips are (0.046 + 0.03) / sqrt 2 = 53.7 mm ahead: the centre stops 46.3 mm from where it was, plus the wall's
+    // yielding: v sqrt(m/k) of two tips is 0.3 sqrt(1e-3 / 9.81 / 2) = 2.1 mm, and less with damping.
     let stop_m = 0.1 - 0.076 / 2.0_f64.sqrt();
     assert!(furthest > stop_m && furthest < stop_m + 2.2e-3, "{furthest}");
     assert!(plant.state().velocity_m_s.x < 0.0, "it bounces off");
 }
 
 #[test]
-fn friction_holds_what_is_pressed_against_a_wall() {
+fn friction_holds_a_craft_that_is_pressed_against_a_wall() {
     let vehicle = vehicles::by_name("crazyflie-2.1").expect("built in");
     let wall = Wall { point_m: Vector3::new(0.0, 0.0, 2.0), normal: Unit::new_normalize(-Vector3::z()), friction: 0.5 };
     // A ceiling; 1.4 weights of thrust press with 0.4 weights, which hold up to 0.2 g across.

@@ -1,4 +1,4 @@
-//! The plant in air: alone against what mechanics says, and beside the plants of other simulators.
+//! The plant in air: alone against analytic mechanics, and beside the plants of other simulators.
 
 mod airborne;
 mod contact;

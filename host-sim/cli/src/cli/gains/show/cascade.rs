@@ -1,4 +1,4 @@
-//! What a table of the cascade says: gains chain by chain, the air that is told, and what it is certified for.
+//! A table of the cascade as text: gains chain by chain, the air that is told, and its certified region.
 
 use std::fmt::Write as _;
 
