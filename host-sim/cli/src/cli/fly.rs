@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use quatrack::{Equilibrium, ErrorForm, FeedForward, FlatOutput, Law as CoreLaw, Limits, Rate};
+use quatrack_design::design::DesignError;
 use quatrack_design::design::codegen::rounded;
 use quatrack_design::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
 use quatrack_plan::plan;
@@ -252,7 +253,13 @@ fn design(args: &Args, controller: Controller) -> Result<Gain, Failure> {
             synthesis::lqr_equilibrium(&EquilibriumWeights::paper()).map(|design| Gain::Equilibrium(design.gain.into()))
         }
     };
-    gain.map_err(|error| Failure::input(format!("--mu {mu}: {error}")))
+    gain.map_err(|error| match error {
+        DesignError::Inaccurate { equation, .. } => {
+            let remedy = "take a decay rate from 0.001 to 1000 1/s";
+            Failure::input(format!("--mu {mu}: {equation} was not solved to working precision; {remedy}"))
+        }
+        error => Failure::input(format!("--mu {mu}: {error}")),
+    })
 }
 
 /// The trajectory by name or from a file, as the pieces that the board flies; and the folder for the log.

@@ -184,9 +184,10 @@ pub(super) fn failed(path: &Path, error: &PlanError) -> Failure {
     let line = format!("{}: {error}", path.display());
     match error {
         PlanError::TimeLimit { .. } => Failure::verdict(format!("{line} (`quatrack plan` has --time-limit-s)")),
-        PlanError::Infeasible(_) | PlanError::NotConverged(_) | PlanError::HeadingRate { .. } | PlanError::NoTimes => {
-            Failure::verdict(line)
-        }
+        PlanError::Infeasible(_)
+        | PlanError::NotConverged(_)
+        | PlanError::HeadingRate { .. }
+        | PlanError::NoTimes { .. } => Failure::verdict(line),
         _ => Failure::input(line),
     }
 }

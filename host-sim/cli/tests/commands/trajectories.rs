@@ -130,6 +130,14 @@ fn waypoints_become_a_trajectory_that_flies() {
     assert!(stdout.contains("24 spans, 29 control points, 6 s"), "{stdout}");
     let (code, ..) = texts(&quatrack(&["fly", "--controller", "lqr-e", "--trajectory", toml.to_str().unwrap()]));
     assert_eq!(code, Some(0));
+    // Without times the command that is printed gives bounds, and plans as printed.
+    let rows = file(&dir, "untimed.csv", b"x,y,z\n0,0,1\n0.2,0,1\n0.5,0.3,1\n");
+    let (_, _, stderr) = texts(&quatrack(&["fly", "--controller", "lqr-e", "--trajectory", &rows]));
+    let command = stderr.split('`').nth(1).and_then(|command| command.strip_prefix("quatrack ")).expect("a command");
+    let arguments = command.split(' ');
+    let planning = Command::new(env!("CARGO_BIN_EXE_quatrack")).args(arguments).current_dir(&dir).output().unwrap();
+    let (code, _, stderr) = texts(&planning);
+    assert_eq!(code, Some(0), "{stderr}");
     // Stops make several curves, which fly as one trajectory.
     let stop = b"waypoints = [{ time_s = 0, position_m = [0, 0, 1] }, { time_s = 3, position_m = [1, 0, 1], stop = true, yaw_deg = 30 },\n\
                  { time_s = 6, position_m = [1, 1, 1] }]\n";

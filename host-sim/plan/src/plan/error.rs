@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::MOST_SPANS;
 use super::diagnosis::Infeasibility;
 use crate::trajectory::bspline::BSplineError;
 use crate::trajectory::waypoints::WaypointsError;
@@ -98,12 +99,16 @@ pub enum PlanError {
         /// The later one.
         waypoint: WaypointName,
     },
-    /// No times within the bounds.
-    #[error(
-        "no times were found with which a curve meets the bounds, however slow: give the waypoints room in corridors, more \
-         spans, or a thrust_max_m_s2 further above g"
-    )]
-    NoTimes,
+    /// No times within the bounds; the remedies that the plan has.
+    #[error("no times were found with which a curve meets the bounds, however slow: {}", remedies(*corridors, *spans, *thrust))]
+    NoTimes {
+        /// Whether corridors hold the curve.
+        corridors: bool,
+        /// Whether more spans may be asked for.
+        spans: bool,
+        /// Whether the thrust is bounded.
+        thrust: bool,
+    },
     /// Rest and motion at one place.
     #[error("{waypoint}: has a velocity_m_s where the flight rests; leave out the one or the other")]
     MovingStop {
@@ -139,7 +144,8 @@ pub enum PlanError {
     },
     /// Schoenberg and Whitney's condition fails: two waypoints would have to be met with one control point.
     #[error(
-        "{waypoint}: cannot be met exactly, spans = {spans} leave no control point for it; raise spans, or give tolerance_m"
+        "{waypoint}: cannot be met exactly, spans = {spans} leave no control point for it; {}",
+        if *spans < MOST_SPANS { "raise spans, or give tolerance_m" } else { "give it tolerance_m, or fewer waypoints" }
     )]
     TooFewSpans {
         /// The first waypoint that is left without.
@@ -182,6 +188,19 @@ impl PlanError {
     pub fn is_infeasible(&self) -> bool {
         matches!(self, Self::Infeasible(_) | Self::HeadingRate { .. })
     }
+}
+
+/// The remedies for a plan whose times were not found.
+fn remedies(corridors: bool, spans: bool, thrust: bool) -> String {
+    let all = [
+        (corridors, "more room in the corridors"),
+        (spans, "more spans"),
+        (thrust, "a thrust_max_m_s2 further above g"),
+        (true, "a tolerance_m at the waypoints"),
+        (true, "fewer waypoints"),
+    ];
+    let of_plan: Vec<&str> = all.iter().filter(|(there, _)| *there).map(|(_, remedy)| *remedy).collect();
+    format!("give it {}", of_plan.join(", or "))
 }
 
 /// How a message calls a waypoint: by its number in the file, from 1, and its time if known.

@@ -8,14 +8,12 @@ use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
 
 use super::error::{PlanError, WaypointName};
-use super::{Bounds, Budget, Corridor, FlightPlan, Plan, Waypoint};
+use super::{Bounds, Budget, Corridor, FlightPlan, MOST_SPANS, Plan, Waypoint};
 use crate::trajectory::bspline::UniformBasis;
 use crate::trajectory::transform::Transform;
 use crate::trajectory::waypoints::{self, WaypointRow};
 use entries::{BoundsEntry, CorridorEntry, PlanFile, WaypointEntry, check, check_point};
 
-/// More spans than any flight here needs; keeps a slip of the finger from filling the memory.
-const MOST_SPANS: usize = 500;
 /// Longest and shortest flight, s; shorter ones have snaps beyond the solver's scaling.
 const DURATIONS_S: std::ops::RangeInclusive<f64> = 1e-2..=1e5;
 /// Two times closer than this part of the duration are the same; that of a decimal number written in full.
@@ -291,7 +289,7 @@ fn legs(
         let spans = match file.spans {
             Some(spans) if free || (start == 0 && end == last) => spans,
             Some(spans) => ((spans as f64 * leg_s / duration_s).round() as usize).max(fewest),
-            None if free => (16 * (own.len() - 1)).clamp(60, 160),
+            None if free => free_spans(own.len() - 1),
             None => default_spans(&own),
         };
         let whole = start == 0 && end == last;
@@ -314,6 +312,12 @@ fn legs(
         start = end;
     }
     Ok(legs)
+}
+
+/// Sixteen spans a segment where the times are free, as far as they go: with fewer than two or three the slowest segment sets the
+/// pace of all.
+fn free_spans(segments: usize) -> usize {
+    (16 * segments).clamp(60, MOST_SPANS)
 }
 
 /// Eight spans a segment, and at least four in the shortest, so that each waypoint has control points of its own.

@@ -52,6 +52,9 @@ pub use file::{FindVehicle, Overrides};
 pub use flight::{FlightPlan, PlannedFlight, PlannedLeg};
 pub use realised::{Extremes, Realised};
 
+/// Spans of the longest flight; the bound keeps a slip of the finger from filling the memory.
+const MOST_SPANS: usize = 500;
+
 /// A position to pass at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Waypoint {

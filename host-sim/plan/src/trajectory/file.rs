@@ -84,8 +84,10 @@ pub enum FileError {
     },
     /// Places to pass, which say nothing of how.
     #[error(
-        "{name}: rows of waypoints{}, no trajectory yet; `quatrack plan {name} --toml planned.toml` plans one, which is flown \
-         by --trajectory planned.toml", if *.timed { " with times" } else { "" }
+        "{name}: rows of waypoints{}, no trajectory yet; `quatrack plan {name}{} --toml planned.toml` plans one, which is \
+         flown by --trajectory planned.toml",
+        if *.timed { " with times" } else { "" },
+        if *.timed { "" } else { " --speed-max-m-s 1 --acceleration-max-m-s2 2" }
     )]
     Waypoints {
         /// The file.

@@ -128,6 +128,27 @@ fn the_least_times_are_those_of_a_fine_search() {
 }
 
 #[test]
+fn a_tour_of_many_waypoints_keeps_its_pace() {
+    // 60 places in a hall of 40 m by a linear congruential generator (Knuth's), as rows without times.
+    let mut state = 1_u64;
+    let mut random = |from: f64, to: f64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        from + (to - from) * (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let places: Vec<_> =
+        (0..60).map(|_| Vector3::new(random(0.0, 40.0), random(0.0, 40.0), random(1.0, 3.0))).collect();
+    let rows: String = places.iter().map(|at| format!("{},{},{}\n", at.x, at.y, at.z)).collect();
+    let bounds = Bounds { speed_max_m_s: Some(2.0), acceleration_max_m_s2: Some(3.0), ..Bounds::default() };
+    let over = Overrides { bounds, ..Overrides::default() };
+    let plan = FlightPlan::from_toml(&format!("x,y,z\n{rows}"), &over, &Budget::unlimited()).unwrap();
+    let flown_s = plan.solve(&Budget::unlimited()).unwrap().duration_s();
+    let straight_s: f64 = places.windows(2).map(|pair| (pair[1] - pair[0]).norm() / 2.0).sum();
+    // Between straight lines at full speed, which no curve does, and a fifth more for its bends.
+    let ratio = flown_s / straight_s;
+    assert!((1.0..1.2).contains(&ratio), "{flown_s} s, straight {straight_s} s");
+}
+
+#[test]
 fn rows_of_waypoints_are_plans() {
     let timed = planned("t,x,y,z,yaw\n2,0,0,1,0\n4,1,0,1,0.5\n6,1,1,1,1\n");
     assert_eq!(timed.duration_s(), 4.0);

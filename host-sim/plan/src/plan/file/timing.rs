@@ -3,10 +3,10 @@
 use nalgebra::Vector3;
 
 use super::entries::{CorridorEntry, PlanFile, check};
-use super::{DURATIONS_S, SAME_TIME, corridors_of};
+use super::{DURATIONS_S, SAME_TIME, corridors_of, free_spans};
 use crate::plan::error::{PlanError, WaypointName};
 use crate::plan::times::Free;
-use crate::plan::{Bounds, Budget, Waypoint};
+use crate::plan::{Bounds, Budget, MOST_SPANS, Waypoint};
 
 /// Puts times at the waypoints, from the file or the least within the bounds; whether they were free.
 pub(super) fn times(
@@ -140,13 +140,17 @@ fn free_times(
             let waypoint = WaypointName { number: end + 1, time_s: None };
             return Err(PlanError::PauseWithoutTimes { waypoint });
         }
-        let spans = file.spans.unwrap_or((16 * (places.len() - 1)).clamp(60, 160));
+        let spans = file.spans.unwrap_or_else(|| free_spans(places.len() - 1));
         let free = Free { places, bounds, corridors: &corridors, degree: file.degree, spans };
         let Some(times_s) = free.times_s(budget) else {
             return Err(if budget.is_over() {
                 PlanError::TimeLimit { limit_s: budget.limit_s() }
             } else {
-                PlanError::NoTimes
+                PlanError::NoTimes {
+                    corridors: !corridors.is_empty(),
+                    spans: spans < MOST_SPANS,
+                    thrust: bounds.thrust_max_m_s2.is_some(),
+                }
             });
         };
         for (waypoint, time_s) in waypoints[start..=end].iter_mut().zip(times_s) {

@@ -39,7 +39,7 @@ fn figure<'a>(title: &'a str, curves: &'a LoopCurves) -> PlotsFigure<'a> {
     let mut sensitivities = lines(&|cut| cut.from_half.clone());
     sensitivities.push(limit("one over the disk margin", level(1.0 / alpha, at)));
     let mut steps: Vec<Trace<'a>> =
-        curves.steps.iter().map(|step| Trace { label: step.name, values: step.way.clone(), limit: false }).collect();
+        curves.steps.iter().map(|step| Trace { label: &step.name, values: step.way.clone(), limit: false }).collect();
     steps.push(limit("reference", level(1.0, times)));
     let frequency = "frequency (rad/s)";
     let plot = |axis, decades, at, name, traces| Plot {
