@@ -13,7 +13,7 @@ use super::designed::Gains;
 /// Frequencies a curve, from the lowest (rad/s) to the Nyquist frequency.
 const POINTS: usize = 400;
 const LOWEST_RAD_S: f64 = 0.1;
-/// How long a step is looked at, s.
+/// Duration of a step's curve, s.
 const STEP_S: f64 = 4.0;
 /// The accelerometer is looked at once in so many seconds.
 const LOOK_S: f64 = 0.01;
@@ -23,7 +23,7 @@ const LOOK_S: f64 = 0.01;
 pub struct LoopCurves {
     /// rad/s.
     pub frequencies_rad_s: Vec<f64>,
-    /// Of the steps, s.
+    /// Times of the steps' curves, s.
     pub times_s: Vec<f64>,
     /// The four chains.
     pub chains: Vec<ChainCurves>,
