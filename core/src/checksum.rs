@@ -29,7 +29,7 @@ pub struct Crc32c {
 }
 
 impl Crc32c {
-    /// Of nothing yet.
+    /// The checksum of no bytes yet.
     pub const fn new() -> Self {
         Self { register: !0 }
     }

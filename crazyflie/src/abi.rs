@@ -79,7 +79,7 @@ pub struct SensorData {
     pub mag: Axis3,
     /// Barometer.
     pub baro: Barometer,
-    /// When the sensors were read, us.
+    /// Time of the sensors' reading, us.
     pub interrupt_timestamp: u64,
 }
 
@@ -137,7 +137,7 @@ pub struct Modes {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Setpoint {
-    /// When the commander took it, ms.
+    /// Time at which the commander took it, ms.
     pub timestamp: u32,
     /// Degrees, pitch of the opposite sign.
     pub attitude: Attitude,

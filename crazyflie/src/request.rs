@@ -14,7 +14,7 @@ pub struct Request {
     pub turn: Turn,
 }
 
-/// How to move over the ground.
+/// The request for the horizontal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Horizontal {
     /// Along the motion.

@@ -30,7 +30,7 @@ pub struct Service {
     uploaded: Option<GainTable<'static>>,
     uploads_taken: u8,
     asked: Option<Asked>,
-    /// Of the table in the air.
+    /// Limits of the table in the air.
     limits: Limits,
 }
 
@@ -54,7 +54,7 @@ pub struct Handover {
 }
 
 impl Handover {
-    /// Nothing.
+    /// Nothing handed over.
     pub(crate) const fn new() -> Self {
         Self { craft: None, table: None, settings: None, is_kept: false }
     }

@@ -36,7 +36,7 @@ const JERK_OFF_SHARE: f32 = 0.15;
 const UNSOUND_JERKS: u8 = 3;
 const SOUND_JERKS: u8 = 25;
 
-/// Where a motion's jerk comes from.
+/// Source of a motion's jerk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Source {
     /// As it is sent; how many in a row were not the slope of the accelerations.

@@ -40,7 +40,7 @@ pub enum TableId {
 }
 
 impl TableId {
-    /// By its number.
+    /// The table of a number.
     pub const fn numbered(number: u8) -> Option<Self> {
         match number {
             0 => Some(Self::Cascade),

@@ -25,7 +25,7 @@ const RESIDUE: u32 = 0x4867_4bc7;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Packet {
-    /// How many of the bytes count.
+    /// Number of the bytes that count.
     pub length: u8,
     /// Its bytes.
     pub bytes: [u8; PACKET_BYTES],

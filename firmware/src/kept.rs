@@ -14,7 +14,7 @@ pub trait Keep {
     fn kept(&mut self, kind: BlobKind, buffer: &mut [u8]) -> Option<usize>;
 }
 
-/// Where nothing is kept.
+/// A board that keeps nothing.
 #[derive(Clone, Copy, Debug)]
 pub struct NoFlash;
 

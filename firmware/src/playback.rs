@@ -29,7 +29,7 @@ pub struct Playback {
     store: &'static mut Store,
 }
 
-/// Where the flat output comes from.
+/// Source of the flat output.
 enum Source {
     Nothing,
     Link(FlatSample),

@@ -54,7 +54,7 @@ pub(crate) struct Inputs<'a> {
 }
 
 impl Craft {
-    /// At the start of a flight.
+    /// The craft at the start of a flight.
     pub(crate) fn new(memory: Memory) -> Self {
         Self { memory, fit: None }
     }

@@ -8,7 +8,7 @@ use std::time::Duration;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-/// How often signals are looked for.
+/// Period at which signals are looked for.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
 /// Said to the work when it is no longer wanted.

@@ -24,7 +24,7 @@ impl LawInput {
         self.0.time_s
     }
 
-    /// When the setpoint was sent, s.
+    /// Time at which the setpoint was sent, s.
     #[getter]
     fn sent(&self) -> f64 {
         self.0.setpoint.sent_s

@@ -95,7 +95,7 @@ impl Scenario {
         self.0.law.name()
     }
 
-    /// Where noise and gusts begin.
+    /// Seed of noise and gusts.
     #[getter]
     fn seed(&self) -> u64 {
         self.0.seed

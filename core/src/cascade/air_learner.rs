@@ -68,7 +68,7 @@ impl Coefficients {
     }
 }
 
-/// Its memory.
+/// Memory of the air learner: low-passed signals, sums of the regressions and the learned coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct SeenAir {

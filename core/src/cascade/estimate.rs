@@ -29,7 +29,7 @@ const JUMP_M: f32 = 0.2;
 /// Squared norms between which a quaternion is taken for an attitude: no filter's is farther off than by half.
 const NORM_SQUARED: [f32; 2] = [0.25, 4.0];
 
-/// Where the craft is at a step.
+/// State of the craft at a step, carried on from the newest estimate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Now {

@@ -42,7 +42,7 @@ pub(super) struct ForceObserver {
     period_s: f32,
 }
 
-/// Its memory.
+/// Memory of the force observer: the predicted velocity and the disturbance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Disturbance {

@@ -10,11 +10,11 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HeightGains {
-    /// Of the position error, N/m.
+    /// Gain of the position error, N/m.
     pub position: f32,
-    /// Of the velocity error, N s/m.
+    /// Gain of the velocity error, N s/m.
     pub velocity: f32,
-    /// Of the error of the force.
+    /// Gain of the error of the force, 1.
     pub force: f32,
 }
 
@@ -26,11 +26,11 @@ pub struct TiltGains {
     pub position: f32,
     /// Of the velocity error, N s/m; of the same sign.
     pub velocity: f32,
-    /// Of the rotation vector, N/rad.
+    /// Gain of the rotation vector, N/rad.
     pub rotation: f32,
-    /// Of the body rate, N s/rad.
+    /// Gain of the body rate, N s/rad.
     pub body_rate: f32,
-    /// Of the error of the force.
+    /// Gain of the error of the force, 1.
     pub force: f32,
 }
 
@@ -38,11 +38,11 @@ pub struct TiltGains {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct YawGains {
-    /// Of the rotation vector, N/rad.
+    /// Gain of the rotation vector, N/rad.
     pub rotation: f32,
-    /// Of the body rate, N s/rad.
+    /// Gain of the body rate, N s/rad.
     pub body_rate: f32,
-    /// Of the error of the force.
+    /// Gain of the error of the force, 1.
     pub force: f32,
 }
 
@@ -67,7 +67,7 @@ pub struct CascadeGainError {
 }
 
 impl CascadeGains {
-    /// How many numbers they are.
+    /// Number of gains.
     pub const COUNT: usize = 16;
 
     /// Sizes beyond which a number is no gain, either way.
@@ -161,22 +161,22 @@ impl CascadeGains {
         }
     }
 
-    /// Of height.
+    /// Gains of height.
     pub const fn height(&self) -> &HeightGains {
         &self.height
     }
 
-    /// Of y and roll.
+    /// Gains of y and roll.
     pub const fn roll(&self) -> &TiltGains {
         &self.roll
     }
 
-    /// Of x and pitch.
+    /// Gains of x and pitch.
     pub const fn pitch(&self) -> &TiltGains {
         &self.pitch
     }
 
-    /// Of heading.
+    /// Gains of heading.
     pub const fn yaw(&self) -> &YawGains {
         &self.yaw
     }

@@ -33,7 +33,7 @@ const GROUND_PUSH_M_S2: f32 = 3.0;
 pub(super) enum Ground {
     /// On the ground; the lowest height seen, m.
     Standing { lowest_m: f32 },
-    /// By something, at a place.
+    /// Held by something, at a place, world frame, m.
     Held { at_m: Vector3<f32> },
     /// How long a disturbance has been on its bound at rest, s.
     Flying { stuck_s: f32 },

@@ -33,7 +33,7 @@ pub(super) struct TorqueObserver {
     most_n: f32,
 }
 
-/// Its memory.
+/// Memory of the torque observer: the predicted body rates and the imbalance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Imbalance {

@@ -68,9 +68,9 @@ impl Gate {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DeviationsAtStart {
-    /// Of each coordinate, m.
+    /// Deviation of each coordinate, m.
     pub position_m: f32,
-    /// Of each component, m/s.
+    /// Deviation of each component, m/s.
     pub velocity_m_s: f32,
     /// About body x and body y, rad.
     pub tilt_rad: f32,
@@ -86,7 +86,7 @@ pub struct DeviationsAtStart {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EstimatorConfig {
-    /// Where the force comes from.
+    /// Source of the force.
     pub force: Force,
     /// The method of integration.
     pub integration: Integration,
@@ -98,7 +98,7 @@ pub struct EstimatorConfig {
     pub acceleration_noise: [f32; 3],
     /// White noise of the gyroscope about body x, y, z, rad/s per root hertz.
     pub gyro_noise: [f32; 3],
-    /// How well a start is known.
+    /// Deviations of a start.
     pub at_start: DeviationsAtStart,
     /// Least standard deviation of any of the nine states in its SI unit (m, m/s, rad): keeps the estimate from taking
     /// no measurement any more.

@@ -28,12 +28,12 @@ pub enum FromBoard {
     Telemetry(Telemetry),
     /// The request has been carried out.
     Ack {
-        /// Of the request.
+        /// Sequence number of the request.
         sequence: u32,
     },
     /// The request has been refused; nothing has changed.
     Nack {
-        /// Of the request.
+        /// Sequence number of the request.
         sequence: u32,
         /// Why.
         reason: Refusal,

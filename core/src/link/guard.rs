@@ -39,7 +39,7 @@ struct Proposed {
 }
 
 impl Guard {
-    /// Of a cable.
+    /// The guard of a cable: no tags.
     pub(crate) const CABLE: Self = Self(None);
 
     pub(crate) const fn keyed(greeting: Seal, protection: Protection) -> Self {

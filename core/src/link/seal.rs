@@ -37,7 +37,7 @@ const BLOCK_BYTES: usize = 64;
 pub struct Nonce(pub [u8; 16]);
 
 impl Nonce {
-    /// Of a side that has no key.
+    /// The nonce of a side that has no key.
     pub const NONE: Self = Self([0; 16]);
 }
 
@@ -55,7 +55,7 @@ pub enum Protection {
     Everything,
 }
 
-/// When a message carries a tag.
+/// The rule by which a message carries a tag.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tagging {
     /// Opens a session: by the key itself.
@@ -98,7 +98,7 @@ impl fmt::Debug for Key {
 }
 
 impl Key {
-    /// Of random bytes.
+    /// A key of random bytes.
     pub fn new(bytes: &[u8; KEY_BYTES]) -> Self {
         let mut block = [0; BLOCK_BYTES];
         if let Some(start) = block.first_chunk_mut() {
@@ -144,9 +144,9 @@ impl Key {
 /// Both directions of a session.
 #[derive(Clone, Debug)]
 pub struct SessionSeals {
-    /// Of the host's frames.
+    /// Seal of the host's frames.
     pub to_board: Seal,
-    /// Of the board's.
+    /// Seal of the board's frames.
     pub from_board: Seal,
 }
 

@@ -44,7 +44,7 @@ pub enum ToBoard {
     UploadQuery,
     /// Check the whole blob and put it to use.
     UploadCommit {
-        /// Of the announced blob.
+        /// Id of the announced blob.
         id: u32,
     },
     /// Ask for telemetry now, beside its period.
@@ -55,7 +55,7 @@ pub enum ToBoard {
     /// Keep the committed blob over a loss of power, in the place of the one that was kept before. Not while armed: the flash
     /// holds the processor up.
     UploadKeep {
-        /// Of the committed blob.
+        /// Id of the committed blob.
         id: u32,
     },
 }

@@ -46,11 +46,11 @@ impl UploadBegin {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Chunk {
-    /// Of the announced blob.
+    /// Id of the announced blob.
     pub id: u32,
     /// Where in the blob the bytes belong.
     pub offset: u32,
-    /// At least one.
+    /// The bytes, at least one.
     pub bytes: heapless::Vec<u8, CHUNK_BYTES>,
 }
 
@@ -65,7 +65,7 @@ impl Chunk {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Progress {
-    /// Of the announced blob.
+    /// Id of the announced blob.
     pub id: u32,
     /// The offset that the next chunk must have; the length when all is there.
     pub wanted_offset: u32,
@@ -119,9 +119,9 @@ pub enum UploadError {
     },
     /// The whole has not the announced checksum; it has to be sent again from the start.
     Checksum {
-        /// As announced.
+        /// The announced checksum.
         announced: u32,
-        /// Of the bytes received.
+        /// The checksum of the bytes received.
         found: u32,
     },
 }

@@ -80,7 +80,7 @@ impl Config {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum ReferenceReport {
-    /// Nothing, or it is too old.
+    /// There is none, or it is too old.
     Missing,
     /// Something that cannot be flown.
     Bad,

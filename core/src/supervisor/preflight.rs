@@ -35,9 +35,9 @@ pub struct Coverage {
 /// A law's certificate as it is known before a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Certified {
-    /// It is certified for this.
+    /// Certified for this range.
     For(Coverage),
-    /// It is certified for no motors that lag.
+    /// Not certified for motors that lag.
     ForNone,
     /// It gives commands alone, which somebody else's loop follows.
     NoMotors,

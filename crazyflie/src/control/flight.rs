@@ -19,7 +19,7 @@ pub(super) enum Flight {
     Unknown,
     /// Along the motion of its setpoints, at their heading.
     Stream,
-    /// As setpoint shaping has it.
+    /// Along the motion that setpoint shaping makes of a request.
     Guided(Request),
     /// By hand, at body rates (rad/s) under a thrust over mass (m/s^2).
     Rates { body_rates_rad_s: Vector3<f32>, thrust_m_s2: f32 },
@@ -43,7 +43,7 @@ impl Flight {
         Self::Rates { body_rates_rad_s: Vector3::new(p, q, r), thrust_m_s2 }
     }
 
-    /// How the supervisor has it.
+    /// The kind of flight for the supervisor: by hand at rates or tilts, or along a motion.
     #[inline(always)]
     pub(super) const fn asked(&self) -> Asked {
         match self {

@@ -56,7 +56,7 @@ pub enum Why {
 }
 
 impl Why {
-    /// Of the supervisor's mode.
+    /// The reason in the supervisor's mode.
     pub(super) const fn of(mode: supervisor::Mode) -> Option<Self> {
         let reason = match mode {
             supervisor::Mode::Tumbled(Tumble::Tilted) => return Some(Self::Tilted),
@@ -82,11 +82,11 @@ impl Why {
 /// The owner's settings beside the table, as the steps take them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Of setpoints.
+    /// Bounds of shaped setpoints.
     pub bounds: Bounds,
     /// Limits of the paper's laws' commands.
     pub limits: Limits,
-    /// Of the paper's laws.
+    /// Feed-forward of the paper's laws.
     pub feed_forward: FeedForward,
 }
 

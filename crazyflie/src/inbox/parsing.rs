@@ -86,7 +86,7 @@ fn horizontal(setpoint: &abi::Setpoint) -> Option<Horizontal> {
     }
 }
 
-/// How a setpoint asks to turn.
+/// The request of a setpoint for the heading.
 fn turn(setpoint: &abi::Setpoint) -> Option<Turn> {
     match (setpoint.mode.yaw, setpoint.mode.quat) {
         (Mode::VELOCITY, Mode::DISABLED | Mode::ABSOLUTE) => Some(Turn::Rate(setpoint.attitude_rate.yaw * RAD_PER_DEG)),

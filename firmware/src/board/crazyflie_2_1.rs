@@ -40,7 +40,7 @@ const READY_LOOKS: u32 = 20_000;
 /// The peripherals that run.
 #[derive(Clone, Copy, Debug)]
 pub struct Clocks {
-    /// Of the processor and SysTick, Hz.
+    /// Clock of the processor and SysTick, Hz.
     pub core_hz: u32,
     /// Counts of the counter in a tick.
     pub counts_per_tick: u32,

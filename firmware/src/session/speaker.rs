@@ -5,7 +5,7 @@ use quatrack::link::{
     Encoder, FRAME_BYTES, FromBoard, Key, Message as _, Nonce, Protection, Refusal, Rejected, Seal, SessionSeals,
 };
 
-/// Of one session.
+/// Numbers and seals of one session.
 struct Conversation {
     encoder: Encoder,
     host: Nonce,

@@ -47,9 +47,9 @@ pub struct Campaign {
 pub struct Run {
     /// The scenario that every law flies.
     pub scenario: Result<Scenario, ScenarioError>,
-    /// In the campaign's order.
+    /// The drawn figures, in the campaign's order.
     pub drawn: Vec<f64>,
-    /// Of noise and gusts.
+    /// Seed of noise and gusts.
     pub seed: u64,
 }
 
@@ -198,7 +198,7 @@ impl Campaign {
         self.trajectory.as_ref()
     }
 
-    /// As it is stored.
+    /// The scenario's text as it is stored.
     pub fn text(&self) -> &str {
         &self.text
     }

@@ -55,12 +55,12 @@ pub enum CampaignError {
 }
 
 impl CampaignError {
-    /// Of a system's refusal.
+    /// The error of a system's refusal.
     pub(crate) fn file(path: &std::path::Path, failure: &'static str, reason: &dyn std::fmt::Display) -> Self {
         Self::File { path: path.to_owned(), failure, reason: reason.to_string() }
     }
 
-    /// Of a folder's contents.
+    /// The error of a folder's contents.
     pub(crate) fn folder(path: &std::path::Path, reason: impl Into<String>) -> Self {
         Self::Folder { path: path.to_owned(), reason: reason.into() }
     }

@@ -34,7 +34,7 @@ const DOTS: usize = 1500;
 /// The paper's table and figures, made anew.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Paper {
-    /// As it is printed.
+    /// The table as it is printed.
     pub table: String,
     /// Title and SVG document of each.
     pub figures: Vec<(String, String)>,
@@ -58,7 +58,7 @@ struct LawData {
     law: String,
     /// Quantiles from 0 to 100 % of the position error's sum; none for those that were lost.
     iae_m_s: Vec<Option<f64>>,
-    /// Likewise of the largest error.
+    /// The same of the largest error.
     max_error_m: Vec<Option<f64>>,
     /// Some flights: the drawn figures and the largest error.
     dots: Vec<(Vec<f64>, Option<f64>)>,

@@ -14,7 +14,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// As in tables.
+    /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Flown => "flown",
@@ -35,7 +35,7 @@ pub struct Row {
     pub run: u64,
     /// The law.
     pub law: Law,
-    /// Of its noise and gusts.
+    /// Seed of its noise and gusts.
     pub seed: u64,
     /// Its outcome.
     pub outcome: Outcome,

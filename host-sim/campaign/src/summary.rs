@@ -27,7 +27,7 @@ pub struct View {
     pub worst: usize,
 }
 
-/// Of a whole campaign.
+/// The summary of a whole campaign.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Summary {
     /// [`SCHEMA`].
@@ -40,20 +40,20 @@ pub struct Summary {
     pub runs_flown: u64,
     /// Largest position error of a success, m; none where only a lost flight is none.
     pub within_m: Option<f64>,
-    /// In the order in which they flew.
+    /// The laws in the order in which they flew.
     pub laws: Vec<LawSummary>,
 }
 
-/// Of one law.
+/// The summary of one law.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawSummary {
     /// The law.
     pub law: String,
     /// Flights, without those that were refused.
     pub flights: u64,
-    /// Of them, those that succeeded.
+    /// Flights that succeeded.
     pub successes: u64,
-    /// Of them, those that were lost.
+    /// Flights that were lost.
     pub lost: u64,
     /// Never flown: figures without sense together.
     pub refused: u64,
@@ -86,7 +86,7 @@ pub struct Worst {
     pub replay: String,
 }
 
-/// How much a figure matters.
+/// The rank correlation of a figure with the largest error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Matter {
     /// The figure.

@@ -47,7 +47,7 @@ pub enum IdentifyError {
     Value {
         /// The field.
         field: &'static str,
-        /// As given.
+        /// The value given.
         value: f64,
         /// Its required range, in words.
         must: &'static str,

@@ -61,11 +61,11 @@ pub struct Example {
     pub flight: String,
     /// s.
     pub times_s: Vec<f64>,
-    /// As flown.
+    /// Position as flown, m.
     pub position_m: Vec<Vector3<f64>>,
     /// As predicted, from a new start every half second.
     pub predicted_m: Vec<Vector3<f64>>,
-    /// As flown and as predicted.
+    /// Body rates as flown and as predicted, rad/s.
     pub rates_rad_s: [Vec<Vector3<f64>>; 2],
 }
 

@@ -31,7 +31,7 @@ pub(super) const BYTES: usize = FIELDS_BYTES + 4 * CascadeGains::COUNT;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CascadeTable {
-    /// Of the four chains.
+    /// Gains of the four chains.
     pub gains: CascadeGains,
     /// The lag of the motors that the gains were designed for and the force prediction is flown with, s.
     pub motor_lag_s: f32,
@@ -67,7 +67,7 @@ pub struct CascadeRange {
     pub inertia_share: f32,
     /// Least and most force of a motor over its command.
     pub force_share: [f32; 2],
-    /// How late commands may act, s.
+    /// Longest delay of commands, s.
     pub delay_s: f32,
     /// Most drag, 1/s.
     pub drag_per_s: f32,

@@ -55,7 +55,7 @@ pub struct Margins {
 /// Figures computed from the gains as the table stores them, for the closed loop at the table's rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certificate {
-    /// Of the certificate as a document.
+    /// SHA-256 of the certificate as a document.
     pub hash: Hash,
     /// The least margins of the four channels, each disturbed alone.
     pub one_channel: Margins,

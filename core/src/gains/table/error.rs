@@ -29,9 +29,9 @@ pub enum TableError {
     },
     /// The bytes are not those that were written.
     Checksum {
-        /// As the table states it.
+        /// The stated checksum.
         stated: u32,
-        /// Of the bytes received.
+        /// The checksum of the bytes received.
         found: u32,
     },
     /// Written by a later or an earlier format.

@@ -27,7 +27,7 @@ pub(crate) const TURN: [f32; 2] = [0.3, 12.0];
 /// Of the sixth and seventh power: next to nothing, but there.
 const HIGHEST: f32 = 1e-12;
 
-/// How far a motor is from hover, N.
+/// Distance of a motor from hover, N.
 const APART_N: f32 = 0.05;
 
 /// The steps that are counted on a course.
@@ -42,7 +42,7 @@ pub(crate) struct Motors<'a> {
     memories: [Memory; 9],
 }
 
-/// Of degree 7.
+/// Makes pieces of degree 7.
 pub(crate) fn septic(pieces: &mut [Piece]) {
     for axis in pieces.iter_mut().flat_map(|piece| [&mut piece.x, &mut piece.y, &mut piece.z]) {
         let [.., c6, c7] = axis;

@@ -94,7 +94,7 @@ fn map(args: &Args) -> Result<ColumnMap, Failure> {
     ColumnMap::parse(&text, name).map_err(Failure::input)
 }
 
-/// By its first byte.
+/// Whether a file is the deck's log, by its first byte.
 fn is_of_deck(path: &Path) -> bool {
     use std::io::Read as _;
     let mut first = [0];

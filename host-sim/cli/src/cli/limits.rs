@@ -11,14 +11,14 @@ use super::names::did_you_mean;
 /// Limits by vehicle or by numbers.
 #[derive(Clone, Debug)]
 pub(crate) struct LimitsChoice {
-    /// As it was asked for.
+    /// The name that was given.
     pub(crate) name: String,
     /// The limits of a command.
     pub(crate) limits: Limits,
 }
 
 impl LimitsChoice {
-    /// Nothing is cut.
+    /// Limits that cut nothing.
     pub(crate) fn none() -> Self {
         Self { name: String::from("none"), limits: Limits::NONE }
     }

@@ -58,7 +58,7 @@ pub(crate) struct Named<'a, T> {
 }
 
 impl<'a, T: Serialize> Named<'a, T> {
-    /// Of a value with keys.
+    /// The object of a value with keys.
     pub(crate) fn new(name: &str, value: &'a T) -> Self {
         Self { schema: format!("quatrack/{name}/1"), value }
     }

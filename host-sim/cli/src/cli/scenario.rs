@@ -79,7 +79,7 @@ pub(crate) struct ScenarioArgs {
     /// The same while it falls, ms; with --lag-rise-ms.
     #[arg(long, value_name = "X", allow_negative_numbers = true, conflicts_with = "lag_ms")]
     lag_fall_ms: Option<f64>,
-    /// How late commands act, ms.
+    /// Delay of the commands, ms.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     delay_ms: Option<f64>,
     /// Thrust of a command over its nominal thrust.
@@ -115,16 +115,16 @@ pub(crate) struct ScenarioArgs {
     /// Noise of the gyroscope, deviation of a sample, rad/s.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     noise_gyro_rad_s: Option<f64>,
-    /// Of the accelerometer, m/s^2.
+    /// Noise of the accelerometer, m/s^2.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     noise_accelerometer_m_s2: Option<f64>,
-    /// Of the position, m.
+    /// Noise of the position, m.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     noise_position_m: Option<f64>,
-    /// Of the velocity, m/s.
+    /// Noise of the velocity, m/s.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     noise_velocity_m_s: Option<f64>,
-    /// Of the attitude, rad.
+    /// Noise of the attitude, rad.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     noise_attitude_rad: Option<f64>,
     /// Predictions of the filter a second.

@@ -15,7 +15,7 @@ const PANELS: Frame = Frame { left: 100.0, top: 84.0, right: 1172.0, bottom: 662
 pub struct ChartFigure<'a> {
     /// Printed above the figure.
     pub title: &'a str,
-    /// Of the axis, with its unit.
+    /// Name of the axis, with its unit.
     pub axis_name: &'a str,
     /// Places on the axis; increasing.
     pub places: &'a [f64],

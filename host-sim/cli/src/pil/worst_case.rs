@@ -54,7 +54,7 @@ pub(super) fn head() -> Vec<u8> {
 
 /// The answers expected of the target.
 pub(super) struct Expected {
-    /// Of all commands of the law.
+    /// Hash of all commands of the law.
     pub(super) hash: u32,
     /// Of the tick, which is on the trajectory that does not turn.
     pub(super) command: Option<Command>,
@@ -126,7 +126,7 @@ fn command(law: Law<'_>, limits: Limits, state: &State, reference: &Reference) -
     output.command().map(|step| step.command)
 }
 
-/// Of nothing.
+/// The hash of nothing.
 const HASH: u32 = 0x811c_9dc5;
 
 /// A hash carried on.

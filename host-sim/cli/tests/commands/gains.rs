@@ -389,7 +389,7 @@ fn a_table_of_the_cascade_states_its_certified_region_and_flies_its_vehicle() {
     let paper = format!("{GAINS}/lqr-e.toml");
     assert_done(&quatrack(&["gains", "show", &paper, "--plot", pictures.to_str().unwrap()]));
     let drawn = fs::read_to_string(pictures.join("lqr-e.svg")).unwrap();
-    for label in ["in vacuum", "thrust_m_s2", "p_rad_s, q_rad_s", "x, y", "yaw"] {
+    for label in ["in vacuum", "thrust", "p, q", "x, y", "yaw"] {
         assert!(drawn.contains(label), "{label} is not in the picture");
     }
     assert_refused(&quatrack(&["gains", "show", &table, "--plot", "out"]), 2, &[&table, "--plot takes a design"]);

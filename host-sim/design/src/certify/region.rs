@@ -30,7 +30,7 @@ pub struct Variation {
     pub mass_factor: f64,
     /// Inertia over that of the vehicle.
     pub inertia_factor: f64,
-    /// How late a command acts, s.
+    /// Delay of a command, s.
     pub delay_s: f64,
 }
 
@@ -67,7 +67,7 @@ pub struct RegionBounds {
     pub mass_share: f64,
     /// The same for its inertia.
     pub inertia_share: f64,
-    /// How late commands may act, s.
+    /// Longest delay of commands, s.
     pub delay_s: f64,
 }
 

@@ -27,19 +27,19 @@ pub const FORCES: usize = 12;
 /// Diagonal weights of a sum over the samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ActuatorAwareWeights {
-    /// Of position, 1/m^2.
+    /// Weights of the position, 1/m^2.
     pub position: [f64; 3],
-    /// Of velocity, s^2/m^2.
+    /// Weights of the velocity, s^2/m^2.
     pub velocity: [f64; 3],
-    /// Of the rotation vector, 1/rad^2.
+    /// Weights of the rotation vector, 1/rad^2.
     pub rotation: [f64; 3],
-    /// Of the body rates, s^2/rad^2.
+    /// Weights of the body rates, s^2/rad^2.
     pub body_rates: [f64; 3],
-    /// Of each motor's force, 1/N^2.
+    /// Weight of each motor's force, 1/N^2.
     pub force: f64,
     /// Of the integral of the position, 1/(m s)^2.
     pub integral: [f64; 3],
-    /// Of each motor's command, 1/N^2.
+    /// Weight of each motor's command, 1/N^2.
     pub command: f64,
 }
 

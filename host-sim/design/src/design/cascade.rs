@@ -17,15 +17,15 @@ use crate::vehicle::Vehicle;
 /// Diagonal weights of a sum over the samples; forces have none.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CascadeWeights {
-    /// Of position, 1/m^2.
+    /// Weights of the position, 1/m^2.
     pub position: [f64; 3],
-    /// Of velocity, s^2/m^2.
+    /// Weights of the velocity, s^2/m^2.
     pub velocity: [f64; 3],
-    /// Of the rotation vector, 1/rad^2.
+    /// Weights of the rotation vector, 1/rad^2.
     pub rotation: [f64; 3],
-    /// Of the body rates, s^2/rad^2.
+    /// Weights of the body rates, s^2/rad^2.
     pub body_rates: [f64; 3],
-    /// Of each motor's command, 1/N^2.
+    /// Weight of each motor's command, 1/N^2.
     pub command: f64,
 }
 

@@ -45,7 +45,7 @@ pub struct AirFigures {
 pub struct MotorFigures {
     /// Time constant of a thrust that grows, s.
     pub rise_lag_s: f64,
-    /// Of one that falls, s.
+    /// Lag of a force that falls, s.
     pub fall_lag_s: f64,
     /// From a command to its first effect, s.
     pub delay_s: f64,

@@ -40,7 +40,7 @@ impl Dice {
         (0..12).map(|_| self.unit()).sum::<f64>() - 6.0
     }
 
-    /// How often each block is drawn.
+    /// The number of times that each block is drawn.
     pub(super) fn weights(&mut self, flights: &[usize]) -> Vec<f64> {
         let mut weights = vec![0.0; flights.len()];
         let mut names: Vec<usize> = flights.to_vec();

@@ -41,7 +41,7 @@ pub struct FlightFit {
     pub full_m_s2: f64,
     /// Torque that is always there, N m.
     pub torque_bias_n_m: Vector3<f64>,
-    /// Of the accelerometer, m/s^2.
+    /// Bias of the accelerometer, m/s^2.
     pub force_bias_m_s2: Vector3<f64>,
     /// Bias of the gyroscope, rad/s.
     pub gyro_bias_rad_s: Vector3<f64>,

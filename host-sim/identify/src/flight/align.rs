@@ -9,7 +9,7 @@ use crate::filter::{LowPass, mean, shifted};
 
 /// Longest shift that is looked for, s: those of NanoBench are -50 to +90 ms.
 const LONGEST_S: f64 = 0.15;
-/// Of the fine grid, s.
+/// Step of the fine grid, s.
 const FINE_S: f64 = 0.001;
 /// Corner frequency of the compared signals, Hz.
 const CORNER_HZ: f64 = 6.0;

@@ -32,7 +32,7 @@ pub(super) struct Grid {
 
 struct Reader<'a> {
     log: &'a RawLog,
-    /// Of the rows of a table, s.
+    /// Times of the rows of a table, s.
     times_s: Option<Vec<f64>>,
     notes: &'a mut Notes,
 }
@@ -113,7 +113,7 @@ fn si(unit: &str) -> f64 {
 }
 
 impl Grid {
-    /// Of a log by a map.
+    /// The grid of a log by a map.
     pub(super) fn of(log: &RawLog, map: &ColumnMap, notes: &mut Notes) -> Result<Self, IdentifyError> {
         let times_s = match (&map.time, log.timed) {
             (_, true) => None,

@@ -23,7 +23,7 @@ pub use sections::prepare;
 
 /// Step of the grid, s. Identification uses frequencies below 6 Hz.
 pub const STEP_S: f64 = 0.01;
-/// Of the same.
+/// Rate of the grid, Hz.
 pub const RATE_HZ: f64 = 100.0;
 
 /// Corrections of a log and doubts about it, in words for its owner.
@@ -62,14 +62,14 @@ pub struct Section {
     pub gyro: Vec<Vector3<f64>>,
     /// Specific force, body frame, m/s^2.
     pub specific_force: Vec<Vector3<f64>>,
-    /// Of a full command, from 0 to 1.
+    /// Commands as shares of a full one, from 0 to 1.
     pub commands: [Vec<f64>; 4],
     /// V; empty where the log has none.
     pub voltage: Vec<f64>,
 }
 
 impl Section {
-    /// How many points of the grid.
+    /// The number of points of the grid.
     pub fn len(&self) -> usize {
         self.gyro.len()
     }

@@ -70,7 +70,7 @@ pub struct Attitude {
     pub columns: Vec<String>,
     /// xyzw, wxyz, or roll-pitch-yaw in degrees (`deg`) or radians (`rad`).
     pub form: String,
-    /// Of angles.
+    /// Unit of the angles.
     pub unit: Option<String>,
     /// Of angles: true where nose up is positive, as the Crazyflie's firmware has it.
     #[serde(default)]

@@ -20,7 +20,7 @@ pub struct Row {
     pub gyro: Vector3<f64>,
     /// Body frame, m/s^2.
     pub specific_force: Vector3<f64>,
-    /// Of a full command, from 0 to 1.
+    /// Commands as shares of a full one, from 0 to 1.
     pub commands: [f64; 4],
     /// V; none where nothing depends on it.
     pub voltage: Option<f64>,

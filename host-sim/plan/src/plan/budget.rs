@@ -13,7 +13,7 @@ pub struct Budget<'a> {
 }
 
 impl<'a> Budget<'a> {
-    /// As long as it takes, in silence.
+    /// A budget without a limit and without progress.
     pub fn unlimited() -> Self {
         Self { deadline: None, limit_s: f64::INFINITY, progress: None, exceeded: Cell::new(false) }
     }

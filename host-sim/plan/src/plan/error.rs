@@ -59,9 +59,9 @@ pub enum PlanError {
     /// Segments do not match waypoints.
     #[error("segment_shares: {found} given for {waypoints} waypoints; there must be {}, one between each two", waypoints - 1)]
     SegmentShares {
-        /// How many shares there are.
+        /// The number of shares.
         found: usize,
-        /// How many waypoints there are.
+        /// The number of waypoints.
         waypoints: usize,
     },
     /// Times that do not grow.
@@ -124,7 +124,7 @@ pub enum PlanError {
     /// A vehicle that is not known or cannot fly.
     #[error("bounds.vehicle = {name:?}: {reason}")]
     Vehicle {
-        /// As written.
+        /// The name as written.
         name: String,
         /// The fault.
         reason: String,

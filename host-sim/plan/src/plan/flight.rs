@@ -9,7 +9,7 @@ use crate::trajectory::polynomial::{PiecewisePolynomial, PolynomialError};
 /// The flight of a plan file, with all times known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlightPlan {
-    /// At least one.
+    /// The curves, at least one.
     pub(super) legs: Vec<Plan>,
     /// Whether the times were found from the bounds.
     pub(super) free: bool,
@@ -24,7 +24,7 @@ pub struct PlannedLeg {
     pub plan: Plan,
     /// The curve.
     pub curve: BSpline,
-    /// At samples and by control points.
+    /// Its quantities, at samples and by control points.
     pub realised: Realised,
     /// Whether it is many times as long as its waypoints are apart.
     pub detour: Option<Detour>,

@@ -35,7 +35,7 @@ pub struct Extremes {
 /// A curve measured against its plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Realised {
-    /// At dense samples.
+    /// Largest and least values at dense samples.
     pub sampled: Extremes,
     /// The values that the control points prove for all t, for each bound that they can: the limit and its value, SI.
     pub proved: Vec<(Limit, f64)>,

@@ -47,7 +47,7 @@ pub enum StoreError {
 /// A trajectory in the Crazyflie's memory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredTrajectory {
-    /// At least one.
+    /// The pieces, at least one.
     pieces: Vec<Poly4d>,
     /// The same numbers in f64.
     polynomials: PiecewisePolynomial,

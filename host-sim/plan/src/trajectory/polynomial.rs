@@ -196,7 +196,7 @@ impl PiecewisePolynomial {
         Self::joined(pieces)
     }
 
-    /// Of pieces that meet.
+    /// A trajectory of pieces that meet.
     pub(crate) fn joined(pieces: Vec<Piece>) -> Result<Self, PolynomialError> {
         validate(&pieces)?;
         let mut boundaries_s = vec![0.0];

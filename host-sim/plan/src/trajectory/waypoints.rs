@@ -10,7 +10,7 @@ use super::table::{Row, Table, finite, shortened};
 /// A row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WaypointRow {
-    /// Where in the file, from 1.
+    /// The line in the file, from 1.
     pub line: usize,
     /// The time, s.
     pub time_s: Option<f64>,

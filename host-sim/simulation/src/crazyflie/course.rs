@@ -111,7 +111,7 @@ fn figure_eight(w: f64, t_s: f64) -> FifthOrder {
     Eight { rate_rad_s: w, duration_s: f64::INFINITY }.at(t_s)
 }
 
-/// As far as the commander knows it.
+/// The motion to the jerk, as far as the commander knows it.
 fn to_jerk(point: &FifthOrder) -> Motion {
     let [position, velocity, acceleration, jerk, _, _] = point.position;
     [position, velocity, acceleration, jerk]

@@ -83,7 +83,7 @@ pub fn fly_on(firmware: &mut Firmware, vehicle: &Vehicle, course: &Course, case:
     fly_with(firmware, vehicle, course, case, None)
 }
 
-/// How much of a flight is recorded.
+/// The part of a flight that is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Recorded {
     /// So many steps.

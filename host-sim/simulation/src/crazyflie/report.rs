@@ -147,7 +147,7 @@ impl CrazyflieReport {
     }
 }
 
-/// Of one vehicle.
+/// The flights of one vehicle.
 struct Flights<'a> {
     vehicle: &'a Vehicle,
     rows: Vec<Row>,

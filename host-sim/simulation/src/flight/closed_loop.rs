@@ -27,7 +27,7 @@ pub struct Sample {
     pub state: StateVector,
     /// Input that acts from here on.
     pub input: InputVector,
-    /// Where the craft should be.
+    /// The reference.
     pub target: ReferencePoint,
 }
 

@@ -7,11 +7,11 @@ use crate::plant::RigidState;
 /// Standard deviations of white noise on each component of a measurement, at every control step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Noise {
-    /// Of the position, m.
+    /// Deviation of the position, m.
     pub position_m: f64,
-    /// Of the velocity, m/s.
+    /// Deviation of the velocity, m/s.
     pub velocity_m_s: f64,
-    /// Of the body rates, rad/s.
+    /// Deviation of the body rates, rad/s.
     pub body_rates_rad_s: f64,
     /// The seed.
     pub seed: u64,

@@ -28,7 +28,7 @@ pub struct Conditions {
 /// Commanded forces and whether they were cut to the motors' range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotorCommand {
-    /// Of each motor, N.
+    /// Force of each motor, N.
     pub forces_n: Vector4<f64>,
     /// Whether the law asked for more.
     pub limited: bool,
@@ -43,7 +43,7 @@ pub struct RigidSample {
     pub state: RigidState,
     /// The commands given at this time, N.
     pub commands_n: Vector4<f64>,
-    /// Where the craft should be, m.
+    /// Position of the reference, world frame, m.
     pub target_m: Vector3<f64>,
 }
 

@@ -76,7 +76,7 @@ impl BoardCertificate {
         sha256(self)
     }
 
-    /// As a table carries it.
+    /// The certificate in a table's form.
     pub(super) fn on_board(&self) -> table::Certificate {
         let margins = |stated: &MarginsStated| Margins {
             gain_factor: stated.gain_factor as f32,

@@ -17,7 +17,7 @@ const POINTS: usize = 400;
 const LOWEST_RAD_S: f64 = 0.1;
 /// Curves that differ by less are one: axes that are alike would hide each other.
 const SAME: f64 = 1e-6;
-/// How long a step is looked at, s.
+/// Duration of a step's curve, s.
 const STEP_S: f64 = 4.0;
 /// The accelerometer is looked at once in so many seconds.
 const LOOK_S: f64 = 0.01;
@@ -29,7 +29,7 @@ pub struct LoopCurves {
     pub conditions: &'static str,
     /// rad/s.
     pub frequencies_rad_s: Vec<f64>,
-    /// Of the steps, s.
+    /// Times of the steps' curves, s.
     pub times_s: Vec<f64>,
     /// Each cut at one command.
     pub loops: Vec<CutLoop>,
@@ -40,7 +40,7 @@ pub struct LoopCurves {
 /// The loop cut at one command, the others closed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CutLoop {
-    /// The command, or the chain that it drives; all of them where several have this curve.
+    /// The command without its unit, or the chain that it drives; all of them where several have this curve.
     pub name: String,
     /// Size of the open loop's gain.
     pub gain: Vec<f64>,
@@ -98,7 +98,7 @@ impl LoopCurves {
             };
             let from_half = at(&|s| (s - 0.5).norm());
             let alpha = 1.0 / from_half.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-            CutLoop { name: name.clone(), gain: at(&|s| (s.inv() - 1.0).norm()), from_half, alpha }
+            CutLoop { name: without_unit(name).to_owned(), gain: at(&|s| (s.inv() - 1.0).norm()), from_half, alpha }
         });
         let loops = loops.collect();
         let (yaw, rad) = yaw_state(&certified.designed);
@@ -130,6 +130,11 @@ impl LoopCurves {
         }
         Self { conditions, frequencies_rad_s, times_s, loops, steps }
     }
+}
+
+/// The quantity of a command called after its unit, too: `p` of `p_rad_s`. A loop gain has none.
+fn without_unit(name: &str) -> &str {
+    name.split('_').next().unwrap_or(name)
 }
 
 /// Equal but for rounding, or no number on both sides.
@@ -212,7 +217,10 @@ mod tests {
             let curves = LoopCurves::of(&held).unwrap();
             let margins = &held.certificate.sampled.margins.each;
             for found in margins {
-                let cut = curves.loops.iter().find(|cut| cut.name.split(", ").any(|name| name == found.channel));
+                let cut = curves
+                    .loops
+                    .iter()
+                    .find(|cut| cut.name.split(", ").any(|name| name == without_unit(&found.channel)));
                 let more = cut.map_or(f64::NAN, |cut| cut.alpha) / found.balanced.alpha;
                 assert!((1.0 - 1e-6..1.01).contains(&more), "{name}, {}: {more} times", found.channel);
             }

@@ -62,7 +62,7 @@ pub enum GainsError {
     /// The vehicle is not known or cannot be used.
     #[error("vehicle = \"{vehicle}\": {reason}")]
     Vehicle {
-        /// As written in the design.
+        /// The vehicle as the design writes it.
         vehicle: String,
         /// The fault.
         reason: String,

@@ -146,7 +146,7 @@ impl std::fmt::Display for Linearisation {
 }
 
 impl MethodName {
-    /// As it is written.
+    /// The value as it is written.
     pub(super) fn quoted(self) -> &'static str {
         match self {
             Self::Lyapunov => "\"lyapunov\"",

@@ -35,7 +35,7 @@ pub struct LinearWind {
     pub slope_m_s2: Vector3<f64>,
 }
 
-/// How a craft's motion changes.
+/// Derivatives of a craft's motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Of the centre of mass, world frame, m/s^2.
@@ -44,7 +44,7 @@ pub struct Motion {
     pub specific_force_m_s2: Vector3<f64>,
     /// Body frame, rad/s^2.
     pub angular_acceleration_rad_s2: Vector3<f64>,
-    /// Of each thrust, N/s.
+    /// Rate of each thrust, N/s.
     pub thrust_rates_n_s: Vector4<f64>,
 }
 

@@ -131,13 +131,13 @@ pub struct Truth {
     pub inertia_kg_m2: Matrix3<f64>,
     /// Time constant of a thrust that grows, s.
     pub rise_lag_s: f64,
-    /// Of one that falls, s.
+    /// Lag of a force that falls, s.
     pub fall_lag_s: f64,
     /// Delay of the commands, s.
     pub delay_s: f64,
     /// Thrust over the commanded one at the start.
     pub thrust_factor: f64,
-    /// How that factor changes, 1/s.
+    /// Rate of that factor, 1/s.
     pub thrust_factor_per_s: f64,
     /// Torque that is always there, body frame, N m.
     pub torque_bias_n_m: Vector3<f64>,

@@ -20,7 +20,7 @@ pub struct GroundEffect {
 const NEAREST: f64 = 0.5;
 
 impl GroundEffect {
-    /// Of a craft's motors.
+    /// The ground effect of a craft's motors.
     pub fn of(motors: &MotorBank, radius_m: f64) -> Self {
         Self { radius_m, rotors_m: motors.motors.map(|motor| motor.position_m) }
     }

@@ -69,7 +69,7 @@ pub(super) struct SteadyStep {
 /// From commands to the thrusts that the motors go to.
 #[derive(Clone, Copy, Debug)]
 struct Converter {
-    /// Of the commands, N.
+    /// Limits of the commands, N.
     limits_n: [f64; 2],
     map: Option<ForceMap>,
     strength: [f64; 4],

@@ -201,7 +201,7 @@ impl SideBySide {
         }
     }
 
-    /// Where a lane is after a step.
+    /// The state of a lane after a step.
     #[inline]
     pub(super) fn take(&self, lane: usize, state: &mut RigidState) {
         let x = &self.state;

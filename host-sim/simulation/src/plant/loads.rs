@@ -60,7 +60,7 @@ impl Ground {
     const SETTLING_M: f64 = 1e-3;
     /// Share of the critical damping of the craft on its feet.
     const DAMPING_RATIO: f64 = 0.7;
-    /// Of plastic on a floor.
+    /// Coefficient of friction of plastic on a floor.
     const FRICTION: f64 = 0.5;
     /// Sliding speed at which friction has three quarters of its full force, m/s.
     const CREEP_M_S: f64 = 0.02;

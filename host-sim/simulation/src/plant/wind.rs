@@ -12,7 +12,7 @@ const PERIOD_S: f64 = 0.002;
 /// endless one that of MIL-F-8785C, 3.7.3.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gust {
-    /// At its height, world frame, m/s.
+    /// Velocity at its height, world frame, m/s.
     pub peak_m_s: Vector3<f64>,
     /// Its beginning, s.
     pub from_s: f64,

@@ -69,7 +69,7 @@ pub struct Lee {
 }
 
 impl Lee {
-    /// At the start of a flight.
+    /// The law at the start of a flight.
     pub fn new(config: LeeConfig, actuation: Actuation) -> Self {
         Self { config, actuation, position_integral_m_s: Vector3::zeros(), rotation_integral_s: Vector3::zeros() }
     }

@@ -80,7 +80,7 @@ pub struct Mellinger {
 }
 
 impl Mellinger {
-    /// At the start of a flight.
+    /// The law at the start of a flight.
     pub fn new(config: MellingerConfig, actuation: Actuation) -> Self {
         Self {
             config,

@@ -21,11 +21,11 @@ const TORQUE_MAX: f64 = 32_767.0;
 /// Gains and limits of one PID, output in units of its output, error in units of the measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PidConfig {
-    /// Of the error.
+    /// Gain of the error.
     pub proportional: f64,
-    /// Of its integral.
+    /// Gain of its integral.
     pub integral: f64,
-    /// Of the derivative of the measurement, taken off.
+    /// Gain of the derivative of the measurement, taken off.
     pub derivative: f64,
     /// Most of the integral, error times s.
     pub integral_max: f64,
@@ -42,7 +42,7 @@ pub struct Pid {
 }
 
 impl Pid {
-    /// At rest.
+    /// A PID at rest.
     pub fn new(config: PidConfig) -> Self {
         Self { config, integral: 0.0, measured_before: None }
     }
@@ -154,7 +154,7 @@ pub struct CascadedPid {
 }
 
 impl CascadedPid {
-    /// At the start of a flight.
+    /// The law at the start of a flight.
     pub fn new(config: CascadedPidConfig, actuation: Actuation) -> Self {
         Self {
             config,

@@ -33,12 +33,12 @@ pub(super) struct CascadeLaw {
 }
 
 impl CascadeLaw {
-    /// Of [`cascade_of`], at a hover.
+    /// The law of [`cascade_of`], at a hover.
     pub(super) fn new(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, FlightError> {
         cascade_of(vehicle, told).map(Self::hovering)
     }
 
-    /// At a hover.
+    /// The law at a hover.
     fn hovering(cascade: Cascade) -> Self {
         let memory = Memory::hovering(cascade.airframe());
         Self { cascade, memory, fit: JerkFit::NONE, newest: None, shared: None }

@@ -27,12 +27,12 @@ pub struct Row {
 pub struct Table {
     /// [`SCHEMA`].
     pub schema: &'static str,
-    /// In the order in which they flew.
+    /// The laws in the order in which they flew.
     pub rows: Vec<Row>,
 }
 
 impl Table {
-    /// Of named flights.
+    /// The comparison of named flights.
     pub fn of(flights: &[(String, RigidFlight)]) -> Self {
         let rows = flights.iter().map(|(law, flight)| Row {
             law: law.clone(),

@@ -41,7 +41,7 @@ pub struct ScenarioFile {
     pub setpoints: Option<Setpoints>,
     /// exact or kalman.
     pub estimator: Option<Estimator>,
-    /// Where noise and gusts begin.
+    /// Seed of noise and gusts.
     pub seed: Option<u64>,
     /// The air; vacuum where absent.
     pub air: Option<Air>,
@@ -125,7 +125,7 @@ pub struct Errors {
     pub lag_rise_ms: Option<f64>,
     /// While it falls, ms.
     pub lag_fall_ms: Option<f64>,
-    /// How late commands act, ms.
+    /// Delay of the commands, ms.
     pub delay_ms: Option<f64>,
     /// Thrust of a command over its nominal thrust.
     pub thrust_factor: Option<f64>,
@@ -173,7 +173,7 @@ pub struct Noise {
     pub attitude_rad: Option<f64>,
 }
 
-/// Of `estimator = "kalman"`.
+/// The filter of `estimator = "kalman"`.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Filter {

@@ -22,7 +22,7 @@ pub enum Setpoints {
     #[default]
     #[serde(rename = "100hz")]
     At100Hz,
-    /// At every step, to the crackle.
+    /// A setpoint at every step, to the crackle.
     #[serde(rename = "exact")]
     Exact,
 }

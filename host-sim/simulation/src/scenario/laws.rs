@@ -61,7 +61,7 @@ pub enum LawError {
     /// Not one of the names.
     #[error("{name}: no such law; there are {known}")]
     Unknown {
-        /// As it was asked for.
+        /// The name that was given.
         name: String,
         /// All there are.
         known: String,

@@ -22,7 +22,7 @@ pub struct Around {
 }
 
 impl Around {
-    /// Of a plant as it is now.
+    /// The surroundings of a plant as it is now.
     pub(super) fn of(plant: &Plant, estimate: Estimate) -> Self {
         Self {
             wind_m_s: *plant.wind_m_s(),

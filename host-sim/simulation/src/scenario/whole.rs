@@ -75,11 +75,11 @@ pub struct Scenario {
     pub duration_s: Option<f64>,
     /// The law that flies.
     pub law: Law,
-    /// How a law is told of the course.
+    /// Form of the setpoints that a law is told.
     pub setpoints: Setpoints,
-    /// Where its estimate comes from.
+    /// Source of its estimate.
     pub estimator: EstimateFrom,
-    /// Where noise and gusts begin.
+    /// Seed of noise and gusts.
     pub seed: u64,
     /// The surroundings of the craft.
     pub environment: Environment,
@@ -87,7 +87,7 @@ pub struct Scenario {
     pub truth: Truth,
     /// Bias of the gyroscope, rad/s.
     pub gyro_bias_rad_s: Vector3<f64>,
-    /// Of the accelerometer, m/s^2.
+    /// Bias of the accelerometer, m/s^2.
     pub accelerometer_bias_m_s2: Vector3<f64>,
     /// The figures that the law is told.
     pub told: ToldFigures,

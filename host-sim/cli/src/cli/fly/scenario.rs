@@ -105,7 +105,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     outputs.write(&scenario, figures, &recording)
 }
 
-/// Where a flight's files go.
+/// The files of a flight.
 pub(in crate::cli) struct Outputs<'a> {
     /// The log's folder, which is there.
     pub(in crate::cli) dir: Option<&'a Path>,

@@ -35,7 +35,7 @@ const TURN: [f32; 2] = [0.3, 12.0];
 /// Of the sixth and seventh power: next to nothing, but there.
 const HIGHEST: f32 = 1e-12;
 
-/// How far a motor is from hover, N.
+/// Distance of a motor from hover, N.
 const APART_N: f32 = 0.05;
 
 /// The gain in the repository with one entry that keeps it from falling apart.
@@ -118,7 +118,7 @@ impl Motors {
     }
 }
 
-/// Of degree 7.
+/// The pieces with degree 7.
 fn septic(pieces: &[Piece]) -> Vec<Piece> {
     let raised = |[c0, c1, c2, c3, c4, c5, ..]: [f32; 8]| [c0, c1, c2, c3, c4, c5, HIGHEST, HIGHEST];
     pieces.iter().map(|piece| Piece { x: raised(piece.x), y: raised(piece.y), z: raised(piece.z), ..*piece }).collect()

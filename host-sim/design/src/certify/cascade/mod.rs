@@ -87,7 +87,7 @@ pub struct CascadeVariation {
     pub inertia_factor: f64,
     /// Force of the motors over their command; of torques over the share that the craft has learned.
     pub command_factor: f64,
-    /// How late a command acts, s.
+    /// Delay of a command, s.
     pub delay_s: f64,
     /// Linear drag over mass, 1/s.
     pub drag_per_s: f64,
@@ -119,7 +119,7 @@ impl fmt::Display for CascadeVariation {
 }
 
 impl CascadeVariation {
-    /// Nothing differs, in vacuum.
+    /// No deviation, in vacuum.
     pub fn none(lag_s: f64) -> Self {
         Self {
             lag_s,

@@ -31,7 +31,7 @@ pub struct CascadeBounds {
     pub inertia_share: f64,
     /// Least and most force of a motor over its command.
     pub force_share: [f64; 2],
-    /// How late commands may act, s.
+    /// Longest delay of commands, s.
     pub delay_s: f64,
     /// Most drag, 1/s.
     pub drag_per_s: f64,

@@ -106,7 +106,7 @@ pub enum CsvError {
     },
 }
 
-/// Where a column's numbers go.
+/// The quantity of a column.
 #[derive(Clone, Copy, PartialEq)]
 enum Place {
     Duration,
@@ -134,7 +134,7 @@ impl Place {
         }
     }
 
-    /// In the order of the format.
+    /// All columns, in the order of the format.
     fn all() -> impl Iterator<Item = Self> {
         let of = |coordinate| (0..COEFFICIENTS).map(move |power| Self::Coefficient(coordinate, power));
         iter::once(Self::Duration).chain(Coordinate::ALL.into_iter().flat_map(of))

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use quatrack::gains::table::{CascadeRange, CascadeTable};
 use serde_json::{Value, json};
 
-/// Where each chain's gains begin.
+/// Each chain's gains among the 16.
 const CHAINS: [(&str, std::ops::Range<usize>); 4] =
     [("height", 0..3), ("y, roll", 3..8), ("x, pitch", 8..13), ("yaw", 13..16)];
 
