@@ -175,7 +175,8 @@ pub(super) fn carried(
     }
 }
 
-// Each out of line, so that no law pays for the registers of another.
+// Each out of line, so that no law pays for the registers of another. The actuator-aware one is inlined where there is a system: a
+// caller there can compile it for instructions that not every processor has.
 
 #[inline(never)]
 fn integral(
@@ -208,7 +209,8 @@ fn along(
     }
 }
 
-#[inline(never)]
+#[cfg_attr(target_os = "none", inline(never))]
+#[cfg_attr(not(target_os = "none"), inline(always))]
 fn actuator_aware(
     law: &ActuatorAware<'_>,
     memory: &mut Memory,

@@ -60,7 +60,6 @@ pub(super) struct Way {
 /// A step in which nothing but the commands is new.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SteadyStep {
-    pub(super) end_s: f64,
     pub(super) from_s: f64,
     pub(super) step_s: f64,
     pub(super) goals_n: Vector4<f64>,
@@ -88,14 +87,18 @@ impl Converter {
     /// Commands within their limits, with their powers taken.
     #[inline]
     fn acting(&self, commands_n: &Vector4<f64>) -> Acting {
+        Acting { commands_n: *commands_n, mapped: self.mapped(commands_n) }
+    }
+
+    #[inline]
+    fn mapped(&self, commands_n: &Vector4<f64>) -> Vector4<f64> {
         let [least_n, most_n] = self.limits_n;
-        let mapped = commands_n.map(|command_n| {
+        commands_n.map(|command_n| {
             // By comparison: a NaN becomes the least, and f64::max costs five times as much.
             let command_n = if command_n > least_n { command_n } else { least_n };
             let command_n = if command_n < most_n { command_n } else { most_n };
             self.map.map_or(command_n, |map| map.share(command_n / most_n))
-        });
-        Acting { commands_n: *commands_n, mapped }
+        })
     }
 
     /// Thrusts that the motors go to at a time and a voltage, N.
@@ -196,6 +199,8 @@ impl Plant {
     pub(super) fn steady_step(&mut self, commands_n: &Vector4<f64>, duration_s: f64) -> SteadyStep {
         self.line.give(self.time_s, commands_n);
         let mapped = match &self.acting {
+            // To be kept they are too little work.
+            _ if self.converter.map.is_none() => self.converter.mapped(commands_n),
             Some(acting) if acting.commands_n == *commands_n => acting.mapped,
             _ => {
                 let acting = self.converter.acting(commands_n);
@@ -206,13 +211,13 @@ impl Plant {
         let end_s = self.time_s + duration_s;
         let to_s = self.time_s + (end_s - self.time_s);
         let goals_n = self.converter.goals_n(&mapped, self.time_s, self.voltage_v());
-        SteadyStep { end_s, from_s: self.time_s, step_s: to_s - self.time_s, goals_n }
+        SteadyStep { from_s: self.time_s, step_s: to_s - self.time_s, goals_n }
     }
 
-    /// Where a steady step is written to, and when it ends.
+    /// Where a steady step of a time is written to.
     #[inline]
-    pub(super) fn arrive_steadily(&mut self, end_s: f64) -> (&mut RigidState, &mut bool) {
-        self.time_s = end_s;
+    pub(super) fn arrive_steadily(&mut self, duration_s: f64) -> (&mut RigidState, &mut bool) {
+        self.time_s += duration_s;
         (&mut self.state, &mut self.finite)
     }
 

@@ -92,8 +92,8 @@ impl PlantGroup {
         if !self.plants.iter().all(|plant| plant.takes_steady_step(duration_s)) {
             return false;
         }
-        let mut ends_s = [0.0; LANES];
-        for (lane, plant) in self.plants.iter_mut().enumerate() {
+        // Over the lanes, so that no index is looked at twice.
+        for (lane, plant) in (0..LANES).zip(&mut self.plants) {
             if !self.flying[lane] {
                 continue;
             }
@@ -103,13 +103,12 @@ impl PlantGroup {
             }
             let step = plant.steady_step(&commands_n[lane], duration_s);
             self.lanes.put_goals(lane, &step.goals_n, step.from_s, step.step_s);
-            ends_s[lane] = step.end_s;
         }
         self.lanes.advance();
-        for (lane, plant) in self.plants.iter_mut().enumerate() {
+        for (lane, plant) in (0..LANES).zip(&mut self.plants) {
             self.apart[lane] = !self.flying[lane];
             if self.flying[lane] {
-                let (state, finite) = plant.arrive_steadily(ends_s[lane]);
+                let (state, finite) = plant.arrive_steadily(duration_s);
                 self.lanes.take(lane, state);
                 *finite = self.lanes.is_finite(lane);
             }

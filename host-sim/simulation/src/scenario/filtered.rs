@@ -48,12 +48,12 @@ impl Estimation {
         }
     }
 
-    /// Takes the sensors' readings after one step of the flight.
+    /// Takes the sensors' readings after one step of the flight. A specific force that nobody asks for is 0, but for the sensors' part.
     #[inline]
     pub(super) fn estimate(
         &mut self,
         state: &RigidState,
-        specific_force_m_s2: &Vector3<f64>,
+        specific_force_m_s2: Option<&Vector3<f64>>,
         known: &mut Estimate,
     ) -> Result<(), EstimatorError> {
         match self {
@@ -63,10 +63,12 @@ impl Estimation {
                 known.velocity_m_s = state.velocity_m_s;
                 known.attitude = state.attitude;
                 known.body_rates_rad_s = state.body_rates_rad_s;
-                known.specific_force_m_s2 = *specific_force_m_s2;
+                if let Some(felt_m_s2) = specific_force_m_s2 {
+                    known.specific_force_m_s2 = *felt_m_s2;
+                }
             }
-            Self::Exact(sensors) => *known = sensors.estimate(state, specific_force_m_s2),
-            Self::Filtered(filtered) => *known = filtered.estimate(state, specific_force_m_s2)?,
+            Self::Exact(sensors) => *known = sensors.estimate(state, &felt_or_none(specific_force_m_s2)),
+            Self::Filtered(filtered) => *known = filtered.estimate(state, &felt_or_none(specific_force_m_s2))?,
         }
         Ok(())
     }
@@ -85,6 +87,10 @@ pub struct Filtered {
     /// Positions on their way: when they come in, and where the craft was.
     late: VecDeque<(u32, Vector3<f64>)>,
     step: u32,
+}
+
+fn felt_or_none(specific_force_m_s2: Option<&Vector3<f64>>) -> Vector3<f64> {
+    specific_force_m_s2.copied().unwrap_or_default()
 }
 
 fn f32s(v: &Vector3<f64>) -> Vector3<f32> {

@@ -69,6 +69,12 @@ impl Track {
         &self.setpoints[((step / self.setpoint_steps) as usize).min(self.setpoints.len() - 1)]
     }
 
+    /// The step from which on that is another; none at the end.
+    pub(super) fn setpoint_until(&self, step: u32) -> u32 {
+        let next = (step / self.setpoint_steps + 1) * self.setpoint_steps;
+        if ((next / self.setpoint_steps) as usize) < self.setpoints.len() { next } else { u32::MAX }
+    }
+
     /// The setpoints of a law of a rate at its own steps, each with its time.
     pub(super) fn told(&self, rate_hz: u32) -> impl Iterator<Item = (f64, &Setpoint)> {
         let law_steps = (STEPS_HZ / rate_hz.clamp(1, STEPS_HZ)) as usize;
