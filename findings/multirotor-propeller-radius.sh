@@ -6,7 +6,7 @@
 # set_params(resolution=0.5) leaves the resolution as it was and makes 0.5 m the distance at which a waypoint counts
 # as reached.
 # Why it matters: a thrust curve for a simulation or a vehicle file that is computed from the propeller's size, which
-# is what one has before a thrust stand, is an order of magnitude off.
+# is used before there is a thrust stand, is an order of magnitude off.
 set -euo pipefail
 dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
