@@ -1,9 +1,9 @@
 //! The flights of a campaign: a scenario with distributions and laws in; the scenario of run k out.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::bounded;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::scenario::file::ScenarioFile;
 use quatrack_simulation::scenario::{CourseChoice, Law, Scenario, ScenarioError};
@@ -60,7 +60,8 @@ impl Campaign {
     /// [`CampaignError`], also for a distribution that reaches beyond a scenario's range.
     pub fn read(path: &Path, asked: &Asked, trajectories: Trajectories<'_>) -> Result<Self, CampaignError> {
         let origin = path.display().to_string();
-        let text = fs::read_to_string(path).map_err(|error| CampaignError::file(path, "cannot be read", &error))?;
+        let text =
+            bounded::read_to_string(path).map_err(|error| CampaignError::file(path, "cannot be read", &error))?;
         // For its line numbers.
         let file = ScenarioFile::parse(&text, &origin)?;
         let mut whole: Table = toml::from_str(&text).map_err(|error| CampaignError::Vary {
@@ -96,7 +97,10 @@ impl Campaign {
         })?;
         let mut campaign =
             Self { text, files, origin, folder, nominal, varied, laws, seed, trajectory: None, vehicle: None };
-        campaign.vehicle = Some(campaign.nominal()?.vehicle);
+        // Where its file lies now, under its own name.
+        let of_vehicle = ScenarioFile::of_vehicle(&file.vehicle);
+        campaign.vehicle = Some(Scenario::checked(&of_vehicle, &campaign.origin, &campaign.folder)?.vehicle);
+        campaign.nominal()?;
         campaign.look_at_bounds()?;
         campaign.look_at_laws(trajectories, &file)?;
         Ok(campaign)
@@ -228,7 +232,7 @@ fn gather(whole: &mut Table, folder: &Path, origin: &str) -> Result<Vec<(String,
     let mut take = |whole: &mut Table, key: &'static str, stem: &str| {
         let Some(name) = whole.get(key).and_then(Value::as_str).map(str::to_owned) else { return Ok(()) };
         let path = folder.join(&name);
-        let bytes = fs::read(&path).map_err(|error| ScenarioError::Named {
+        let bytes = bounded::read(&path).map_err(|error| ScenarioError::Named {
             origin: origin.to_owned(),
             key,
             reason: format!("{name}: cannot be read ({error})"),
@@ -247,4 +251,22 @@ fn gather(whole: &mut Table, folder: &Path, origin: &str) -> Result<Vec<(String,
         take(whole, "course", "course")?;
     }
     Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vehicle_file_has_any_name() {
+        let dir = tempfile::tempdir().unwrap();
+        let vehicle = include_str!("../../../gains/vehicles/crazyflie-2.1-legacy.toml");
+        std::fs::write(dir.path().join("mine.toml"), vehicle).unwrap();
+        let path = dir.path().join("s.toml");
+        std::fs::write(&path, "vehicle = \"mine.toml\"\nlaw = \"lee\"\n").unwrap();
+        let campaign = Campaign::read(&path, &Asked::default(), &|name| Err(name.to_owned())).unwrap();
+        assert_eq!(campaign.run(3).scenario.unwrap().vehicle.name(), "crazyflie-2.1-legacy");
+        // It is kept beside the rows under a name of the campaign's.
+        assert!(campaign.text().contains("vehicle.toml") && campaign.files()[0].0 == "vehicle.toml");
+    }
 }

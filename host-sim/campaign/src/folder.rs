@@ -13,6 +13,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
 
+use quatrack_plan::bounded;
 use serde::{Deserialize, Serialize};
 
 use crate::definition::{Asked, Campaign, Trajectories};
@@ -282,7 +283,7 @@ impl Growing {
 }
 
 fn read_card(path: &Path) -> Result<Card, CampaignError> {
-    let text = fs::read_to_string(path).map_err(|error| CampaignError::file(path, "cannot be read", &error))?;
+    let text = bounded::read_to_string(path).map_err(|error| CampaignError::file(path, "cannot be read", &error))?;
     let card: Card = serde_json::from_str(&text)
         .map_err(|error| CampaignError::folder(path, format!("is no campaign ({error})")))?;
     if card.schema != SCHEMA || card.laws.is_empty() {

@@ -4,10 +4,12 @@
 //! plan            waypoints and bounds -> B-spline, by second-order cone programming
 //!   trajectory    B-splines, polynomial pieces, their files, fits for the Crazyflie
 //!     quote       the part of a file that an error quotes
+//!     bounded     files as far as any input is long
 //! ```
 //!
 //! Below it is `quatrack_design`, of which it takes the flat output and gravity; conventions are those.
 
+pub mod bounded;
 pub mod plan;
 pub mod quote;
 pub mod trajectory;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use quatrack_identify::log::ColumnMap;
 use quatrack_identify::{identify, vehicle_toml};
+use quatrack_plan::bounded;
 use quatrack_simulation::vehicles;
 
 use super::vehicle::VehicleChoice;
@@ -89,7 +90,7 @@ fn map(args: &Args) -> Result<ColumnMap, Failure> {
         return Ok(map);
     }
     let known = || ColumnMap::names().collect::<Vec<_>>().join(", ");
-    let text = std::fs::read_to_string(name)
+    let text = bounded::read_to_string(Path::new(name))
         .map_err(|error| Failure::input(format!("--columns {name}: {} or a file of one's own ({error})", known())))?;
     ColumnMap::parse(&text, name).map_err(Failure::input)
 }

@@ -1,10 +1,10 @@
 //! `quatrack keys`: keys of the link and of gain tables in; files of them, and images that have them, out.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use quatrack::link::{GivenKeys, KEY_SLOT_BYTES, KEY_SLOT_MAGIC, Protection};
+use quatrack_plan::bounded;
 
 use super::{Failure, key_file, output};
 
@@ -70,7 +70,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 /// The image with the keys in the place that it has for them.
 fn provisioned(path: &Path, given: &GivenKeys) -> Result<Vec<u8>, Failure> {
     let mut image =
-        fs::read(path).map_err(|error| Failure::input(format!("{}: cannot be read ({error})", path.display())))?;
+        bounded::read(path).map_err(|error| Failure::input(format!("{}: cannot be read ({error})", path.display())))?;
     let mut slots = image.windows(KEY_SLOT_BYTES).enumerate().filter(|(_, bytes)| bytes.starts_with(&KEY_SLOT_MAGIC));
     let (Some((at, _)), None) = (slots.next(), slots.next()) else {
         return Err(Failure::input(format!(

@@ -1,9 +1,10 @@
 //! Images: a checkout in, an ELF file out; an ELF file in, its sizes out.
 
 use std::env;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use quatrack_plan::bounded;
 
 use super::PilError;
 
@@ -107,7 +108,7 @@ pub struct Size {
 /// [`PilError::Image`] where the file cannot be read or is no such image.
 pub fn size(path: &Path) -> Result<Size, PilError> {
     let refuse = |reason: String| PilError::Image { path: path.to_path_buf(), reason };
-    let bytes = fs::read(path).map_err(|error| refuse(format!("cannot read this image ({error})")))?;
+    let bytes = bounded::read(path).map_err(|error| refuse(format!("cannot read this image ({error})")))?;
     let size = segments(&bytes).map(|segments| {
         let within = |address: u32, (start, length): (u32, u32)| (start..start + length).contains(&address);
         let sum = |sizes: Vec<u32>| sizes.iter().fold(0_u32, |sum, size| sum.saturating_add(*size));

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 
-use super::check::{LARGEST, check, lag, one_body, positive};
+use super::check::{body_rate, check, lag, one_body, positive, thrust_max, torque_per_thrust};
 use super::flown::{AirFigures, BatteryFigures, FlightFigures, ForceFigures, MotorFigures, PropellerFigures};
 use super::identified::{Identified, sound};
 use super::{Motors, Vehicle, VehicleError};
@@ -75,7 +75,10 @@ impl TryFrom<VehicleFile> for Vehicle {
         let (inertia_kg_m2, inverse_inertia) = inertia(&file.body.inertia_kg_m2)?;
         positive("motors.arm_m", file.motors.arm_m)?;
         let moments = inertia_kg_m2.symmetric_eigenvalues();
-        one_body(file.body.mass_kg, [moments.min(), moments.max()], file.motors.arm_m, file.motors.thrust_max_n)?;
+        let lengths_m = (file.motors.arm_m, file.motors.torque_per_thrust_m);
+        one_body(file.body.mass_kg, [moments.min(), moments.max()], lengths_m, file.motors.thrust_max_n)?;
+        // Before what is held against them.
+        let motors = motors(&file.motors, 0.25 * file.body.mass_kg * GRAVITY_M_S2)?;
         let flown = FlightFigures {
             air: file.air,
             motors: file.motors.flown,
@@ -83,12 +86,12 @@ impl TryFrom<VehicleFile> for Vehicle {
             propeller: file.propeller,
             battery: file.battery,
         };
-        flown.check(file.motors.arm_m)?;
+        flown.check(file.motors.arm_m, file.motors.thrust_max_n)?;
         sound(&file.identified)?;
         let rates = file.limits.body_rates_rad_s;
-        rates.iter().try_for_each(|rate| positive("limits.body_rates_rad_s", *rate))?;
+        rates.iter().try_for_each(|rate| body_rate("limits.body_rates_rad_s", *rate))?;
         Ok(Self {
-            motors: motors(&file.motors, 0.25 * file.body.mass_kg * GRAVITY_M_S2)?,
+            motors,
             name: file.name,
             mass_kg: file.body.mass_kg,
             inertia_kg_m2,
@@ -132,19 +135,14 @@ fn inertia(rows: &[[f64; 3]; 3]) -> Result<(Matrix3<f64>, Matrix3<f64>), Vehicle
 
 fn motors(entry: &MotorsEntry, hover_n: f64) -> Result<Motors, VehicleError> {
     let MotorsEntry { arm_m, thrust_min_n, thrust_max_n, torque_per_thrust_m, lag_s, published_lag_s, .. } = *entry;
-    positive("motors.torque_per_thrust_m", torque_per_thrust_m)?;
+    torque_per_thrust("motors.torque_per_thrust_m", torque_per_thrust_m, arm_m)?;
     check(
         (0.0..hover_n).contains(&thrust_min_n),
         "motors.thrust_min_n",
         thrust_min_n,
         format!("from 0 to below {hover_n:.6} N, a quarter of the weight"),
     )?;
-    check(
-        thrust_max_n > hover_n && thrust_max_n <= LARGEST,
-        "motors.thrust_max_n",
-        thrust_max_n,
-        format!("above {hover_n:.6} N, a quarter of the weight, to {LARGEST}"),
-    )?;
+    thrust_max("motors.thrust_max_n", thrust_max_n, hover_n)?;
     lag("motors.lag_s", lag_s)?;
     let [shortest, longest] = published_lag_s;
     lag("motors.published_lag_s", shortest)?;

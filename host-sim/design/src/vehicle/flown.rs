@@ -6,7 +6,10 @@
 use serde::Deserialize;
 
 use super::VehicleError;
-use super::check::{lag, positive, within};
+use super::check::{lag, within};
+
+/// Force at full command over the largest that is commanded.
+const FULL_SHARES: [f64; 2] = [0.5, 2.0];
 
 /// The measured figures; those that nobody has measured are absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -92,7 +95,7 @@ pub struct BatteryFigures {
 }
 
 impl FlightFigures {
-    pub(super) fn check(&self, arm_m: f64) -> Result<(), VehicleError> {
+    pub(super) fn check(&self, arm_m: f64, thrust_max_n: f64) -> Result<(), VehicleError> {
         if let Some(air) = &self.air {
             within("air.mass_kg", air.mass_kg, 1e-3, 1e3, "kilograms: 45 g are 0.045")?;
             let drag = "a force over velocity and mass: small craft have 0.2 to 1";
@@ -118,7 +121,8 @@ impl FlightFigures {
             within("motors.flown.delay_s", motors.delay_s, 0.0, 0.25, "seconds: 5 ms are 0.005")?;
         }
         if let Some(force) = &self.force {
-            positive("motors.force.full_n", force.full_n)?;
+            let [least, most] = FULL_SHARES.map(|share| share * thrust_max_n);
+            within("motors.force.full_n", force.full_n, least, most, "newtons, 0.5 to 2 times motors.thrust_max_n")?;
             within("motors.force.command_power", force.command_power, 0.5, 3.0, "from a root to a cube")?;
             within("motors.force.voltage_power", force.voltage_power, 0.0, 3.0, "up to a cube")?;
             within("motors.force.reference_v", force.reference_v, 1.0, 100.0, "volts")?;

@@ -7,8 +7,7 @@
 //! - a planning problem as TOML, known by its `waypoints`; it is handed on as text;
 //! - bytes in the Crazyflie's compressed form ([`super::compressed`]).
 
-use std::fs::File;
-use std::io::{self, Read as _};
+use std::io;
 use std::path::Path;
 
 use nalgebra::Vector3;
@@ -20,9 +19,7 @@ use super::polynomial::csv::{self, CsvError};
 use super::polynomial::{PiecewisePolynomial, PolynomialError};
 use super::table::Table;
 use super::waypoints::{self, Kind};
-
-/// More than any trajectory takes: a device that never ends is read up to here.
-const MOST_BYTES: u64 = 64 << 20;
+use crate::bounded::{self, MOST_BYTES};
 
 /// The contents of a trajectory file.
 #[derive(Clone, Debug, PartialEq)]
@@ -166,14 +163,13 @@ struct Curves {
 /// # Errors
 /// [`FileError::Unreadable`] and [`FileError::TooLong`].
 pub fn read_bytes(path: &Path) -> Result<Vec<u8>, FileError> {
-    let name = path.display().to_string();
-    let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes));
-    match read {
-        Ok(_) if bytes.len() as u64 > MOST_BYTES => Err(FileError::TooLong { name }),
-        Ok(_) => Ok(bytes),
-        Err(reason) => Err(FileError::Unreadable { name, reason }),
-    }
+    bounded::read(path).map_err(|reason| {
+        let name = path.display().to_string();
+        match reason.kind() {
+            io::ErrorKind::FileTooLarge => FileError::TooLong { name },
+            _ => FileError::Unreadable { name, reason },
+        }
+    })
 }
 
 /// The same as text.

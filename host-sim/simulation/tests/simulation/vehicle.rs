@@ -122,6 +122,38 @@ fn a_figure_in_another_unit_is_the_one_that_is_named() {
             "29 g are 0.029",
         ),
         (refused(&[("arm_m = 0.046", "arm_m = 46.0")]), "vehicle: motors.arm_m = 46: must be from ", "46 mm are 0.046"),
+        // Centimetres and decimetres: the torque per thrust is 0.15 of the true arm, as on other craft.
+        (refused(&[("arm_m = 0.046", "arm_m = 4.6")]), "vehicle: motors.arm_m = 4.6: must be from ", "46 mm are 0.046"),
+        (
+            refused(&[("arm_m = 0.046", "arm_m = 0.46")]),
+            "vehicle: motors.arm_m = 0.46: must be from ",
+            "46 mm are 0.046",
+        ),
+        (
+            refused(&[("torque_per_thrust_m = 0.0069928948992470565", "torque_per_thrust_m = 6.99")]),
+            "vehicle: motors.torque_per_thrust_m = 6.99: must be from 2.30e-4 to 4.60e-2 ",
+            "5.7 mm are 0.0057",
+        ),
+        (
+            refused(&[("thrust_max_n = 0.12", "thrust_max_n = 12.2")]),
+            "vehicle: motors.thrust_max_n = 12.2: must be above 0.071098 N",
+            "20 g",
+        ),
+        (
+            refused(&[("[20.0, 20.0, 10.0]", "[1146.0, 1146.0, 573.0]")]),
+            "vehicle: limits.body_rates_rad_s = 1146: must be from 0.1 to 60 ",
+            "1146 degrees a second are 20",
+        ),
+        (
+            refused(&[("full_n = 0.124", "full_n = 12.4")]),
+            "vehicle: motors.force.full_n = 12.4: must be from 0.06 to 0.24 ",
+            "thrust_max_n",
+        ),
+        (
+            refused(&[("full_n = 0.124", "full_n = 0.0124")]),
+            "vehicle: motors.force.full_n = 0.0124: must be from 0.06 to 0.24 ",
+            "thrust_max_n",
+        ),
         (inertia(""), "vehicle: body.inertia_kg_m2 = ", "kg m^2"),
         (inertia("e-9"), "vehicle: body.inertia_kg_m2 = ", "kg m^2"),
         (

@@ -8,6 +8,7 @@ use std::str::FromStr as _;
 use quatrack::gains::table::{AcceptError, GainTable, TableKind};
 use quatrack::{Limits, Rate, Settings, Trajectory};
 use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::bounded;
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_plan::trajectory::transform::Transform;
@@ -194,6 +195,6 @@ pub(in crate::cli) fn source(path: &Path) -> Result<Source, Failure> {
             .ok_or_else(|| refused(path, &"no law on board remembers its last commands; set delay_samples = 0"))?;
         return Ok(Source { bytes, vehicle: Some(design.vehicle) });
     }
-    let bytes = std::fs::read(path).map_err(|error| refused(path, &format!("cannot be read ({error})")))?;
+    let bytes = bounded::read(path).map_err(|error| refused(path, &format!("cannot be read ({error})")))?;
     Ok(Source { bytes, vehicle: None })
 }

@@ -19,6 +19,7 @@ pub use problem::{Method, Problem};
 use entry::{check, positive};
 use quatrack_design::certify::Minimum;
 use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::bounded;
 
 use super::GainsError;
 use super::file::{self, DesignFile, LimitsEntry, MinimumEntry};
@@ -52,7 +53,7 @@ impl Design {
     /// [`GainsError`], with the key, its value and its range.
     pub fn from_file(path: &Path) -> Result<Self, GainsError> {
         let text =
-            std::fs::read_to_string(path).map_err(|error| GainsError::Unreadable { reason: error.to_string() })?;
+            bounded::read_to_string(path).map_err(|error| GainsError::Unreadable { reason: error.to_string() })?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         Self::from_toml(&name, &text, path.parent().unwrap_or(Path::new("")))
     }
