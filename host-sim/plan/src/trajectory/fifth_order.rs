@@ -19,6 +19,10 @@ pub trait FlatTrajectory {
     fn duration_s(&self) -> f64;
     /// The flat output at a time.
     fn at(&self, t_s: f64) -> FifthOrder;
+    /// The two places between which it jumps, m, where it does: a craft on its way is on the line between them.
+    fn jump_m(&self) -> Option<[Vector3<f64>; 2]> {
+        None
+    }
 }
 
 impl FifthOrder {
@@ -98,6 +102,10 @@ impl FlatTrajectory for Jump {
 
     fn at(&self, t_s: f64) -> FifthOrder {
         FifthOrder::at_rest(if t_s < self.at_s { self.from_m } else { self.to_m }, 0.0)
+    }
+
+    fn jump_m(&self) -> Option<[Vector3<f64>; 2]> {
+        Some([self.from_m, self.to_m])
     }
 }
 

@@ -12,7 +12,8 @@ use crate::flight::closed_loop::Lost;
 use crate::flight::rigid_loop::RigidFlight;
 use crate::plant::{Plant, PlantGroup, RigidState};
 
-/// Farther than this from its course a craft counts as lost, m.
+/// Farther than this from its course a craft counts as lost, m: of a step from the line between its places, of a start beside the course
+/// by as much more as that is off.
 const LOST_M: f64 = 5.0;
 
 /// The form of the setpoints.
@@ -62,6 +63,8 @@ pub(super) struct Flying<'a> {
     limits_n: [f64; 2],
     /// The step from which another setpoint is told.
     setpoint_until: u32,
+    /// How far off its course the craft began, m.
+    start_off_m: f64,
     commands_n: Vector4<f64>,
     /// The law's last input.
     told: Input,
@@ -80,6 +83,7 @@ impl<'a> Flying<'a> {
             feels: law.feels() || estimation.feels(),
             limits_n: at_limit_n(plant.command_limits_n()),
             setpoint_until: 0,
+            start_off_m: (plant.state().position_m - track.target_m(0)).norm(),
             law,
             estimation,
             commands_n: plant.state().thrusts_n,
@@ -121,8 +125,10 @@ impl<'a> Flying<'a> {
         let target_m = self.track.target_m(step);
         let error_m = (state.position_m - target_m).norm();
         // Written so that NaN fails it.
-        if !(error_m < LOST_M && plant.is_finite()) {
-            return self.lose(step, format!("{error_m:.0} m from the course"), plant, keep);
+        if !(error_m < LOST_M && plant.is_finite())
+            && let Some(off_m) = self.lost_at_m(step, plant)
+        {
+            return self.lose(step, format!("{off_m:.0} m from the course"), plant, keep);
         }
         let measured = self.track.is_measured(time_s);
         let (law_s_turn, row_s_turn) = (
@@ -155,6 +161,13 @@ impl<'a> Flying<'a> {
         }
         self.estimation.pass_over(self.stride - 1);
         true
+    }
+
+    /// How far off its course a craft is that is lost.
+    #[cold]
+    fn lost_at_m(&self, step: u32, plant: &Plant) -> Option<f64> {
+        let off_m = self.track.off_m(step, &plant.state().position_m);
+        (!(off_m < LOST_M + self.start_off_m && plant.is_finite())).then_some(off_m)
     }
 
     #[cold]
@@ -225,3 +238,6 @@ pub(super) fn truth(state: &RigidState, specific_force_m_s2: &Vector3<f64>) -> E
         specific_force_m_s2: *specific_force_m_s2,
     }
 }
+
+#[cfg(test)]
+mod tests;

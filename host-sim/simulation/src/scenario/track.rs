@@ -20,6 +20,8 @@ pub struct Track {
     setpoint_steps: u32,
     steps: u32,
     measured_from_s: f64,
+    /// Where the course jumps.
+    jump_m: Option<[Vector3<f64>; 2]>,
 }
 
 impl Track {
@@ -33,6 +35,7 @@ impl Track {
             setpoint_steps,
             steps,
             measured_from_s: flown.measured_from_s,
+            jump_m: flown.course.jump_m(),
         };
         for step in 0..=steps {
             let time_s = f64::from(step) * STEP_S;
@@ -61,6 +64,15 @@ impl Track {
     /// Where the craft is to be at a step, m; at the end beyond it.
     pub(super) fn target_m(&self, step: u32) -> Vector3<f64> {
         self.targets_m.get(step as usize).or(self.targets_m.last()).copied().unwrap_or_default()
+    }
+
+    /// How far a place is from the course at a step, m; from the line between its two places where the course jumps.
+    pub(super) fn off_m(&self, step: u32, place_m: &Vector3<f64>) -> f64 {
+        let Some([from_m, to_m]) = self.jump_m else { return (place_m - self.target_m(step)).norm() };
+        let way_m = to_m - from_m;
+        // The nearest point of the line is at a share of the way; of none, all of it is one place.
+        let share = (place_m - from_m).dot(&way_m) / way_m.norm_squared().max(f64::MIN_POSITIVE);
+        (place_m - (from_m + way_m * share.clamp(0.0, 1.0))).norm()
     }
 
     /// The last setpoint sent at a step.
