@@ -4,11 +4,11 @@ mod show;
 mod sign;
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
-use quatrack_simulation::crazyflie::{craft_header, standard_design};
+use quatrack_plan::bounded;
+use quatrack_simulation::crazyflie::{craft_header, standard_design, standard_force_input};
 use quatrack_simulation::gains::{self, Certified, Checked, Design, Failed, GainsError};
 use quatrack_simulation::generated::{self, GenerateError};
 use quatrack_simulation::vehicles;
@@ -129,7 +129,33 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 /// Reads, computes and certifies a design.
 fn certified(path: &Path) -> Result<Certified, Failure> {
-    Design::from_file(path).and_then(|design| design.certify()).map_err(|error| failed(path, &error))
+    let design = Design::from_file(path).map_err(|error| failed(path, &error))?;
+    design.certify().map_err(|error| {
+        let failure = failed(path, &error);
+        match unscaled(&design).filter(|_| error.is_verdict()) {
+            Some(note) => Failure { line: format!("{}; {note}", failure.line), ..failure },
+            None => failure,
+        }
+    })
+}
+
+/// What an owner of another craft has to know of a design's weights; nothing for those of the paper's model, which has no mass.
+fn unscaled(design: &Design) -> Option<String> {
+    let (method, mass_kg) = (design.problem.named().1, design.vehicle.mass_kg());
+    let scaled = match method {
+        "cascade" => {
+            let force_input = standard_force_input(mass_kg);
+            // Three digits, as somebody writes them.
+            let written = format!("{force_input:.2e}").parse().unwrap_or(force_input);
+            format!(", as `quatrack gains craft` takes it: force_input = {written} for this mass")
+        }
+        "actuator-aware" => String::new(),
+        _ => return None,
+    };
+    Some(format!(
+        "weights are as written and do not scale with the mass, {mass_kg} kg: twice the mass and inertia fly alike with a quarter of \
+         force_input{scaled}"
+    ))
 }
 
 /// How an error of a design ends the command: 1 where the answer is no, 2 where the file cannot be used.
@@ -196,15 +222,9 @@ fn craft(path: &Path, out: &Path) -> Result<(), Failure> {
 
 /// Notes for an owner about the method.
 fn notes(certified: &Certified) -> String {
-    let (method, mass_kg) = (certified.design.problem.named().1, certified.design.vehicle.mass_kg());
-    if !matches!(method, "cascade" | "actuator-aware") {
-        return String::new();
-    }
-    let mut text = format!(
-        "  weights are as written and do not scale with the mass, {mass_kg} kg: twice the mass and inertia fly alike with a quarter \
-         of force_input\n"
-    );
-    if method == "actuator-aware" {
+    let Some(note) = unscaled(&certified.design) else { return String::new() };
+    let mut text = format!("  {note}\n");
+    if certified.design.problem.named().1 == "actuator-aware" {
         text += "  this is the law before the cascade: for a table of that write method = \"cascade\" and leave [weights] out\n";
     }
     text
@@ -321,7 +341,7 @@ fn require_folder(folder: &Path) -> Result<(), Failure> {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, Failure> {
-    fs::read(path).map_err(|error| Failure::input(format!("{}: cannot be read ({error})", path.display())))
+    bounded::read(path).map_err(|error| Failure::input(format!("{}: cannot be read ({error})", path.display())))
 }
 
 /// A line of the list.

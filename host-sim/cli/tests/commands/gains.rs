@@ -190,6 +190,29 @@ fn a_design_below_its_own_minimum_is_refused_and_nothing_is_written() {
 }
 
 #[test]
+fn a_design_of_another_craft_that_is_refused_is_told_that_weights_do_not_scale() {
+    let dir = folder("heavy");
+    let vehicle = "name = \"heavy\"\n[body]\nmass_kg = 1.2\n\
+        inertia_kg_m2 = [[8.0e-3, 0.0, 0.0], [0.0, 8.0e-3, 0.0], [0.0, 0.0, 1.4e-2]]\n[motors]\narm_m = 0.16\nthrust_min_n = 0.1\n\
+        thrust_max_n = 8.0\ntorque_per_thrust_m = 0.014\nlag_s = 0.03\npublished_lag_s = [0.02, 0.04]\n\
+        [limits]\nbody_rates_rad_s = [10.0, 10.0, 5.0]\n";
+    fs::write(dir.join("heavy.toml"), vehicle).unwrap();
+    let design = "vehicle = \"heavy.toml\"\nlinearisation = \"equilibrium\"\nmethod = \"cascade\"\ncontrol_rate_hz = 500\n\
+        motor_lag_ms = 30.0\n[region]\nmotor_lag_ms = [20.0, 40.0]\nmass_percent = 20.0\ninertia_percent = 30.0\n\
+        force_percent = [70.0, 105.0]\ndelay_ms = 10.0\n[minimum]\ngain_factor_all = 1.8\n";
+    let path = dir.join("design.toml");
+    fs::write(&path, design).unwrap();
+    let path = path.to_str().unwrap();
+    // 1e4 (0.034 / 1.2)^2
+    let named = ["refused: gain margin", "do not scale with the mass, 1.2 kg", "force_input = 8.03 for this mass"];
+    assert_refused(&quatrack(&["gains", "design", path]), 1, &named);
+    fs::write(path, design.replace("[region]", "[weights]\nforce_input = 8.03\n[region]")).unwrap();
+    let designed = quatrack(&["gains", "design", path]);
+    assert!(designed.status.success(), "{}", String::from_utf8_lossy(&designed.stderr));
+    assert!(String::from_utf8(designed.stdout).unwrap().contains("force_input = 8.03 for this mass"));
+}
+
+#[test]
 fn without_designs_there_is_a_word_of_help() {
     let dir = folder("elsewhere");
     let there = |arguments: &[&str]| {

@@ -105,6 +105,7 @@ pub struct Firmware {
     sensors: Sensors,
     recording: Option<Recording>,
     before: Before,
+    refused_table: bool,
     _alone: MutexGuard<'static, ()>,
 }
 
@@ -181,6 +182,8 @@ impl Firmware {
         }
         parameters.learn.store(1, Relaxed);
         parameters.feed_forward.store(1, Relaxed);
+        let refused = || ffi::quatrack.log.refused_tables.load(Relaxed);
+        let refused_before = refused();
         let answer = tell();
         ffi::quatrackService();
         let mut firmware = Self {
@@ -195,6 +198,7 @@ impl Firmware {
             sensors,
             recording,
             before: Before::default(),
+            refused_table: refused() != refused_before,
             _alone: alone,
         };
         // Motors off, until parameters have been looked at.
@@ -277,6 +281,11 @@ impl Firmware {
         ffi::quatrack.parameters.table.store(table, Relaxed);
         ffi::quatrackService();
         self.before.table = Some(table);
+    }
+
+    /// Whether the owner's table and lag were refused as the craft was switched on: then it flies with the published lag.
+    pub fn refused_table(&self) -> bool {
+        self.refused_table
     }
 
     /// The calls recorded so far.

@@ -10,7 +10,7 @@ use thiserror::Error;
 use crate::gains::{Certified, Design, GainsError};
 
 /// Why a design gives no craft for the object.
-#[derive(Debug, Error)]
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum OwnCraftError {
     /// Another law.
     #[error("{method} is no law that the Crazyflie object flies of a craft's own: write method = \"cascade\"")]
@@ -46,6 +46,11 @@ const REGION_SHARES: [f64; 2] = [0.5, 1.25];
 /// The craft that the standard weights were found on, kg; the weight of forces goes with the inverse square of the mass.
 const WEIGHED_KG: f64 = 0.034;
 
+/// The standard weight of forces for a mass: twice the mass and inertia fly alike with a quarter of it.
+pub fn standard_force_input(mass_kg: f64) -> f64 {
+    1e4 * (WEIGHED_KG / mass_kg).powi(2)
+}
+
 /// The design of a vehicle of which nobody has written one: standard weights, and the certified region of the built-in
 /// tables.
 ///
@@ -56,7 +61,7 @@ pub fn standard_design(vehicle: &Vehicle) -> Result<Design, GainsError> {
     let lag_s = DESIGN_SHARE * own_s;
     let [from_s, to_s] = REGION_SHARES.map(|share| share * lag_s);
     let to_s = to_s.max(own_s);
-    let force_input = 1e4 * (WEIGHED_KG / vehicle.mass_kg()).powi(2);
+    let force_input = standard_force_input(vehicle.mass_kg());
     let text = format!(
         "description = \"The standard cascade.\"\nvehicle = \"\"\nlinearisation = \"equilibrium\"\nmethod = \"cascade\"\n\
          control_rate_hz = 500\nmotor_lag_ms = {:?}\n[weights]\nforce_input = {force_input:?}\n[region]\n\

@@ -12,11 +12,13 @@ use quatrack_design::design::cascade::{CascadeWeights, cascade};
 use quatrack_design::vehicle::Vehicle;
 
 use super::core_law::rigid_state;
-use super::laws::ToldFigures;
+use super::told::{ToldError, ToldFigures};
 use super::track::Track;
 use crate::control_law::{ControlLaw, Input, Setpoint};
+use crate::crazyflie::{StandardError, standard_cascade};
 use crate::flight::motor_laws::FlightError;
 use crate::flight::motor_loop::{self, PERIOD_S, RATE};
+use crate::vehicles;
 
 /// Farthest that two setpoints of one motion are apart, m: 10 ms at 5 m/s.
 const JUMP_M: f64 = 0.05;
@@ -33,9 +35,9 @@ pub(super) struct CascadeLaw {
 }
 
 impl CascadeLaw {
-    /// The law of [`cascade_of`], at a hover.
-    pub(super) fn new(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, FlightError> {
-        cascade_of(vehicle, told).map(Self::hovering)
+    /// The law of [`flown_cascade`], at a hover.
+    pub(super) fn new(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, CascadeError> {
+        flown_cascade(vehicle, told).map(Self::hovering)
     }
 
     /// The law at a hover.
@@ -78,8 +80,34 @@ impl CascadeLaw {
     }
 }
 
+/// Why a vehicle is not flown by the cascade.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(super) enum CascadeError {
+    /// A built-in vehicle has no design, or the core refuses a figure.
+    #[error(transparent)]
+    Flight(#[from] FlightError),
+    /// Another vehicle has no certified table.
+    #[error(transparent)]
+    Standard(#[from] StandardError),
+    /// The table is not certified for a figure that is told.
+    #[error(transparent)]
+    Told(#[from] ToldError),
+}
+
+/// The cascade that a scenario flies a vehicle with. A built-in one has that of [`cascade_of`]. Another vehicle has the certified table
+/// that `quatrack gains craft` makes, with the lag of its design, and its air where none is told; a lag that is told has to be in the
+/// table's region.
+fn flown_cascade(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, CascadeError> {
+    if vehicles::is_built_in(vehicle) {
+        return Ok(cascade_of(vehicle, told)?);
+    }
+    let standard = standard_cascade(vehicle)?;
+    told.certified_by(&standard.table.certified, vehicle)?;
+    Ok(cascade_of_table(vehicle, told, &standard.table)?)
+}
+
 /// The cascade of a vehicle at 500 Hz, designed with the standard weights for the lag that is told, or for the one that the vehicle
-/// is flown with where none is.
+/// is flown with where none is. Nothing certifies it.
 ///
 /// # Errors
 /// [`FlightError`] where there is no design, or the core refuses a figure.
@@ -124,27 +152,32 @@ impl ControlLaw for CascadeLaw {
 
 /// The Brushless is flown with a table for 50 ms, the brushed Crazyflies with one for 100 ms, where their owners state no lag.
 fn untold_lag_s(vehicle: &Vehicle) -> f64 {
-    if is_brushless(vehicle) {
-        0.05
-    } else if vehicle.name().starts_with("crazyflie-") {
-        0.1
-    } else {
-        vehicle.motors().lag_s
+    match KnownCraft::of(vehicle) {
+        Some(KnownCraft::Brushless) => 0.05,
+        Some(KnownCraft::Brushed) => 0.1,
+        None => vehicle.motors().lag_s,
     }
 }
 
-fn is_brushless(vehicle: &Vehicle) -> bool {
-    vehicle.name().starts_with("crazyflie-2.1-brushl")
+/// A built-in vehicle.
+enum KnownCraft {
+    Brushless,
+    Brushed,
+}
+
+impl KnownCraft {
+    fn of(vehicle: &Vehicle) -> Option<Self> {
+        let is_brushless = vehicle.name().starts_with("crazyflie-2.1-brushless");
+        vehicles::is_built_in(vehicle).then_some(if is_brushless { Self::Brushless } else { Self::Brushed })
+    }
 }
 
 /// The told air, and for the rest that of Crazyflies; another vehicle begins with none and learns it.
 fn air(vehicle: &Vehicle, told: &ToldFigures) -> Result<Air, FlightError> {
-    let known = if is_brushless(vehicle) {
-        Air::BRUSHLESS
-    } else if vehicle.name().starts_with("crazyflie-") {
-        Air::BRUSHED
-    } else {
-        Air { learn: true, ..Air::NONE }
+    let known = match KnownCraft::of(vehicle) {
+        Some(KnownCraft::Brushless) => Air::BRUSHLESS,
+        Some(KnownCraft::Brushed) => Air::BRUSHED,
+        None => Air { learn: true, ..Air::NONE },
     };
     Ok(with_told(&known, told).checked()?)
 }
@@ -154,3 +187,6 @@ fn with_told(air: &Air, told: &ToldFigures) -> Air {
     let moment_n_s = told.moment_n_m_per_m_s.map_or(air.moment_n_s, |moment| moment.map(|share| share as f32));
     Air { drag_per_s, moment_n_s, ..*air }
 }
+
+#[cfg(test)]
+mod tests;

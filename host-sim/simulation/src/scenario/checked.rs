@@ -9,8 +9,8 @@ use super::checks::Checks;
 use super::course::{HOVER_S, RAMP_S};
 use super::error::ScenarioError;
 use super::file::{Air, ScenarioFile};
-use super::laws::ToldFigures;
 use super::sensors::SensorNoise;
+use super::told::ToldFigures;
 use super::whole::{
     CourseChoice, EIGHT_MEASURED_S, FilterFigures, HOVER_MEASURED_S, STEP_MEASURED_S, Scenario, StartOffset,
 };
@@ -64,7 +64,7 @@ impl Scenario {
                 5.0,
                 "in m/s^2",
             )?,
-            told: told(file, &checks, &vehicle)?,
+            told: ToldFigures::checked(&file.told, &checks, &vehicle)?,
             noise: noise(file, &checks)?,
             filter: filter(file, &checks)?,
             start: start(file, &checks)?,
@@ -74,6 +74,7 @@ impl Scenario {
         scenario
             .plant(&RigidState::at_rest(Vector3::zeros(), 0.0))
             .map_err(|error| ScenarioError::Plant { origin: origin.to_owned(), error })?;
+        air_acts(file, &checks)?;
         Ok(scenario)
     }
 }
@@ -147,6 +148,24 @@ fn environment(file: &ScenarioFile, checks: &Checks<'_>, vehicle: &Vehicle) -> R
         ..of_vehicle
     };
     Ok(Environment { air, wind: Wind { mean_m_s, gust: None, turbulence }, ..Environment::VACUUM })
+}
+
+/// Wind without drag and moment moves no craft: whoever flies it reads figures of vacuum.
+fn air_acts(file: &ScenarioFile, checks: &Checks<'_>) -> Result<(), ScenarioError> {
+    let Some(Air::Own(own)) = &file.air else { return Ok(()) };
+    if own.drag_per_s.is_some() || own.moment_n_m_per_m_s.is_some() {
+        return Ok(());
+    }
+    let must = "0 where the air has no drag and no moment, through which it acts on the craft: give air.drag_per_s or \
+                air.moment_n_m_per_m_s, or of = \"vehicle\" (--air vehicle) for the vehicle's own";
+    let wind_m_s = own.wind_m_s.unwrap_or_default();
+    if wind_m_s != [0.0; 3] {
+        return Err(checks.refuse("air.wind_m_s", &format!("{wind_m_s:?}"), must.to_owned()));
+    }
+    match own.gust_rms_m_s {
+        Some(rms_m_s) if rms_m_s != 0.0 => Err(checks.refuse("air.gust_rms_m_s", &rms_m_s, must.to_owned())),
+        _ => Ok(()),
+    }
 }
 
 /// Bounds of a motor's lag, ms.
@@ -224,24 +243,9 @@ fn start(file: &ScenarioFile, checks: &Checks<'_>) -> Result<StartOffset, Scenar
     let start = &file.start;
     let each = |key, value, most: f64, unit| checks.each(key, value, [-most, most], unit).map(Vector3::from);
     Ok(StartOffset {
-        offset_m: each("start.offset_m", start.offset_m, 4.0, "in m; a craft is lost at 5 m from its course")?,
+        offset_m: each("start.offset_m", start.offset_m, 4.0, "in m")?,
         velocity_m_s: each("start.velocity_m_s", start.velocity_m_s, 10.0, "in m/s")?,
         turn_rad: each("start.turn_rad", start.turn_rad, std::f64::consts::PI, "in rad")?,
-    })
-}
-
-fn told(file: &ScenarioFile, checks: &Checks<'_>, vehicle: &Vehicle) -> Result<ToldFigures, ScenarioError> {
-    let (told, own_kg) = (&file.told, vehicle.mass_kg());
-    let bounds = [0.5 * own_kg, 2.0 * own_kg];
-    let mass_kg = checks.one("told.mass_kg", told.mass_kg, own_kg, bounds, "in kg, half to twice the vehicle's")?;
-    let lag_s = |ms: f64| checks.one("told.lag_ms", Some(ms), 0.0, LAG_MS, "in ms").map(|ms| 1e-3 * ms);
-    let drag = |value| checks.one("told.drag_per_s", Some(value), 0.0, [0.0, 3.0], "drag over mass in 1/s");
-    let moment = |value| checks.each("told.moment_n_m_per_m_s", Some(value), [0.0, 0.01], "in N m a m/s");
-    Ok(ToldFigures {
-        mass_kg,
-        lag_s: told.lag_ms.map(lag_s).transpose()?,
-        drag_per_s: told.drag_per_s.map(drag).transpose()?,
-        moment_n_m_per_m_s: told.moment_n_m_per_m_s.map(moment).transpose()?,
     })
 }
 

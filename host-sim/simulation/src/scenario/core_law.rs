@@ -14,7 +14,7 @@ use quatrack::{
 use quatrack_design::design::actuator_aware::{ActuatorAwareWeights, actuator_aware};
 use quatrack_design::vehicle::Vehicle;
 
-use super::laws::ToldFigures;
+use super::told::ToldFigures;
 use super::track::Track;
 use crate::control_law::{ControlLaw, Estimate, Input, Setpoint};
 use crate::flight::motor_laws::{FlightError, default_lag_s};

@@ -11,10 +11,12 @@
 use std::fmt;
 use std::path::Path;
 
+use quatrack_plan::bounded;
 use quatrack_plan::quote::{one_line, quoted};
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
 
+use super::endless::endless;
 use super::error::ScenarioError;
 use super::flight::Setpoints;
 use super::laws::Law;
@@ -242,17 +244,16 @@ impl ScenarioFile {
     /// # Errors
     /// [`ScenarioError::Syntax`].
     pub fn parse(text: &str, origin: &str) -> Result<Self, ScenarioError> {
-        toml::from_str(text).map_err(|error| {
-            let start = error.span().map_or(0, |span| span.start).min(text.len());
-            let line = 1 + text.as_bytes()[..start].iter().filter(|byte| **byte == b'\n').count();
+        let at = |start: usize, reason: String| {
+            let line = 1 + text.as_bytes()[..start.min(text.len())].iter().filter(|byte| **byte == b'\n').count();
             let written = text.lines().nth(line - 1).unwrap_or("").trim();
-            ScenarioError::Syntax {
-                origin: origin.to_owned(),
-                line,
-                text: quoted(written.split(" #").next().unwrap_or("").trim()),
-                reason: one_line(error.message()),
-            }
-        })
+            let text = quoted(written.split(" #").next().unwrap_or("").trim());
+            ScenarioError::Syntax { origin: origin.to_owned(), line, text, reason }
+        };
+        if let Some(start) = endless(text) {
+            return Err(at(start, "must be a finite number".to_owned()));
+        }
+        toml::from_str(text).map_err(|error| at(error.span().map_or(0, |span| span.start), one_line(error.message())))
     }
 
     /// From a file.
@@ -260,7 +261,7 @@ impl ScenarioFile {
     /// # Errors
     /// As [`Self::parse`], and [`ScenarioError::Unreadable`].
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let text = std::fs::read_to_string(path)
+        let text = bounded::read_to_string(path)
             .map_err(|error| ScenarioError::Unreadable { path: path.to_owned(), reason: error.to_string() })?;
         Self::parse(&text, &path.display().to_string())
     }

@@ -7,10 +7,12 @@ use quatrack::gains::table::CascadeTable;
 use quatrack_design::vehicle::Vehicle;
 use serde::{Deserialize, Serialize};
 
-use super::cascade_law::CascadeLaw;
+use super::cascade_law::{CascadeError, CascadeLaw};
 use super::core_law::{CoreLaw, Gain};
-use super::object_law::ObjectLaw;
+use super::object_law::{ObjectError, ObjectLaw};
+use super::told::{ToldError, ToldFigures};
 use crate::control_law::ControlLaw;
+use crate::crazyflie::StandardError;
 use crate::flight::motor_laws::FlightError;
 use crate::rivals::{Actuation, CascadedPid, CascadedPidConfig, Lee, LeeConfig, Mellinger, MellingerConfig};
 
@@ -41,19 +43,6 @@ pub enum Law {
     Pid,
 }
 
-/// The figures of the craft that a law is told.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ToldFigures {
-    /// Mass, kg.
-    pub mass_kg: f64,
-    /// Lag of the motors, s, where it is said.
-    pub lag_s: Option<f64>,
-    /// Linear drag over mass, 1/s, where it is said.
-    pub drag_per_s: Option<f64>,
-    /// Airflow moment, N m a m/s, where it is said.
-    pub moment_n_m_per_m_s: Option<[f64; 2]>,
-}
-
 /// Why a law does not fly a vehicle.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -66,25 +55,47 @@ pub enum LawError {
         /// All there are.
         known: String,
     },
-    /// The Crazyflie controller has no table for it.
+    /// There is no certified table for it.
     #[error(
-        "{law}: the Crazyflie controller has no table for {vehicle} told {mass_kg} kg; tell a mass within 20 % of a built-in \
-         vehicle's; of a vehicle file its own, and `quatrack gains craft` names the fault"
+        "{law} on {vehicle}: the standard cascade has no certificate for it: {error}; mend the vehicle's file, or write a design of its own \
+         (docs/own-gains.md) and fly it by --gains"
     )]
     NoTable {
         /// The law.
         law: &'static str,
-        /// The law's name.
+        /// The vehicle's name.
         vehicle: String,
-        /// The mass that it was told, kg.
-        mass_kg: f64,
+        /// The reason.
+        #[source]
+        error: Box<StandardError>,
+    },
+    /// It does not take a figure that it is told.
+    #[error("{law} on {vehicle}: {error}")]
+    Told {
+        /// The law.
+        law: &'static str,
+        /// The vehicle's name.
+        vehicle: String,
+        /// The figure with its range.
+        #[source]
+        error: ToldError,
+    },
+    /// The Crazyflie's object does not fly it.
+    #[error("{law} on {vehicle}: {reason}")]
+    Object {
+        /// The law.
+        law: &'static str,
+        /// The vehicle's name.
+        vehicle: String,
+        /// The object's words, with the remedy.
+        reason: String,
     },
     /// The core flies no such vehicle.
     #[error("{law} on {vehicle}: {error}")]
     Core {
         /// The law.
         law: &'static str,
-        /// The law's name.
+        /// The vehicle's name.
         vehicle: String,
         /// Why not.
         #[source]
@@ -131,22 +142,21 @@ impl Law {
     /// At the start of a flight of a vehicle of which it is told something.
     ///
     /// # Errors
-    /// [`LawError::NoTable`].
+    /// [`LawError`] but for [`LawError::Unknown`].
     pub fn start(self, vehicle: &Vehicle, told: &ToldFigures) -> Result<Box<dyn ControlLaw>, LawError> {
         let actuation = Actuation::of(vehicle);
-        let table = |number| -> Result<Box<dyn ControlLaw>, LawError> {
-            ObjectLaw::start(vehicle, told, number).map(|law| Box::new(law) as Box<dyn ControlLaw>).ok_or_else(|| {
-                LawError::NoTable { law: self.name(), vehicle: vehicle.name().to_owned(), mass_kg: told.mass_kg }
-            })
-        };
         let refused = |error| LawError::Core { law: self.name(), vehicle: vehicle.name().to_owned(), error };
         let core = |law: Result<CoreLaw, FlightError>| -> Result<Box<dyn ControlLaw>, LawError> {
             law.map(|law| Box::new(law) as Box<dyn ControlLaw>).map_err(refused)
         };
         let paper = |gain: Gain| core(CoreLaw::paper(vehicle, told, gain));
         Ok(match self {
-            Self::Quatrack => Box::new(CascadeLaw::new(vehicle, told).map_err(refused)?),
-            Self::Crazyflie => table(0)?,
+            Self::Quatrack => {
+                Box::new(CascadeLaw::new(vehicle, told).map_err(|error| LawError::of_cascade(vehicle, error))?)
+            }
+            Self::Crazyflie => {
+                Box::new(ObjectLaw::start(vehicle, told).map_err(|error| LawError::of_object(vehicle, error))?)
+            }
             Self::ActuatorAware => core(CoreLaw::actuator_aware(vehicle, told))?,
             Self::LyapE => paper(Gain::Equilibrium(&gains::LYAP_E))?,
             Self::LqrE => paper(Gain::Equilibrium(&gains::LQR_E))?,
@@ -156,6 +166,28 @@ impl Law {
             Self::Lee => Box::new(Lee::new(LeeConfig::firmware(told.mass_kg), actuation)),
             Self::Pid => Box::new(CascadedPid::new(CascadedPidConfig::firmware(vehicle, told.mass_kg), actuation)),
         })
+    }
+}
+
+impl LawError {
+    /// Why [`Law::Quatrack`] does not fly a vehicle.
+    pub(super) fn of_cascade(vehicle: &Vehicle, error: CascadeError) -> Self {
+        let (law, vehicle) = (Law::Quatrack.name(), vehicle.name().to_owned());
+        match error {
+            CascadeError::Flight(error) => Self::Core { law, vehicle, error },
+            CascadeError::Standard(error) => Self::NoTable { law, vehicle, error: error.into() },
+            CascadeError::Told(error) => Self::Told { law, vehicle, error },
+        }
+    }
+
+    /// Why [`Law::Crazyflie`] does not.
+    fn of_object(vehicle: &Vehicle, error: ObjectError) -> Self {
+        let (law, vehicle) = (Law::Crazyflie.name(), vehicle.name().to_owned());
+        match error {
+            ObjectError::Standard(error) => Self::NoTable { law, vehicle, error: error.into() },
+            ObjectError::Told(error) => Self::Told { law, vehicle, error },
+            ObjectError::Refused(reason) => Self::Object { law, vehicle, reason },
+        }
     }
 }
 

@@ -19,7 +19,9 @@
 //!         object_law the Crazyflie controller as a law
 //!       table_law    the controller of a table of gains as a law
 //!         core_law   the core's controller as a law
+//!   told             what a law is told, and the ranges in which it is taken
 //!   file             the keys in TOML
+//!     endless        numbers that are none, or have no end
 //! ```
 
 mod cascade_law;
@@ -28,6 +30,7 @@ mod checks;
 pub mod compare;
 mod core_law;
 pub mod course;
+mod endless;
 mod error;
 pub mod file;
 pub mod filtered;
@@ -40,6 +43,7 @@ mod prototype;
 mod recording;
 pub mod sensors;
 mod table_law;
+mod told;
 mod track;
 mod varied;
 mod whole;
@@ -48,10 +52,11 @@ pub use cascade_law::{cascade_of, cascade_of_table};
 pub use core_law::{actuation_of, actuator_aware_of};
 pub use error::{ScenarioError, StartError};
 pub use kept::Tally;
-pub use laws::{Law, LawError, ToldFigures, start_table};
+pub use laws::{Law, LawError, start_table};
 pub use prototype::Prototype;
 pub use recording::{Around, Recording};
 pub use sensors::SensorNoise;
 pub use table_law::TableLaw;
+pub use told::{ToldError, ToldFigures};
 pub use track::Track;
 pub use whole::{CourseChoice, FilterFigures, Scenario, Side, StartOffset};

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector4;
 use quatrack_crazyflie::abi::{self, Mode};
-
-use super::laws::ToldFigures;
-use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ, Setpoint};
-use crate::crazyflie::{Firmware, Sensors, Tune, own_craft, platform, standard_design};
-use crate::plant::RigidState;
 use quatrack_design::vehicle::Vehicle;
+
+use super::told::{ToldError, ToldFigures, lag_range_ms};
+use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ, Setpoint};
+use crate::crazyflie::{Firmware, Sensors, StandardError, Tune, knows, platform, standard_cascade};
+use crate::plant::RigidState;
 
 /// The firmware's stabilizer around the controller. There is one controller in a process: another flight of it waits until
 /// this one is over.
@@ -17,30 +17,58 @@ pub(super) struct ObjectLaw {
     sent_s: Option<f64>,
 }
 
+/// Why the object does not fly a vehicle.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum ObjectError {
+    /// There is no certified table for it.
+    Standard(StandardError),
+    /// A figure that it is told is not one that it takes.
+    Told(ToldError),
+    /// In its own words.
+    Refused(String),
+}
+
 impl ObjectLaw {
-    /// Switched on for a vehicle, with one of the object's tables, or with one made for the vehicle; nothing where there is none.
-    pub(super) fn start(vehicle: &Vehicle, told: &ToldFigures, table: u8) -> Option<Self> {
+    /// Switched on for a vehicle: with its default table for a craft that it knows, otherwise with the one that `quatrack gains craft`
+    /// makes for the vehicle. What it is told and does not take is refused, where the firmware would fly on with what it had.
+    ///
+    /// # Errors
+    /// [`ObjectError`].
+    pub(super) fn start(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, ObjectError> {
         let tune = Tune {
             drag_per_s: told.drag_per_s,
             moment_n_s: told.moment_n_m_per_m_s,
-            ..Tune::new(table, told.lag_s.unwrap_or(0.0))
+            ..Tune::new(0, told.lag_s.unwrap_or(0.0))
         };
         let sensors = Sensors { gyro_noise_rad_s: 0.0, estimate_steps: 1 };
-        let firmware = Firmware::start_told(vehicle, told.mass_kg, &tune, sensors)
-            .or_else(|| with_its_own(vehicle, told.mass_kg, &tune, sensors))?;
-        Some(Self { firmware, setpoint: abi::Setpoint::default(), sent_s: None })
+        let firmware = match Firmware::start_told(vehicle, told.mass_kg, &tune, sensors) {
+            Some(firmware) => firmware,
+            None => with_its_own(vehicle, told, &tune, sensors)?,
+        };
+        if firmware.refused_table() {
+            let [least, most] = lag_range_ms(vehicle);
+            let (key, value) = ("lag_ms", 1e3 * told.lag_s.unwrap_or_default());
+            let must = format!("from {least} to {most} ms, for which the Crazyflie controller has tables");
+            return Err(ObjectError::Told(ToldError { key, value, must }));
+        }
+        Ok(Self { firmware, setpoint: abi::Setpoint::default(), sent_s: None })
     }
 }
 
 /// A vehicle that the object does not know, with the table that `quatrack gains craft` makes for it.
-fn with_its_own(vehicle: &Vehicle, told_kg: f64, tune: &Tune, sensors: Sensors) -> Option<Firmware> {
-    // The table is for the vehicle as its file has it.
-    if tune.table != 0 || told_kg != vehicle.mass_kg() {
-        return None;
+fn with_its_own(vehicle: &Vehicle, told: &ToldFigures, tune: &Tune, sensors: Sensors) -> Result<Firmware, ObjectError> {
+    let own_kg = vehicle.mass_kg();
+    if told.mass_kg != own_kg {
+        let must = if knows(vehicle) {
+            "within 20 % of the mass of the built-in vehicle that this one is, for which the Crazyflie controller has tables".to_owned()
+        } else {
+            format!("{own_kg}, the vehicle's own in kg: the Crazyflie controller's table is made for that")
+        };
+        return Err(ObjectError::Told(ToldError { key: "mass_kg", value: told.mass_kg, must }));
     }
-    let certified = standard_design(vehicle).and_then(|design| design.certify()).ok()?;
-    let own = own_craft(&certified).ok()?;
-    Firmware::start_own(vehicle, &platform(vehicle), &own, tune, sensors).ok()
+    let standard = standard_cascade(vehicle).map_err(ObjectError::Standard)?;
+    told.lag_certified_by(&standard.table.certified).map_err(ObjectError::Told)?;
+    Firmware::start_own(vehicle, &platform(vehicle), &standard.craft, tune, sensors).map_err(ObjectError::Refused)
 }
 
 impl ControlLaw for ObjectLaw {

@@ -4,7 +4,8 @@ use quatrack_design::vehicle::Vehicle;
 
 use super::cascade_law::CascadeLaw;
 use super::core_law::{CoreLaw, Gain};
-use super::laws::{Law, LawError, ToldFigures};
+use super::laws::{Law, LawError};
+use super::told::ToldFigures;
 use super::track::Track;
 use crate::control_law::ControlLaw;
 use crate::flight::motor_laws::FlightError;
@@ -33,20 +34,22 @@ impl Prototype {
     /// # Errors
     /// As [`Law::start`].
     pub fn new(law: Law, vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, LawError> {
-        let core = |made: Result<CoreLaw, FlightError>| made.map(|law| Made::Core(law.into()));
+        let refused = |error| LawError::Core { law: law.name(), vehicle: vehicle.name().to_owned(), error };
+        let core = |made: Result<CoreLaw, FlightError>| made.map(|law| Made::Core(law.into())).map_err(refused);
         let paper = |gain| core(CoreLaw::paper(vehicle, told, gain));
         let made = match law {
-            Law::Quatrack => CascadeLaw::new(vehicle, told).map(|law| Made::Cascade(law.into())),
+            Law::Quatrack => CascadeLaw::new(vehicle, told)
+                .map(|law| Made::Cascade(law.into()))
+                .map_err(|error| LawError::of_cascade(vehicle, error)),
             Law::ActuatorAware => core(CoreLaw::actuator_aware(vehicle, told)),
             Law::LyapE => paper(Gain::Equilibrium(&gains::LYAP_E)),
             Law::LqrE => paper(Gain::Equilibrium(&gains::LQR_E)),
             Law::LyapF => paper(Gain::FlatOutput(&gains::LYAP_F)),
             Law::LqrF => paper(Gain::FlatOutput(&gains::LQR_F)),
             Law::Crazyflie | Law::Mellinger | Law::Lee | Law::Pid => Ok(Made::Anew),
-        };
-        let refused = |error| LawError::Core { law: law.name(), vehicle: vehicle.name().to_owned(), error };
+        }?;
         let (vehicle, told) = (vehicle.clone(), *told);
-        Ok(Self { law, made: made.map_err(refused)?, vehicle, told })
+        Ok(Self { law, made, vehicle, told })
     }
 
     /// With the setpoints of a track, evaluated once for all flights along it.

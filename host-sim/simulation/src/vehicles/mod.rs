@@ -6,10 +6,12 @@
 mod error;
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use quatrack::Limits;
 use quatrack::checksum::crc32c;
 use quatrack_design::vehicle::{Vehicle, VehicleError, VehicleFile};
+use quatrack_plan::bounded;
 
 pub use error::VehicleFileError;
 
@@ -38,6 +40,14 @@ pub fn by_name(name: &str) -> Result<Vehicle, VehicleFileError> {
     from_toml(text)
 }
 
+/// Whether a vehicle is a built-in one: its name and all of its figures. A file under a built-in name with figures of its own is
+/// another craft.
+pub fn is_built_in(vehicle: &Vehicle) -> bool {
+    static KNOWN: OnceLock<Vec<Vehicle>> = OnceLock::new();
+    let known = KNOWN.get_or_init(|| BUILT_IN.iter().filter_map(|(_, text)| from_toml(text).ok()).collect());
+    known.contains(vehicle)
+}
+
 /// A vehicle from the text of a file.
 ///
 /// # Errors
@@ -53,7 +63,7 @@ pub fn from_toml(text: &str) -> Result<Vehicle, VehicleFileError> {
 /// # Errors
 /// [`VehicleFileError::Unreadable`], and [`VehicleFileError::File`] around those of [`from_toml`].
 pub fn from_file(path: &Path) -> Result<Vehicle, VehicleFileError> {
-    let text = std::fs::read_to_string(path)
+    let text = bounded::read_to_string(path)
         .map_err(|error| VehicleFileError::Unreadable { path: path.to_owned(), reason: error.to_string() })?;
     from_toml(&text).map_err(|error| VehicleFileError::File { path: path.to_owned(), error: Box::new(error) })
 }

@@ -114,7 +114,27 @@ fn values_without_sense_are_refused_in_one_line_with_key_value_and_range() {
         (with("[errors]\nlag_ms = 60\nlag_rise_ms = 50"), &["errors.lag_ms = 60: must be left out"]),
         (with("[errors]\nlag_rise_ms = 50"), &["errors.lag_rise_ms = 50: must be given with"]),
         (with("[errors]\ninertia_factor = 100"), &["errors.inertia_factor = 100: must be from 0.2 to 5"]),
-        (with("[errors]\nmass_factor = nan"), &["errors.mass_factor = NaN: must be from 0.5 to 2"]),
+        (with("[errors]\nmass_factor = nan"), &["my.toml, line 3, `mass_factor = nan`: must be a finite number"]),
+        (with("[noise]\n\nposition_m = -inf"), &["my.toml, line 4, `position_m = -inf`: must be a finite number"]),
+        (
+            with("[start]\noffset_m = [0.0, 1e999, 0.0]"),
+            &["my.toml, line 3, `offset_m = [0.0, 1e999, 0.0]`: must be a finite"],
+        ),
+        (
+            with("[air]\nwind_m_s = [1.0, 0.0, 0.0]"),
+            &["my.toml: air.wind_m_s = [1.0, 0.0, 0.0]: must be 0", "of = \"vehicle\""],
+        ),
+        (
+            with("[air]\ngust_rms_m_s = 2.0"),
+            &["my.toml: air.gust_rms_m_s = 2: must be 0", "air.drag_per_s", "--air vehicle"],
+        ),
+        (with("[told]\nlag_ms = 3.0"), &["my.toml: told.lag_ms = 3: must be from 4 to 126", "leave it out"]),
+        (with("[told]\nlag_ms = 300.0"), &["my.toml: told.lag_ms = 300: must be from 4 to 126", "leave it out"]),
+        (with("[told]\ndrag_per_s = 1.5"), &["my.toml: told.drag_per_s = 1.5: must be from 0 to 1", "leave it out"]),
+        (
+            with("[told]\nmoment_n_m_per_m_s = [0.0, 0.01]"),
+            &["my.toml: told.moment_n_m_per_m_s = 0.01: must be from 0 to 0.002", "leave it out"],
+        ),
         (with("[errors]\ndelay_ms = -1"), &["my.toml: errors.delay_ms = -1: must be from 0"]),
         (with("[air]\nwind_m_s = [4.0, 4.0, 0.0]"), &["my.toml: air.wind_m_s = 5.65", "from 0 to 5"]),
         (with("[air]\ngust_rms_m_s = 4.0"), &["air.gust_rms_m_s = 4: must be from 0 to 2.5"]),
