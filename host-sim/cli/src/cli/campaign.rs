@@ -5,15 +5,19 @@ mod merge;
 mod replay;
 mod summary;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use quatrack_campaign::definition::Asked;
 use quatrack_campaign::{Campaign, CampaignError, Folder, Shard, fly};
+use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::scenario::Law;
+use quatrack_simulation::scenario::file::ScenarioFile;
 
+use super::fly::scenario::reference_note;
+use super::scenario::existing_course;
 use super::{Failure, output};
 
 /// Flies a scenario thousands of times, with figures drawn from its [vary] table, under each of its laws.
@@ -65,7 +69,9 @@ fn refused(error: CampaignError) -> Failure {
 }
 
 fn trajectories(name: &str) -> Result<PiecewisePolynomial, String> {
-    super::fly::trajectory(name).map_err(|failure| failure.line)
+    let trajectory = super::fly::trajectory(name).map_err(|failure| failure.line)?;
+    on_board::checked(&trajectory).map_err(|error| error.to_string())?;
+    Ok(trajectory)
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -78,12 +84,26 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-fn fly_all(args: &Args, scenario: &std::path::Path, runs: u64) -> Result<(), Failure> {
+/// Refuses a course that is a slip of the keyboard before anything is made of it.
+fn existing_course_of(path: &Path) -> Result<(), Failure> {
+    let file = ScenarioFile::read(path).map_err(Failure::input)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let written = file.course.as_deref().unwrap_or("eight");
+    existing_course(&path.display().to_string(), written, &folder.join(written))
+}
+
+fn fly_all(args: &Args, scenario: &Path, runs: u64) -> Result<(), Failure> {
     if runs == 0 || args.threads == Some(0) {
         return Err(Failure::input("--runs and --threads: must be at least 1"));
     }
     let asked = Asked { seed: args.seed, laws: args.laws.clone() };
+    existing_course_of(scenario)?;
     let campaign = Campaign::read(scenario, &asked, &trajectories).map_err(refused)?;
+    if let (Some(trajectory), Ok(nominal)) = (campaign.trajectory(), campaign.nominal())
+        && let Some(note) = reference_note(&nominal.vehicle, trajectory)?
+    {
+        output::print(&format!("note: {note}\n"))?;
+    }
     let folder = Folder::begin(&args.out, &campaign, runs).map_err(refused)?;
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let mine = args.shard.runs(runs);

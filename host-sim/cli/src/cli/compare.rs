@@ -8,7 +8,9 @@ use quatrack_simulation::flight::rigid_loop::RigidFlight;
 use quatrack_simulation::scenario::Law;
 use quatrack_simulation::scenario::compare::Table;
 
+use super::fly::scenario::OwnCourse;
 use super::scenario::ScenarioArgs;
+use super::transform::TransformArgs;
 use super::{Failure, fly, output};
 
 /// Flies laws on one scenario, each from the same start with the same noise and gusts: ours, the paper's, and those of
@@ -43,8 +45,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let gains = args.gains.as_deref().map(|path| Ok((path, fly::table::source(path)?))).transpose()?;
     let own = gains.as_ref().filter(|_| !named).map(|(path, table)| table.own_vehicle(path)).transpose()?;
     let scenario = args.scenario.checked_for(own.as_ref())?;
-    let trajectory = scenario.course.trajectory().map(fly::trajectory).transpose()?;
-    let flown = scenario.flown(trajectory);
+    let course = OwnCourse::of(&scenario, &TransformArgs::default())?;
+    let note = course.line();
+    let flown = scenario.flown(course.trajectory);
     let asked: Vec<Law> = args.scenario.law.into_iter().chain(args.laws.iter().copied()).collect();
     let laws = if asked.is_empty() { Law::ALL.to_vec() } else { asked.clone() };
     let (mut flights, mut grounded) = (Vec::with_capacity(laws.len() + 1), String::new());
@@ -66,7 +69,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         flights.push((law.name().to_owned(), scenario.fly(flying.as_mut(), &flown).map_err(Failure::input)?));
     }
     let table = Table::of(&flights);
-    output::print(&format!("{scenario}\n\n{table}{grounded}\n"))?;
+    output::print(&format!("{scenario}\n\n{table}{grounded}\n{note}"))?;
     if let Some(path) = &args.json {
         output::write_json(path, &table)?;
         output::print(&format!("wrote {}\n", path.display()))?;

@@ -1,9 +1,11 @@
 //! Outputs of every command: files that are whole or absent, JSON, and argument errors.
 
+use std::ffi::OsString;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use serde::Serialize;
 
@@ -16,8 +18,22 @@ pub(crate) fn argument_error(error: &clap::Error) -> ExitCode {
     if error.use_stderr() { ExitCode::from(2) } else { ExitCode::SUCCESS }
 }
 
+/// Whether a file goes to standard output.
+static IS_TAKEN: AtomicBool = AtomicBool::new(false);
+
+/// Standard output is that file alone where an argument names `-` as the place of one: what is printed beside it goes to standard error.
+pub(crate) fn take_for_file(arguments: impl IntoIterator<Item = OsString>) {
+    let names = |argument: OsString| argument == "-" || argument.to_string_lossy().ends_with("=-");
+    IS_TAKEN.store(arguments.into_iter().any(names), Relaxed);
+}
+
 /// Prints a text as it is. A reader that has seen enough and closed the pipe is no failure.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    if IS_TAKEN.load(Relaxed) {
+        // Nobody may be listening, which is no failure of the command.
+        let _ = io::stderr().write_all(text.as_bytes());
+        return Ok(());
+    }
     print_bytes(text.as_bytes())
 }
 

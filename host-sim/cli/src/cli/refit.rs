@@ -27,6 +27,9 @@ use super::limits::LimitsChoice;
 use super::transform::TransformArgs;
 use super::{Failure, output};
 
+/// A fit that is further off is told of where no tolerance is given, m: as far as a Crazyflie's position is known.
+const FAR_M: f64 = 0.01;
+
 /// Control steps a second of the flights that compare the two trajectories.
 const RATE_HZ: u32 = 500;
 
@@ -143,11 +146,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     let off_m = report.largest_difference.position_m;
+    if args.tolerance_m.is_none() && (off_m.is_nan() || off_m > FAR_M) {
+        output::print(&format!(
+            "\nnote: {} pieces are {off_m:.3} m off, which is far; {}, or let --tolerance-m {FAR_M} refuse such a fit\n",
+            report.pieces,
+            remedy(args.pieces)
+        ))?;
+    }
     if let Some(tolerance_m) = args.tolerance_m.filter(|tolerance_m| off_m.is_nan() || off_m > *tolerance_m) {
         return Err(Failure::verdict(format!(
-            "{name}: {} pieces are {off_m:.2e} m off, more than --tolerance-m {tolerance_m}; allow more pieces (at most \
-             {PIECES_MAX}) or split the trajectory",
-            report.pieces
+            "{name}: {} pieces are {off_m:.2e} m off, more than --tolerance-m {tolerance_m}; {}",
+            report.pieces,
+            remedy(args.pieces)
         )));
     }
     if let Some(path) = &args.csv {
@@ -173,6 +183,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())
+}
+
+/// How a fit comes closer for which some pieces were allowed.
+fn remedy(allowed: usize) -> String {
+    if allowed < PIECES_MAX {
+        format!("allow more pieces (--pieces, at most {PIECES_MAX}) or split the trajectory")
+    } else {
+        "split the trajectory and refit its parts".to_owned()
+    }
 }
 
 /// The f32 core with the paper's LQR-E on both trajectories.

@@ -6,6 +6,7 @@ pub(super) mod values;
 use std::path::{Path, PathBuf};
 
 use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::quote::quoted;
 use quatrack_simulation::scenario::file::{Air, Estimator, OwnAir, ScenarioFile};
 use quatrack_simulation::scenario::flight::Setpoints;
 use quatrack_simulation::scenario::{Law, Scenario};
@@ -141,13 +142,35 @@ pub(crate) struct ScenarioArgs {
     filter_latency_ms: Option<f64>,
 }
 
+/// The courses that are no file.
+const COURSES: [&str; 5] = ["eight", "hover", "step", "mild", "aggressive"];
+
+/// Refuses the name of a course that is none and no file either, as a slip of the keyboard is.
+pub(super) fn existing_course(origin: &str, written: &str, path: &Path) -> Result<(), Failure> {
+    if COURSES.contains(&written) || path.exists() {
+        return Ok(());
+    }
+    Err(Failure::input(format!(
+        "{origin}: course = \"{}\": there is no such course and no such file; the courses are {}, others are trajectory files{}",
+        quoted(written),
+        COURSES.join(", "),
+        did_you_mean(written, COURSES)
+    )))
+}
+
 impl ScenarioArgs {
     /// Whether there is a file or a flag other than --vehicle.
     pub(super) fn any_but_vehicle(&self) -> bool {
-        let mut file = ScenarioFile::default();
-        self.put_over(&mut file);
+        let mut file = self.alone();
         file.vehicle.clear();
         self.scenario.is_some() || self.air.is_some() || file != ScenarioFile::default()
+    }
+
+    /// What the flags say without a file.
+    fn alone(&self) -> ScenarioFile {
+        let mut file = ScenarioFile::default();
+        self.put_over(&mut file);
+        file
     }
 
     /// The scenario.
@@ -195,23 +218,28 @@ impl ScenarioArgs {
             (None, None) if own.is_some() => (ScenarioFile::default(), String::new(), Path::new("")),
             (None, None) => return Err(Failure::input("no craft to fly: give --scenario FILE or --vehicle VEHICLE")),
         };
-        let before = file.clone();
         self.put_over(&mut file);
         if file.vehicle.is_empty()
             && let Some(vehicle) = own
         {
             return Scenario::on(vehicle.clone(), &file, "flags", folder).map_err(Failure::input);
         }
-        let origin = match (name.is_empty(), file == before) {
+        let has_flags = self.air.is_some() || self.alone() != ScenarioFile::default();
+        let origin = match (name.is_empty(), has_flags) {
             (true, _) => "flags".to_owned(),
-            (false, true) => name,
-            (false, false) => format!("{name} with flags"),
+            (false, false) => name,
+            (false, true) => format!("{name} with flags"),
         };
-        Scenario::checked(&file, &origin, folder).map_err(|error| {
+        let scenario = Scenario::checked(&file, &origin, folder).map_err(|error| {
             let is_unknown = !file.vehicle.ends_with(".toml") && vehicles::by_name(&file.vehicle).is_err();
             let alike = if is_unknown { did_you_mean(&file.vehicle, vehicles::names()) } else { String::new() };
             Failure::input(format!("{error}{alike}"))
-        })
+        })?;
+        let written = self.course.as_deref().or(file.course.as_deref()).unwrap_or_default();
+        if let Some(path) = scenario.course.trajectory() {
+            existing_course(&origin, written, Path::new(path))?;
+        }
+        Ok(scenario)
     }
 
     fn put_over(&self, file: &mut ScenarioFile) {
@@ -219,7 +247,7 @@ impl ScenarioArgs {
             file.vehicle = if vehicle.ends_with(".toml") { from_here(vehicle) } else { vehicle.clone() };
         }
         if let Some(course) = &self.course {
-            let named = ["eight", "hover", "step", "mild", "aggressive"].contains(&course.as_str());
+            let named = COURSES.contains(&course.as_str());
             if file.course.as_deref().unwrap_or("eight") != course {
                 // They belong to the file's course.
                 (file.speed_m_s, file.step_m) = (None, None);

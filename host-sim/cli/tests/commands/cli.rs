@@ -201,6 +201,13 @@ fn a_refit_out_of_tolerance_exits_1_and_writes_nothing() {
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert!(stderr.contains("aggressive: 8 pieces are") && stderr.contains("--tolerance-m 0.001"), "{stderr}");
     assert!(!csv.exists());
+    // Without a tolerance it is written, and 8 cm are said.
+    let output = quatrack(&["refit", "aggressive", "--pieces", "6", "--csv", csv.to_str().unwrap()]);
+    let printed = String::from_utf8(output.stdout).unwrap();
+    let note = "note: 6 pieces are 0.083 m off, which is far; allow more pieces (--pieces, at most 31)";
+    assert!(output.status.success() && csv.exists() && printed.contains(note), "{printed}");
+    let output = quatrack(&["refit", "aggressive", "--pieces", "8"]);
+    assert!(!String::from_utf8(output.stdout).unwrap().contains("which is far"), "8 mm");
     assert_refused(&["refit", "aggressive", "--pieces", "32"], 2, &["32", "1..=31"]);
     assert_refused(&["refit", "aggressive", "--pieces", "0"], 2, &["0", "1..=31"]);
     assert_refused(&["refit", "mild", "--tolerance-m", "0"], 2, &["--tolerance-m", "positive"]);

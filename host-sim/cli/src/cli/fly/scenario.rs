@@ -2,13 +2,18 @@
 
 use std::path::Path;
 
+use quatrack_design::vehicle::Vehicle;
 use quatrack_identify::log::{Row, cflib_csv};
+use quatrack_plan::trajectory::on_board;
+use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_plan::trajectory::transform::Transform;
 use quatrack_simulation::control_law::ControlLaw;
+use quatrack_simulation::flight::reference_check::ReferenceCheck;
 use quatrack_simulation::scenario::{Recording, Scenario};
+use quatrack_simulation::vehicles;
 use serde::Serialize;
 
-use super::{Args, NOTHING, Precision, picture, table, transformed};
+use super::{Args, NOTHING, Precision, not_on_board, picture, table, transformed};
 use crate::cli::transform::TransformArgs;
 use crate::cli::{Failure, output};
 
@@ -28,6 +33,8 @@ pub(in crate::cli) struct Report {
     /// Along the mean wind, across it, upwards.
     gust_rms_m_s: Option<[f64; 3]>,
     lost: Option<String>,
+    /// What the course itself asks for that no law can follow.
+    reference: Option<String>,
 }
 
 impl Report {
@@ -131,6 +138,39 @@ fn mcap_file(_: &Scenario, _: &str, _: &Recording) -> Result<Vec<u8>, Failure> {
     Err(Failure::input("--mcap: this command was built without it; build it by cargo build --release --features mcap"))
 }
 
+/// The trajectory of a scenario whose course is one, looked at before it is flown.
+pub(in crate::cli) struct OwnCourse {
+    /// Nothing where the course is another.
+    pub(in crate::cli) trajectory: Option<PiecewisePolynomial>,
+    /// What the reference itself asks for that no law can follow.
+    pub(in crate::cli) note: Option<String>,
+}
+
+impl OwnCourse {
+    /// Of a scenario, held against the limits of its vehicle.
+    pub(in crate::cli) fn of(scenario: &Scenario, transform: &TransformArgs) -> Result<Self, Failure> {
+        let Some(name) = scenario.course.trajectory() else { return Ok(Self { trajectory: None, note: None }) };
+        let trajectory = transformed(name, transform)?;
+        on_board::checked(&trajectory).map_err(|error| not_on_board(name, &error))?;
+        let note = reference_note(&scenario.vehicle, &trajectory)?;
+        Ok(Self { trajectory: Some(trajectory), note })
+    }
+
+    /// The line below the figures; empty where there is nothing to say.
+    pub(in crate::cli) fn line(&self) -> String {
+        self.note.as_ref().map_or_else(String::new, |note| format!("note: {note}\n"))
+    }
+}
+
+/// What a trajectory asks for that no law can follow on a vehicle.
+pub(in crate::cli) fn reference_note(
+    vehicle: &Vehicle,
+    trajectory: &PiecewisePolynomial,
+) -> Result<Option<String>, Failure> {
+    let limits = vehicles::limits(vehicle).map_err(Failure::input)?;
+    Ok(ReferenceCheck::of(trajectory, &limits).line())
+}
+
 /// Flies a scenario with its law and prints the figures.
 pub(in crate::cli) fn fly_and_print(
     scenario: &Scenario,
@@ -146,15 +186,14 @@ fn fly_law(
     name: &str,
     transform: &TransformArgs,
 ) -> Result<(Report, Recording), Failure> {
-    let trajectory = scenario.course.trajectory();
-    if trajectory.is_none() && transform.transform()? != Transform::default() {
+    if scenario.course.trajectory().is_none() && transform.transform()? != Transform::default() {
         return Err(Failure::input(
             "--time-scale, --reverse, --start and their like belong to a trajectory: give one by --course",
         ));
     }
-    let flown = scenario.flown(trajectory.map(|name| transformed(name, transform)).transpose()?);
-    let recording = scenario.record(law, &flown).map_err(Failure::input)?;
-    let figures = figures(name, &recording);
+    let OwnCourse { trajectory, note } = OwnCourse::of(scenario, transform)?;
+    let recording = scenario.record(law, &scenario.flown(trajectory)).map_err(Failure::input)?;
+    let figures = Report { reference: note, ..figures(name, &recording) };
     output::print(&text(scenario, &figures))?;
     Ok((figures, recording))
 }
@@ -170,6 +209,7 @@ fn figures(law: &str, recording: &Recording) -> Report {
         saturated_steps: flight.saturated_steps,
         gust_rms_m_s: recording.gust_rms_m_s.map(Into::into),
         lost,
+        reference: None,
     }
 }
 
@@ -179,13 +219,14 @@ fn text(scenario: &Scenario, figures: &Report) -> String {
         || "none".to_owned(),
         |[along, across, up]| format!("{along:.3}, {across:.3}, {up:.3} m/s along the wind, across, up"),
     );
+    let note = figures.reference.as_ref().map_or_else(String::new, |note| format!("  note: {note}\n"));
     format!(
         "{} on {scenario}, seed {}\n\
          \x20 IAE over samples of 10 ms  {iae}\n\
          \x20 largest position error     {:.6} m\n\
          \x20 saturated steps            {}\n\
          \x20 realised gusts, RMS        {gusts}\n\
-         \x20 lost                       {}\n",
+         \x20 lost                       {}\n{note}",
         figures.law,
         scenario.seed,
         figures.max_error_m,

@@ -7,8 +7,10 @@ use quatrack_simulation::flight::robustness::CASES;
 use quatrack_simulation::scenario::{Law, Scenario};
 use serde::Serialize;
 
+use crate::cli::fly::scenario::OwnCourse;
 use crate::cli::scenario::ScenarioArgs;
-use crate::cli::{Failure, fly as flights, output};
+use crate::cli::transform::TransformArgs;
+use crate::cli::{Failure, output};
 
 /// The schema that the figures' file states.
 const SCHEMA: &str = "quatrack/robustness-scenario/1";
@@ -20,6 +22,9 @@ pub(super) struct Report {
     rows: Vec<Row>,
     #[serde(skip)]
     laws: Vec<Law>,
+    /// What the course itself asks for that no law can follow, as a line.
+    #[serde(skip)]
+    note: String,
 }
 
 #[derive(Serialize)]
@@ -46,7 +51,7 @@ pub(super) fn run(args: &ScenarioArgs, json: Option<&Path>) -> Result<(), Failur
 
 /// The same for a scenario that has been looked at.
 pub(super) fn fly(scenario: &Scenario, law: Option<Law>) -> Result<Report, Failure> {
-    let trajectory = scenario.course.trajectory().map(flights::trajectory).transpose()?;
+    let course = OwnCourse::of(scenario, &TransformArgs::default())?;
     let start = |law: Law| law.start(&scenario.vehicle, &scenario.told);
     let laws: Vec<Law> = match law {
         Some(law) => vec![start(law).map(|_| law).map_err(Failure::input)?],
@@ -55,7 +60,7 @@ pub(super) fn fly(scenario: &Scenario, law: Option<Law>) -> Result<Report, Failu
     let mut rows = Vec::new();
     for case in &CASES {
         let Some(varied) = scenario.varied(case) else { continue };
-        let flown = varied.flown(trajectory.clone());
+        let flown = varied.flown(course.trajectory.clone());
         for law in &laws {
             let mut flying = start(*law).map_err(Failure::input)?;
             let flight = varied.fly(flying.as_mut(), &flown).map_err(Failure::input)?;
@@ -69,13 +74,13 @@ pub(super) fn fly(scenario: &Scenario, law: Option<Law>) -> Result<Report, Failu
             });
         }
     }
-    Ok(Report { schema: SCHEMA, conditions: scenario.to_string(), rows, laws })
+    Ok(Report { schema: SCHEMA, conditions: scenario.to_string(), rows, laws, note: course.line() })
 }
 
 impl Report {
     /// Its conditions and its table.
     pub(super) fn text(&self) -> String {
-        format!("{}: position error, m s\n\n{}", self.conditions, table(self, &self.laws))
+        format!("{}: position error, m s\n\n{}{}", self.conditions, table(self, &self.laws), self.note)
     }
 }
 
