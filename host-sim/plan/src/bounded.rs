@@ -41,7 +41,7 @@ mod tests {
     fn a_device_without_an_end_is_refused() {
         let said = read_to_string(Path::new("/dev/zero")).unwrap_err();
         assert_eq!(said.to_string(), "longer than 64 MB, or a device without an end");
-        assert_eq!(read(Path::new("/dev/null")).unwrap(), []);
+        assert!(read(Path::new("/dev/null")).unwrap().is_empty());
     }
 
     #[test]
