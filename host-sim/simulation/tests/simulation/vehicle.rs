@@ -136,7 +136,7 @@ fn a_figure_in_another_unit_is_the_one_that_is_named() {
         ),
         (
             refused(&[("thrust_max_n = 0.12", "thrust_max_n = 12.2")]),
-            "vehicle: motors.thrust_max_n = 12.2: must be above 0.071098 N",
+            "vehicle: motors.thrust_max_n = 12.2: must be above 0.071123 N",
             "20 g",
         ),
         (
