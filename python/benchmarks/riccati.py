@@ -2,8 +2,8 @@
 
     python python/benchmarks/riccati.py [ROUNDS]
 
-A figure is the median of the seconds that the process has of the processor, so that what else runs on the machine counts for little. Ours
-is more than SciPy's: P to the last digit, gain, poles, residual and condition.
+Each time is the median of processor times of this process, so that other loads of the machine count for little. Ours has P to the last
+digit, gain, poles, residual and condition; SciPy's has P.
 """
 
 import os
