@@ -96,3 +96,27 @@ impl Track {
         (0..=self.steps).step_by(law_steps).map(|step| (f64::from(step) * STEP_S, self.setpoint(step)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn setpoints_and_the_measured_part_begin_at_their_steps() {
+        for setpoints in [Setpoints::At100Hz, Setpoints::Exact] {
+            let flown = Flown::eight(2.1, 0.05);
+            let track = Track::of(&flown, setpoints);
+            let (mut told, mut until) = (*track.setpoint(0), 0);
+            // Every second step, as a law at 500 Hz, and beyond the end, where the last one stays.
+            for step in (0..track.steps() + 30).step_by(2) {
+                if step >= until {
+                    (told, until) = (*track.setpoint(step), track.setpoint_until(step));
+                }
+                assert_eq!(told, *track.setpoint(step), "{step}");
+                let time_s = f64::from(step) * STEP_S;
+                let is_measured = time_s > flown.measured_from_s - 0.5 * STEP_S;
+                assert_eq!(step >= track.measured_from(), is_measured, "{time_s} s");
+            }
+        }
+    }
+}
