@@ -1,5 +1,5 @@
 """How many flight seconds a second RotorPy flies on this core: the eight under its SE3 controller at 500 Hz, vehicle, controller and
-trajectory alone, without the sensors and records of its own loop.
+trajectory alone, without the sensors and records of its own loop. Times are processor times of this process.
 
     python rotorpy_rate.py [--flight-s 3] [--repeat 3]
 """
@@ -37,13 +37,13 @@ def fly():
         "wind": np.zeros(3),
         "rotor_speeds": np.full(4, hover),
     }
-    most, begun = 0.0, time.perf_counter()
+    most, begun = 0.0, time.process_time()
     for step in range(int(asked.flight_s * RATE_HZ)):
         flat = trajectory.update(step / RATE_HZ)
         control = controller.update(step / RATE_HZ, state, flat)
         state = vehicle.step(state, control, 1 / RATE_HZ)
         most = max(most, float(np.linalg.norm(state["x"] - flat["x"])))
-    return time.perf_counter() - begun, most
+    return time.process_time() - begun, most
 
 
 flights = [fly() for _ in range(asked.repeat)]

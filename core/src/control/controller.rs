@@ -224,6 +224,11 @@ fn actuator_aware(
     {
         return Ok(Output::Forces(MotorStep { forces_n, limited }));
     }
+    // Copies, so that only a refusal has them in memory where this is inlined.
+    #[cfg(not(target_os = "none"))]
+    let copies = (*state, *body_rates_rad_s);
+    #[cfg(not(target_os = "none"))]
+    let (state, body_rates_rad_s) = (&copies.0, &copies.1);
     Err(refuse(Measured::new(state).with_body_rates(body_rates_rad_s)))
 }
 

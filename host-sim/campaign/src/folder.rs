@@ -192,26 +192,42 @@ impl Folder {
     }
 
     /// The first run that is not wholly there, and where its rows would begin.
-    fn whole_runs(&self, file: &File, first: u64) -> std::io::Result<(u64, u64)> {
+    fn whole_runs(&self, mut file: &File, first: u64) -> std::io::Result<(u64, u64)> {
+        // The end of the last line that has one: all but the very last do.
+        let length = file.seek(SeekFrom::End(0))?;
+        let mut last = [0];
+        if length > 0 {
+            file.seek(SeekFrom::Start(length - 1))?;
+            file.read_exact(&mut last)?;
+        }
+        let ended = if last == *b"\n" { length } else { length.saturating_sub(1) };
+        file.rewind()?;
         let mut reader = BufReader::new(file);
-        let (mut line, mut place, mut next_run, mut kept) = (Vec::new(), 0, first, 0);
+        let (mut line, mut next_run) = (Vec::new(), first);
         reader.read_until(b'\n', &mut line)?;
         if line != self.header().as_bytes() {
             return Ok((first, 0));
         }
-        place += line.len() as u64;
-        kept += place;
+        let header = line.len() as u64;
+        let mut kept = header;
+        // One reader for all lines: to make one takes a hundred times the reading of a line.
+        let mut lines = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(reader);
+        let mut cells = csv::StringRecord::new();
         let mut laws = self.card.laws.iter();
         loop {
-            line.clear();
-            reader.read_until(b'\n', &mut line)?;
-            let row = whole_row(&line).filter(|row| row.drawn.len() == self.card.drawn.len());
-            let expected = laws.next();
-            match (row, expected) {
-                (Some(row), Some(law)) if row.run == next_run && row.law.name() == law => {}
+            let row = match lines.read_record(&mut cells) {
+                Ok(true) => Row::of_cells(&cells).filter(|row| row.drawn.len() == self.card.drawn.len()),
+                Ok(false) => None,
+                Err(error) => match error.into_kind() {
+                    csv::ErrorKind::Io(error) => return Err(error),
+                    _ => None,
+                },
+            };
+            let place = header + lines.position().byte();
+            match (row, laws.next()) {
+                (Some(row), Some(law)) if row.run == next_run && row.law.name() == law && place <= ended => {}
                 _ => return Ok((next_run, kept)),
             }
-            place += line.len() as u64;
             if laws.len() == 0 {
                 laws = self.card.laws.iter();
                 next_run += 1;
@@ -261,12 +277,6 @@ impl Folder {
     pub fn write_parquet(&self) -> Result<(), CampaignError> {
         columns::write(&self.path.join("rows.parquet"), &self.card.drawn, self.rows(Shard::WHOLE)?)
     }
-}
-
-fn whole_row(line: &[u8]) -> Option<Row> {
-    line.ends_with(b"\n").then_some(())?;
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).buffer_capacity(line.len()).from_reader(line);
-    Row::of_cells(&reader.records().next()?.ok()?)
 }
 
 impl Growing {

@@ -22,7 +22,8 @@ pub const PERIOD_S: f64 = 0.002;
 
 /// The number of the control step at a time of one, s.
 pub fn step_at(time_s: f64) -> usize {
-    (time_s / PERIOD_S + 0.5) as usize
+    // By way of u32: the processor has no conversion to an unsigned number of 64 bits.
+    (time_s / PERIOD_S + 0.5) as u32 as usize
 }
 
 fn vector(v: &Vector3<f64>) -> Vector3<f32> {

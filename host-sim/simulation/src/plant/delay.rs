@@ -22,6 +22,12 @@ impl DelayLine {
         Self { delay_s, acting: None, on_the_way: VecDeque::with_capacity(ROOM) }
     }
 
+    /// A command is given in a line without a delay.
+    #[inline]
+    pub(super) fn give_at_once(&mut self, command: &Vector4<f64>) {
+        self.acting = Some(*command);
+    }
+
     /// A command is given at a time, s.
     #[inline]
     pub(super) fn give(&mut self, time_s: f64, command: &Vector4<f64>) {

@@ -90,7 +90,7 @@ impl Converter {
         Acting { commands_n: *commands_n, mapped: self.mapped(commands_n) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn mapped(&self, commands_n: &Vector4<f64>) -> Vector4<f64> {
         let [least_n, most_n] = self.limits_n;
         commands_n.map(|command_n| {
@@ -102,7 +102,7 @@ impl Converter {
     }
 
     /// Thrusts that the motors go to at a time and a voltage, N.
-    #[inline]
+    #[inline(always)]
     fn goals_n(&self, mapped: &Vector4<f64>, time_s: f64, voltage_v: f64) -> Vector4<f64> {
         let factor = (self.factor + self.factor_per_s * time_s).max(0.0);
         let all = factor * self.map.map_or(1.0, |map| map.most_n(voltage_v));
@@ -188,18 +188,23 @@ impl Plant {
         Way { end_s: self.time_s + duration_s, from_s: 0.0, part_s: 0.0, steps: 0.0, taken: 0.0 }
     }
 
-    /// Whether a time is one step in which nothing but the commands is new.
-    #[inline]
-    pub(super) fn takes_steady_step(&self, duration_s: f64) -> bool {
-        self.steady && self.plain.is_some() && duration_s / STEP_MAX_S - 1e-9 <= 1.0
+    /// Whether nothing but the commands is new in its steps.
+    pub(super) fn is_steady(&self) -> bool {
+        self.steady && self.plain.is_some()
     }
 
-    /// That step: the same as [`Self::begin`] and [`Self::next_step`] together, for less.
+    /// Whether a time is one step.
     #[inline]
+    pub(super) fn is_one_step(duration_s: f64) -> bool {
+        duration_s / STEP_MAX_S - 1e-9 <= 1.0
+    }
+
+    /// That step of a steady plant: the same as [`Self::begin`] and [`Self::next_step`] together, for less.
+    #[inline(always)]
     pub(super) fn steady_step(&mut self, commands_n: &Vector4<f64>, duration_s: f64) -> SteadyStep {
-        self.line.give(self.time_s, commands_n);
+        self.line.give_at_once(commands_n);
         let mapped = match &self.acting {
-            // To be kept they are too little work.
+            // Cheaper to compute than to compare with those kept.
             _ if self.converter.map.is_none() => self.converter.mapped(commands_n),
             Some(acting) if acting.commands_n == *commands_n => acting.mapped,
             _ => {

@@ -89,10 +89,10 @@ pub(super) fn alone(figures: &Figures, has_air: bool, state: &RigidState, step: 
         step: number(step.step_s),
     };
     let next = match (has_air, is_diagonal(figures)) {
-        (false, false) => advanced::<_, false, false>(&own, &x, &step),
-        (false, true) => advanced::<_, false, true>(&own, &x, &step),
-        (true, false) => advanced::<_, true, false>(&own, &x, &step),
-        (true, true) => advanced::<_, true, true>(&own, &x, &step),
+        (false, false) => advanced::<_, false, false, false>(&own, &x, &step),
+        (false, true) => advanced::<_, false, true, false>(&own, &x, &step),
+        (true, false) => advanced::<_, true, false, false>(&own, &x, &step),
+        (true, true) => advanced::<_, true, true, false>(&own, &x, &step),
     };
     RigidState::of_numbers(next.map(|value| value.1))
 }
@@ -122,6 +122,8 @@ pub(super) struct SideBySide {
     has_air: bool,
     /// [`is_diagonal`] of all.
     diagonal: bool,
+    /// Whether the motors of each lag by as much on their way up as down.
+    one_lag: bool,
     state: [Row; 17],
     goals: [Row; 4],
     from: [Row; 3],
@@ -144,6 +146,7 @@ impl SideBySide {
             figures: std::array::from_fn(|k| lanes.map(|figures| figures[k])),
             has_air: plants.iter().flatten().any(|(_, has_air)| *has_air),
             diagonal: lanes.iter().all(is_diagonal),
+            one_lag: lanes.iter().all(|figures| figures[RISE] == figures[FALL]),
             state: std::array::from_fn(|k| [f64::from(u8::from(k == 6)); LANES]),
             goals: [[0.0; LANES]; 4],
             from: [[0.0; LANES]; 3],
@@ -243,11 +246,14 @@ impl WithSimd for Advance<'_> {
                 start: loaded(simd, &all.times[1], part),
                 step: loaded(simd, &all.times[2], part),
             };
-            let next = match (all.has_air, all.diagonal) {
-                (false, false) => advanced::<_, false, false>(&figures, &x, &step),
-                (false, true) => advanced::<_, false, true>(&figures, &x, &step),
-                (true, false) => advanced::<_, true, false>(&figures, &x, &step),
-                (true, true) => advanced::<_, true, true>(&figures, &x, &step),
+            // Most crafts have the body's axes for axes of inertia, and one lag: they have code of their own.
+            let next = match (all.has_air, all.diagonal, all.one_lag) {
+                (false, true, true) => advanced::<_, false, true, true>(&figures, &x, &step),
+                (true, true, true) => advanced::<_, true, true, true>(&figures, &x, &step),
+                (false, true, false) => advanced::<_, false, true, false>(&figures, &x, &step),
+                (true, true, false) => advanced::<_, true, true, false>(&figures, &x, &step),
+                (false, false, _) => advanced::<_, false, false, false>(&figures, &x, &step),
+                (true, false, _) => advanced::<_, true, false, false>(&figures, &x, &step),
             };
             // 0 for every number that is finite.
             let mut sum = next[0].of(0.0);

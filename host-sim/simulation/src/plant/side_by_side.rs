@@ -11,6 +11,8 @@ use super::kernel::{LANES, SideBySide};
 pub struct PlantGroup {
     plants: Vec<Plant>,
     lanes: SideBySide,
+    /// Whether nothing but the commands is new in the steps of any.
+    steady: bool,
     flying: [bool; LANES],
     /// Plants that are elsewhere than their lanes.
     apart: [bool; LANES],
@@ -25,7 +27,8 @@ impl PlantGroup {
         plants.truncate(LANES);
         let plain = std::array::from_fn(|lane| plants.get(lane).and_then(Plant::plain));
         let flying = std::array::from_fn(|lane| lane < plants.len());
-        Self { lanes: SideBySide::new(&plain), flying, apart: [true; LANES], plants }
+        let steady = plants.iter().all(Plant::is_steady);
+        Self { lanes: SideBySide::new(&plain), steady, flying, apart: [true; LANES], plants }
     }
 
     /// One of them.
@@ -46,10 +49,16 @@ impl PlantGroup {
     }
 
     /// Gives each its commands, N, and flies on for a time, s, as [`Plant::advance`] does.
+    #[inline(always)]
     pub fn advance(&mut self, commands_n: &[Vector4<f64>; LANES], duration_s: f64) {
-        if self.advance_steadily(commands_n, duration_s) {
-            return;
+        if self.steady && Plant::is_one_step(duration_s) {
+            self.advance_steadily(commands_n, duration_s);
+        } else {
+            self.advance_step_by_step(commands_n, duration_s);
         }
+    }
+
+    fn advance_step_by_step(&mut self, commands_n: &[Vector4<f64>; LANES], duration_s: f64) {
         let mut ways = [Way::default(); LANES];
         let mut under_way = [false; LANES];
         for (lane, plant) in self.plants.iter_mut().enumerate().filter(|(lane, _)| self.flying[*lane]) {
@@ -87,11 +96,9 @@ impl PlantGroup {
         }
     }
 
-    /// The same where nothing but commands changes and one step takes all of it; whether that is so.
-    fn advance_steadily(&mut self, commands_n: &[Vector4<f64>; LANES], duration_s: f64) -> bool {
-        if !self.plants.iter().all(|plant| plant.takes_steady_step(duration_s)) {
-            return false;
-        }
+    /// The same where nothing but commands changes and one step takes all of it.
+    #[inline(always)]
+    fn advance_steadily(&mut self, commands_n: &[Vector4<f64>; LANES], duration_s: f64) {
         // Over the lanes, so that no index is looked at twice.
         for (lane, plant) in (0..LANES).zip(&mut self.plants) {
             if !self.flying[lane] {
@@ -106,13 +113,12 @@ impl PlantGroup {
         }
         self.lanes.advance();
         for (lane, plant) in (0..LANES).zip(&mut self.plants) {
-            self.apart[lane] = !self.flying[lane];
             if self.flying[lane] {
+                self.apart[lane] = false;
                 let (state, finite) = plant.arrive_steadily(duration_s);
                 self.lanes.take(lane, state);
                 *finite = self.lanes.is_finite(lane);
             }
         }
-        true
     }
 }

@@ -7,7 +7,7 @@ use nalgebra::{Vector3, Vector4};
 use quatrack::airframe::AirframeFigures;
 use quatrack::cascade::{Air, Cascade, CascadeGains, CascadeLimits, JerkFit};
 use quatrack::gains::table::CascadeTable;
-use quatrack::{Airframe, Controller, FifthOrderSample, Heading, Limits, Measured, Memory, Target};
+use quatrack::{Airframe, Controller, FifthOrderSample, Heading, Limits, Measured, Memory, Output, Target};
 use quatrack_design::design::cascade::{CascadeWeights, cascade};
 use quatrack_design::vehicle::Vehicle;
 
@@ -28,10 +28,16 @@ const JUMP_M: f64 = 0.05;
 pub(super) struct CascadeLaw {
     cascade: Cascade,
     memory: Memory,
+    following: Following,
+    /// The course as the core takes it at every step, where it is known before.
+    shared: Option<Arc<[(FifthOrderSample, Heading)]>>,
+}
+
+/// The newest setpoint, and the fit through the jerks of those before.
+#[derive(Clone)]
+struct Following {
     fit: JerkFit,
     newest: Option<Setpoint>,
-    /// The course as the core takes it at every step, where it is known before.
-    shared: Option<Arc<[FifthOrderSample]>>,
 }
 
 impl CascadeLaw {
@@ -43,7 +49,7 @@ impl CascadeLaw {
     /// The law at a hover.
     fn hovering(cascade: Cascade) -> Self {
         let memory = Memory::hovering(cascade.airframe());
-        Self { cascade, memory, fit: JerkFit::NONE, newest: None, shared: None }
+        Self { cascade, memory, following: Following { fit: JerkFit::NONE, newest: None }, shared: None }
     }
 
     /// Of a table, with its lag, and with its air where none is told.
@@ -53,13 +59,17 @@ impl CascadeLaw {
 
     /// Takes the setpoints of a track from now on, evaluated once for this and its copies.
     pub(super) fn share(&mut self, track: &Track) {
-        let mut law = self.clone();
+        let mut following = self.following.clone();
         let told = track.told(RATE.hz());
-        self.shared = Some(told.map(|(time_s, setpoint)| law.sample(time_s, setpoint)).collect());
+        self.shared = Some(told.map(|(time_s, setpoint)| following.sample(time_s, setpoint)).collect());
     }
+}
 
-    fn sample(&mut self, time_s: f64, setpoint: &Setpoint) -> FifthOrderSample {
-        motor_loop::sample(&self.filled(setpoint).carried_to(time_s))
+impl Following {
+    /// The course at a time, and its heading.
+    fn sample(&mut self, time_s: f64, setpoint: &Setpoint) -> (FifthOrderSample, Heading) {
+        let sample = motor_loop::sample(&self.filled(setpoint).carried_to(time_s));
+        (sample, Heading::from_angle(sample.flat.heading_rad))
     }
 
     /// The setpoint with snap and crackle of the fit through its jerks; as it is where it has them.
@@ -137,16 +147,25 @@ impl ControlLaw for CascadeLaw {
     }
 
     fn step(&mut self, input: &Input) -> Result<Vector4<f64>, String> {
-        let shared = self.shared.as_ref().and_then(|shared| shared.get(motor_loop::step_at(input.time_s)).copied());
-        let sample = shared.unwrap_or_else(|| self.sample(input.time_s, &input.setpoint));
+        let Self { cascade, memory, following, shared } = self;
+        let own;
+        // Borrowed from where it is.
+        let (sample, heading) = match shared.as_ref().and_then(|shared| shared.get(motor_loop::step_at(input.time_s))) {
+            Some(shared) => shared,
+            None => {
+                own = following.sample(input.time_s, &input.setpoint);
+                &own
+            }
+        };
         let state = rigid_state(&input.estimate);
         let felt_m_s2 = input.estimate.specific_force_m_s2.cast();
         let measured = Measured::from(&state).with_specific_force(&felt_m_s2);
-        let target = Target::with_sample(&sample, Heading::from_angle(sample.flat.heading_rad));
-        let step = Controller::new(&self.cascade, Limits::NONE)
-            .step_to_motors(&mut self.memory, measured, target)
-            .map_err(|error| error.to_string())?;
-        Ok(Vector4::from(step.forces_n.map(f64::from)))
+        // Forces come at once: there is nothing to be carried to the motors.
+        match Controller::new(&*cascade, Limits::NONE).step(memory, measured, Target::with_sample(sample, *heading)) {
+            Ok(Output::Forces(step)) => Ok(Vector4::from(step.forces_n.map(f64::from))),
+            Ok(Output::Command(_)) => Err("the law gives no forces".to_owned()),
+            Err(error) => Err(error.to_string()),
+        }
     }
 }
 

@@ -157,8 +157,8 @@ impl ControlLaw for CoreLaw {
     }
 }
 
-/// One step of a law in the processor's best instructions: where an instruction names its target apart from its terms, a quarter of them
-/// goes. No product is fused with a sum.
+/// One step of a law, compiled for the vector instructions of the processor: they write to a register of their own, which saves a
+/// quarter of all instructions. No multiply-add is fused.
 struct Stepped<'a> {
     law: &'a mut CoreLaw,
     input: &'a Input,

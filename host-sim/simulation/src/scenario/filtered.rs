@@ -48,7 +48,7 @@ impl Estimation {
         }
     }
 
-    /// Takes the sensors' readings after one step of the flight. A specific force that nobody asks for is 0, but for the sensors' part.
+    /// Takes the sensors' readings after one step of the flight. A specific force that nobody asks for is 0 but for the sensors' errors.
     #[inline]
     pub(super) fn estimate(
         &mut self,

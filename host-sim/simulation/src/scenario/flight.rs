@@ -1,6 +1,7 @@
 //! The flight of a law: a craft, its deviations, a course and a law in; its motion out.
 
 use nalgebra::{Vector3, Vector4};
+use pulp::{Arch, Simd, WithSimd};
 use serde::Deserialize;
 
 use super::course::Flown;
@@ -59,9 +60,13 @@ pub(super) struct Flying<'a> {
     stride: u32,
     /// Whether anybody looks at the accelerometer.
     feels: bool,
-    /// A command from the first down, or from the second up, is at a limit, N.
+    /// Whether an estimate changes those after it.
+    draws: bool,
+    /// The first step that is measured.
+    measured_from: u32,
+    /// A command at most the first or at least the second is at a limit, N.
     limits_n: [f64; 2],
-    /// The step from which another setpoint is told.
+    /// The step at which the law gets its next setpoint.
     setpoint_until: u32,
     /// How far off its course the craft began, m.
     start_off_m: f64,
@@ -81,6 +86,8 @@ impl<'a> Flying<'a> {
             law_steps,
             stride: stride(law_steps, &estimation),
             feels: law.feels() || estimation.feels(),
+            draws: estimation.remembers(),
+            measured_from: track.measured_from(),
             limits_n: at_limit_n(plant.command_limits_n()),
             setpoint_until: 0,
             start_off_m: (plant.state().position_m - track.target_m(0)).norm(),
@@ -121,24 +128,29 @@ impl<'a> Flying<'a> {
     /// was lost, also before anything is measured. Inlined: a call costs a tenth of it.
     #[inline(always)]
     fn decide<K: Keep>(&mut self, step: u32, plant: &mut Plant, keep: &mut K) -> bool {
-        let (time_s, state) = (f64::from(step) * STEP_S, plant.state());
-        let target_m = self.track.target_m(step);
-        let error_m = (state.position_m - target_m).norm();
+        let time_s = f64::from(step) * STEP_S;
+        let error_m = (plant.state().position_m - self.track.target_m(step)).norm();
         // Written so that NaN fails it.
         if !(error_m < LOST_M && plant.is_finite())
             && let Some(off_m) = self.lost_at_m(step, plant)
         {
             return self.lose(step, format!("{off_m:.0} m from the course"), plant, keep);
         }
-        let measured = self.track.is_measured(time_s);
+        let measured = step >= self.measured_from;
         let (law_s_turn, row_s_turn) = (
             self.stride == self.law_steps || step.is_multiple_of(self.law_steps),
             step.is_multiple_of(SAMPLE_STEPS) && measured,
         );
         // An estimate that nobody looks at is left out where that changes none after it.
-        if K::SEES_ESTIMATES || law_s_turn || self.estimation.remembers() {
-            let felt_m_s2 = (K::SEES_ESTIMATES || self.feels).then(|| plant.specific_force_m_s2());
-            if let Err(error) = self.estimation.estimate(plant.state(), felt_m_s2.as_ref(), &mut self.told.estimate) {
+        if K::SEES_ESTIMATES || law_s_turn || self.draws {
+            let known = &mut self.told.estimate;
+            let estimated = if K::SEES_ESTIMATES || self.feels {
+                let felt_m_s2 = plant.specific_force_m_s2();
+                self.estimation.estimate(plant.state(), Some(&felt_m_s2), known)
+            } else {
+                self.estimation.estimate(plant.state(), None, known)
+            };
+            if let Err(error) = estimated {
                 return self.lose(step, format!("no estimate: {error}"), plant, keep);
             }
         }
@@ -157,9 +169,11 @@ impl<'a> Flying<'a> {
             self.saturated_steps += u64::from(measured && is_at(&self.commands_n, self.limits_n));
         }
         if row_s_turn {
-            keep.row(time_s, plant, &self.commands_n, &target_m, &self.told.estimate);
+            keep.row(time_s, plant, &self.commands_n, &self.track.target_m(step), &self.told.estimate);
         }
-        self.estimation.pass_over(self.stride - 1);
+        if self.draws {
+            self.estimation.pass_over(self.stride - 1);
+        }
         true
     }
 
@@ -189,42 +203,62 @@ fn stride(law_steps: u32, estimation: &Estimation) -> u32 {
 
 /// Flies up to four that go on by as many steps at once, each with the bits that it has alone.
 pub(super) fn together(plants: Vec<Plant>, flights: &mut [Flying<'_>], keep: &mut [impl Keep]) {
-    let mut group = PlantGroup::new(plants);
-    let mut goes_on = [false; PlantGroup::MOST];
-    goes_on.iter_mut().take(flights.len()).for_each(|goes| *goes = true);
-    let steps = flights.iter().map(|flying| flying.track.steps()).max().unwrap_or(0);
-    let Some((stride, stride_s)) = flights.first().map(|flying| (flying.stride as usize, flying.stride_s())) else {
-        return;
-    };
-    let mut commands_n = [Vector4::zeros(); PlantGroup::MOST];
-    for step in (0..=steps).step_by(stride) {
-        for (lane, (flying, keep)) in (0..PlantGroup::MOST).zip(flights.iter_mut().zip(keep.iter_mut())) {
-            let Some(plant) = group.plant_mut(lane).filter(|_| goes_on[lane]) else { continue };
-            goes_on[lane] = step <= flying.track.steps() && flying.decide(step, plant, keep);
-            commands_n[lane] = flying.commands_n;
-            if !goes_on[lane] {
-                group.stop(lane);
-            }
-        }
-        if goes_on.iter().all(|goes| !goes) {
+    Arch::new().dispatch(Together { group: PlantGroup::new(plants), flights, keep });
+}
+
+/// Flights side by side, compiled for the vector instructions of the processor. No multiply-add is fused.
+struct Together<'a, 'b, K> {
+    group: PlantGroup,
+    flights: &'a mut [Flying<'b>],
+    keep: &'a mut [K],
+}
+
+impl<K: Keep> WithSimd for Together<'_, '_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { mut group, flights, keep } = self;
+        let mut goes_on = [false; PlantGroup::MOST];
+        goes_on.iter_mut().take(flights.len()).for_each(|goes| *goes = true);
+        let steps = flights.iter().map(|flying| flying.track.steps()).max().unwrap_or(0);
+        let Some((stride, stride_s)) = flights.first().map(|flying| (flying.stride, flying.stride_s())) else {
             return;
+        };
+        let mut commands_n = [Vector4::zeros(); PlantGroup::MOST];
+        let mut step = 0;
+        while step <= steps {
+            for (lane, (flying, keep)) in (0..PlantGroup::MOST).zip(flights.iter_mut().zip(keep.iter_mut())) {
+                let Some(plant) = group.plant_mut(lane).filter(|_| goes_on[lane]) else { continue };
+                goes_on[lane] = step <= flying.track.steps() && flying.decide(step, plant, keep);
+                commands_n[lane] = flying.commands_n;
+                if !goes_on[lane] {
+                    group.stop(lane);
+                }
+            }
+            if goes_on.iter().all(|goes| !goes) {
+                return;
+            }
+            group.advance(&commands_n, stride_s);
+            step += stride;
         }
-        group.advance(&commands_n, stride_s);
     }
 }
 
-/// The commands from which on, downwards and upwards, a motor is at its limit. Some laws cut their forces in f32 and put them out
+/// The highest command at the lower limit of a motor, and the lowest at its upper one, N. Some laws cut their forces in f32 and put them out
 /// as 16-bit commands: a thousandth of the range forgives both.
 fn at_limit_n([least_n, most_n]: [f64; 2]) -> [f64; 2] {
     let slack_n = 1e-3 * (most_n - least_n);
     [least_n + slack_n, most_n - slack_n]
 }
 
-/// Whether a motor is commanded to one of its limits or beyond.
+/// Whether a motor is commanded to one of its limits or beyond; no command is NaN.
 #[inline]
 fn is_at(commands_n: &Vector4<f64>, [low_n, high_n]: [f64; 2]) -> bool {
-    // All four are looked at: four branches cost more.
-    commands_n.iter().fold(false, |at, command_n| at | (*command_n <= low_n) | (*command_n >= high_n))
+    // By comparison: f64::min also looks for NaN.
+    let (less, more) = (|a: f64, b: f64| if a < b { a } else { b }, |a: f64, b: f64| if a > b { a } else { b });
+    let [a, b, c, d] = *commands_n.as_ref();
+    less(less(a, b), less(c, d)) <= low_n || more(more(a, b), more(c, d)) >= high_n
 }
 
 /// An estimate that is the truth.

@@ -19,7 +19,7 @@ pub struct Track {
     setpoints: Vec<Setpoint>,
     setpoint_steps: u32,
     steps: u32,
-    measured_from_s: f64,
+    measured_from: u32,
     /// Where the course jumps.
     jump_m: Option<[Vector3<f64>; 2]>,
 }
@@ -34,9 +34,12 @@ impl Track {
             setpoints: Vec::with_capacity((steps / setpoint_steps) as usize + 1),
             setpoint_steps,
             steps,
-            measured_from_s: flown.measured_from_s,
+            measured_from: 0,
             jump_m: flown.course.jump_m(),
         };
+        // Written so that NaN measures nothing.
+        let is_measured = |step: u32| f64::from(step) * STEP_S > flown.measured_from_s - 0.5 * STEP_S;
+        track.measured_from = (0..=steps).find(|step| is_measured(*step)).unwrap_or(u32::MAX);
         for step in 0..=steps {
             let time_s = f64::from(step) * STEP_S;
             let point = flown.course.at(time_s);
@@ -56,9 +59,9 @@ impl Track {
         self.steps
     }
 
-    /// Whether a time is measured.
-    pub(super) fn is_measured(&self, time_s: f64) -> bool {
-        time_s > self.measured_from_s - 0.5 * STEP_S
+    /// The first step that is measured.
+    pub(super) fn measured_from(&self) -> u32 {
+        self.measured_from
     }
 
     /// Where the craft is to be at a step, m; at the end beyond it.
@@ -81,7 +84,7 @@ impl Track {
         &self.setpoints[((step / self.setpoint_steps) as usize).min(self.setpoints.len() - 1)]
     }
 
-    /// The step from which on that is another; none at the end.
+    /// The step at which the next setpoint begins; beyond every step for the last one.
     pub(super) fn setpoint_until(&self, step: u32) -> u32 {
         let next = (step / self.setpoint_steps + 1) * self.setpoint_steps;
         if ((next / self.setpoint_steps) as usize) < self.setpoints.len() { next } else { u32::MAX }
@@ -91,5 +94,29 @@ impl Track {
     pub(super) fn told(&self, rate_hz: u32) -> impl Iterator<Item = (f64, &Setpoint)> {
         let law_steps = (STEPS_HZ / rate_hz.clamp(1, STEPS_HZ)) as usize;
         (0..=self.steps).step_by(law_steps).map(|step| (f64::from(step) * STEP_S, self.setpoint(step)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn setpoints_and_the_measured_part_begin_at_their_steps() {
+        for setpoints in [Setpoints::At100Hz, Setpoints::Exact] {
+            let flown = Flown::eight(2.1, 0.05);
+            let track = Track::of(&flown, setpoints);
+            let (mut told, mut until) = (*track.setpoint(0), 0);
+            // Every second step, as a law at 500 Hz, and beyond the end, where the last one stays.
+            for step in (0..track.steps() + 30).step_by(2) {
+                if step >= until {
+                    (told, until) = (*track.setpoint(step), track.setpoint_until(step));
+                }
+                assert_eq!(told, *track.setpoint(step), "{step}");
+                let time_s = f64::from(step) * STEP_S;
+                let is_measured = time_s > flown.measured_from_s - 0.5 * STEP_S;
+                assert_eq!(step >= track.measured_from(), is_measured, "{time_s} s");
+            }
+        }
     }
 }

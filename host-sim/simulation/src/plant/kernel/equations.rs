@@ -115,7 +115,7 @@ pub(super) type State<S> = [Number<S>; 17];
 
 /// The classical Runge-Kutta method, in the order of [`crate::integrator::Method`].
 #[inline(always)]
-pub(super) fn advanced<S: Simd, const AIR: bool, const DIAGONAL: bool>(
+pub(super) fn advanced<S: Simd, const AIR: bool, const DIAGONAL: bool, const ONE_LAG: bool>(
     own: &[Number<S>; FIGURES],
     x: &State<S>,
     step: &InLanes<S>,
@@ -123,12 +123,12 @@ pub(super) fn advanced<S: Simd, const AIR: bool, const DIAGONAL: bool>(
     let (h, t) = (step.step, step.start);
     let (half, sixth, two) = (h / h.of(2.0), h / h.of(6.0), h.of(2.0));
     // Summed up as they come: four slopes at once have no room in the registers.
-    let mut sum = slope::<S, AIR, DIAGONAL>(own, x, step, t);
-    let k = slope::<S, AIR, DIAGONAL>(own, &moved(x, &sum, half), step, t + half);
+    let mut sum = slope::<S, AIR, DIAGONAL, ONE_LAG>(own, x, step, t);
+    let k = slope::<S, AIR, DIAGONAL, ONE_LAG>(own, &moved(x, &sum, half), step, t + half);
     add_twice(&mut sum, &k, two);
-    let k = slope::<S, AIR, DIAGONAL>(own, &moved(x, &k, half), step, t + half);
+    let k = slope::<S, AIR, DIAGONAL, ONE_LAG>(own, &moved(x, &k, half), step, t + half);
     add_twice(&mut sum, &k, two);
-    let k = slope::<S, AIR, DIAGONAL>(own, &moved(x, &k, h), step, t + h);
+    let k = slope::<S, AIR, DIAGONAL, ONE_LAG>(own, &moved(x, &k, h), step, t + h);
     let mut next = each!(State, I => x[I] + (sum[I] + k[I]) * sixth);
     [next[6], next[7], next[8], next[9]] = unit(&next);
     next
@@ -153,7 +153,7 @@ pub(super) fn unit<S: Simd>(x: &State<S>) -> [Number<S>; 4] {
 }
 
 #[inline(always)]
-fn slope<S: Simd, const AIR: bool, const DIAGONAL: bool>(
+fn slope<S: Simd, const AIR: bool, const DIAGONAL: bool, const ONE_LAG: bool>(
     own: &[Number<S>; FIGURES],
     x: &State<S>,
     step: &InLanes<S>,
@@ -168,7 +168,7 @@ fn slope<S: Simd, const AIR: bool, const DIAGONAL: bool>(
 
     let thrust_rates = each!(Four, M => {
         let missing = step.goals[M].max(own[LEAST]).min(own[MOST]) - f[M];
-        missing / missing.more_than(zero, own[RISE], own[FALL])
+        missing / if ONE_LAG { own[RISE] } else { missing.more_than(zero, own[RISE], own[FALL]) }
     });
     let thrust = ((f[0] + f[1]) + f[2]) + f[3];
     let mut torque = [own[BIAS], own[BIAS + 1], own[BIAS + 2]];
