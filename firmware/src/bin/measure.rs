@@ -25,7 +25,7 @@ mod image {
     use quatrack::link::{LawChoice, LimitsSetting, StateIn, Table, TrajectoryId};
     use quatrack::nalgebra::Vector3;
     use quatrack::{
-        Command, Controller, Equilibrium, ErrorForm, FeedForward, Measured, Memory, Piece, Player, Quaternion,
+        Command, Controller, Equilibrium, ErrorForm, FeedForward, Leash, Measured, Memory, Piece, Player, Quaternion,
         Reference, ReferenceError, State, Step, Target, Tick, Trajectory,
     };
     use quatrack_firmware::counter::Counter;
@@ -73,6 +73,8 @@ mod image {
         let mut flight = Flight::new(store, None);
         // The dearest steps are limited, all of them.
         flight.config.saturation_max_ticks = Tick::MAX;
+        // As in the paper: the law by itself has no leash.
+        flight.leash = Leash::NONE;
         let mut bench = Bench { counter, overhead, timing: Timing::new(1), flight, dense, limits, states, counts };
         bench.timing.set_decimation(1);
         while let Some([course, controller, is_worst, steps]) = read_words(&mut bench.states) {
