@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 /// The sources that compute commands, seen from the workspace's root.
-const CONTROL_PATH: [&str; 11] = [
+const CONTROL_PATH: [&str; 10] = [
     "core/src",
     "plans",
-    "gains/generated/actuator-aware.rs",
     "firmware/src/flight.rs",
     "firmware/src/flight",
     "firmware/src/laws.rs",

@@ -8,7 +8,7 @@ use crate::body_rate::BodyRateLoop;
 use crate::clock::Rate;
 use crate::command::Command;
 use crate::error::{StateError, StepError};
-use crate::mixer::{ForceRange, Wrench};
+use crate::mixer::Wrench;
 use crate::motor_lag::{MotorLag, MotorLagError};
 
 /// A craft's way from a command to its motors, at a control rate: body-rate loop, mixer, and the lag by which motor
@@ -16,7 +16,6 @@ use crate::motor_lag::{MotorLag, MotorLagError};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Actuation {
     pub(crate) lag: MotorLag,
-    pub(crate) range: ForceRange,
     pub(crate) airframe: Airframe,
     pub(crate) body_rates: BodyRateLoop,
 }
@@ -36,7 +35,7 @@ impl Actuation {
 
     const fn of(airframe: &Airframe, lag: MotorLag) -> Self {
         let body_rates = BodyRateLoop::behind_lag(airframe);
-        Self { lag, range: ForceRange::of(airframe), airframe: *airframe, body_rates }
+        Self { lag, airframe: *airframe, body_rates }
     }
 
     /// The same craft as a design reckons with it: its motors have that lag, and references for it are ahead by half a

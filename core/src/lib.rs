@@ -43,7 +43,7 @@
 //!                   math, checksum  square root, sine and cosine; CRC-32C
 //! ```
 //!
-//! Features, none of them default: `cascade` for the law of nested loops; `link` for the serial link's frames; `serde`
+//! Features, none of them default: `cascade` for the law of nested loops; `actuator-aware` for the law before it, a rival in simulation; `link` for the serial link's frames; `serde`
 //! and `defmt` for plain data to be stored or logged.
 //!
 //! Conventions: world frame z up; quaternion scalar first, Hamilton product, body to world; thrust divided by mass, in
@@ -97,9 +97,9 @@ pub use control::{
     Controller, ControllerError, Handover, Law, Leash, Measured, Memory, MotorStep, Output, Settings, Step, Target,
 };
 pub use error::{ReferenceError, StateError, StepError};
-pub use law::{
-    ActuatorAware, ActuatorAwareGain, AlongTrajectory, Equilibrium, ErrorForm, FeedForward, FlatOutput, IntegralAction,
-};
+#[cfg(feature = "actuator-aware")]
+pub use law::{ActuatorAware, ActuatorAwareGain};
+pub use law::{AlongTrajectory, Equilibrium, ErrorForm, FeedForward, FlatOutput, IntegralAction};
 pub use mixer::{MotorLimited, Wrench};
 pub use motor_lag::{MotorForces, MotorLag};
 pub use motor_reference::{FifthOrderSample, MotorReference};

@@ -4,8 +4,8 @@
 use quatrack::gains::table::{AcceptError, CascadeTable, GainTable, margin_behind};
 use quatrack::gains::{ConstantGain, Decoupled, Scales, paper};
 use quatrack::{
-    Actuation, Air, Cascade, CascadeGains, CascadeLimits, Controller, ControllerError, FeedForward, Law, Limits,
-    Measured, Memory, Output as LawOutput, Settings, StepError, Target,
+    Actuation, Air, Cascade, CascadeGains, CascadeLimits, Controller, FeedForward, Law, Limits, Measured, Memory,
+    Output as LawOutput, Settings, StepError, Target,
 };
 
 use crate::builtin::{self, STATED_FROM_S};
@@ -202,7 +202,7 @@ impl Table {
             let found = Self::holding_lag(cascade, craft, &Tuning { air, ..*tuning })?;
             return Ok(Self { id: TableId::Uploaded, ..found });
         }
-        let gain = table.gain().filter(|gain| !gain.gives_forces()).ok_or(Refusal::Law)?;
+        let gain = table.gain().ok_or(Refusal::Law)?;
         let margin = accepted.margin_behind(craft.motor_lag_s)?;
         let actuation = accepted.actuation(&craft.actuation);
         Ok(Self::constant(TableId::Uploaded, gain, actuation, margin, accepted.limits(), tuning))
@@ -260,25 +260,20 @@ impl Table {
             Gain::Cascade(cascade, _) => {
                 Controller::new(cascade, Limits::NONE).step_unobserved(memory, measured, target)
             }
-            // Refused when it was chosen: said here, nothing of its law is linked.
-            Gain::Constant(ConstantGain::ActuatorAware(_)) => Err(StepError::NoForces),
             Gain::Constant(gain) => gain.step(RATE, &self.settings(limits, feed_forward), memory, measured, target),
         }
     }
 
     /// Its law.
-    ///
-    /// # Errors
-    /// None: a table has its actuation.
-    pub fn law(&self, feed_forward: FeedForward) -> Result<Law<'_>, ControllerError> {
+    pub fn law(&self, feed_forward: FeedForward) -> Law<'_> {
         match &self.gain {
-            Gain::Cascade(cascade, _) => Ok(Law::Cascade(cascade)),
+            Gain::Cascade(cascade, _) => Law::Cascade(cascade),
             Gain::Constant(gain) => gain.law(RATE, &self.settings(Limits::NONE, feed_forward)),
         }
     }
 
     #[inline(always)]
-    fn settings(&self, limits: Limits, feed_forward: FeedForward) -> Settings<'_> {
+    const fn settings(&self, limits: Limits, feed_forward: FeedForward) -> Settings<'_> {
         Settings { actuation: Some(&self.actuation), feed_forward, ..Settings::new(limits, RATE) }
     }
 
@@ -291,9 +286,9 @@ impl Table {
                 [z, vz, fz, 0.0, y, vy, roll, p, fr, 0.0, x, vx, pitch, q, fp, 0.0, yaw, r, fy]
             }
             Gain::Constant(gain) => {
-                let Decoupled { thrust: [t0, t1, t2, t3], roll, pitch, yaw: [y0, y1, y2] } = gain.decoupled();
-                let ([r0, r1, r2, r3, r4, r5], [p0, p1, p2, p3, p4, p5]) = (roll, pitch);
-                [t0, t1, t2, t3, r0, r1, r2, r3, r4, r5, p0, p1, p2, p3, p4, p5, y0, y1, y2]
+                let Decoupled { thrust: [z, vz, iz], roll, pitch, yaw } = gain.decoupled();
+                let ([y, vy, roll, iy], [x, vx, pitch, ix]) = (roll, pitch);
+                [z, vz, 0.0, iz, y, vy, roll, 0.0, 0.0, iy, x, vx, pitch, 0.0, 0.0, ix, yaw, 0.0, 0.0]
             }
         }
     }

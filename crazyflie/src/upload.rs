@@ -10,7 +10,9 @@
 //! refusal in words behind.
 //! The table is the file of docs/gain-tables.md; nothing of it is used before all of it has come and been checked.
 
-use quatrack::gains::table::{CONSTANT_TABLE_BYTES_MAX, GainTable, LoadError, TABLE_BYTES_MAX, TableKind, Vehicle};
+use quatrack::gains::table::{
+    CONSTANT_TABLE_BYTES_MAX, GainTable, LoadError, TABLE_BYTES_MAX, TableError, TableKind, Vehicle,
+};
 use quatrack::link::{BlobKind, BlobReceiver, Chunk, UploadBegin, UploadError};
 
 use crate::craft::RATE;
@@ -142,33 +144,19 @@ impl Uploads {
         match read(blob, vehicle) {
             Ok(Some(table)) => (Status::Taken, Some(table)),
             Ok(None) => (Status::Along, None),
-            Err(Unread::ActuatorAware) => (Status::ActuatorAware, None),
-            Err(Unread::Load(LoadError::Accept(_))) => (Status::Vehicle, None),
+            Err(LoadError::Table(TableError::ActuatorAware)) => (Status::ActuatorAware, None),
+            Err(LoadError::Accept(_)) => (Status::Vehicle, None),
             Err(_) => (Status::Table, None),
         }
     }
 }
 
-/// The reason why an upload is not read.
-enum Unread {
-    Load(LoadError),
-    ActuatorAware,
-}
-
-impl<E: Into<LoadError>> From<E> for Unread {
-    fn from(error: E) -> Self {
-        Self::Load(error.into())
-    }
-}
-
 /// A table for this craft; nothing for gains along a trajectory.
-fn read(blob: &[u8], vehicle: &Vehicle) -> Result<Option<GainTable<'static>>, Unread> {
-    match TableKind::of(blob)? {
-        TableKind::AlongTrajectory => return Ok(None),
-        TableKind::ActuatorAware => return Err(Unread::ActuatorAware),
-        _ => {}
-    }
+fn read(blob: &[u8], vehicle: &Vehicle) -> Result<Option<GainTable<'static>>, LoadError> {
     let table = GainTable::from_bytes(blob)?;
+    if table.kind() == TableKind::AlongTrajectory {
+        return Ok(None);
+    }
     table.accept_for(vehicle, RATE)?;
     Ok(table.owned())
 }

@@ -51,7 +51,7 @@ def tables_and_refusals(library):
     assert (out, ending) == ("sent, 326 bytes: motors off, as asked; table 5, the table that was sent", None), (out, ending)
     for name, words in [
         ("cascade-brushless-50ms.bin", "refused: for another craft or rate (status 8)"),
-        ("actuator-aware.bin", "refused: actuator-aware: outdated (status 11)"),
+        (ROOT / "tests/data/actuator-aware.bin", f"refused: actuator-aware: outdated (status 11){upload.REMEDIES[11]}"),
         ("along-mild.bin", "refused: gains along a trajectory (status 10)"),
         ("cascade-20ms.bin", f"sent, but not flown: {upload.REFUSALS[3]}"),
     ]:

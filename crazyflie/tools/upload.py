@@ -54,6 +54,8 @@ REFUSALS = {
     6: "its law is not flown here: design it with method = \"cascade\"",
 }
 LOGGED = ("quatrack.mode", "quatrack.table", "quatrackN.refused", "quatrackN.refusal")
+# By status of the upload, where the words in the packet have no room for it.
+REMEDIES = {11: ": design one of the cascade, `quatrack gains design` with method = \"cascade\""}
 BEGIN, CHUNK, COMMIT = 1, 2, 3
 TAKEN, ALREADY_THERE = 0, 4
 CHUNK_BYTES = 27
@@ -121,7 +123,8 @@ def _exchange(cf, answers, packet, taken=(TAKEN,)):
             continue
         if status in taken:
             return at
-        raise Refused(f"refused: {words or 'the controller does not say why'} (status {status})")
+        remedy = REMEDIES.get(status, "")
+        raise Refused(f"refused: {words or 'the controller does not say why'} (status {status}){remedy}")
     raise Refused("no answer: is quatrack's app in the firmware, and the link good?")
 
 

@@ -19,7 +19,7 @@ use quatrack::supervisor::{
     ArmError, Asked, Circumstances, Config, Fault, Guard, Mode, MonitorConfig, Order, Preflight, Reason,
     ReferenceReport, Sample,
 };
-use quatrack::{Command, Limits, MotorForces, Output, Rate, RigidState, State, Tick};
+use quatrack::{Command, Leash, Limits, MotorForces, Output, Rate, RigidState, State, Tick};
 
 use crate::craft::BodyRates;
 use crate::laws::{FADE_STEPS, Laws, Refused};
@@ -27,8 +27,6 @@ use crate::playback::{self, Playback};
 use crate::vehicle::{AIRFRAME, BODY_RATES_MAX_RAD_S, START_MAX_M, STOPPED};
 
 pub use self::motors::ToMotors;
-#[cfg(feature = "motors")]
-pub use crate::laws::table;
 pub use crate::rates::{DECIMATION, LOCK_STEP, TICK_RATE, TICK_RATE_HZ};
 
 /// Bounds of a flight unless they are set otherwise: 50 ms without a state, half a second without a frame.
@@ -71,23 +69,23 @@ impl Default for Store {
     }
 }
 
-/// Everything between the link and the motors.
+/// Everything between the link and the motors. The fields that every step looks at come first, within the reach of a load.
+#[repr(C)]
 pub struct Flight {
-    laws: Laws,
+    guard: Guard,
     arrived: Option<Arrived>,
     heard_at: Option<Tick>,
-    /// The reference's source.
-    pub playback: Playback,
-    /// The bounds of a flight.
-    pub config: Config,
-    /// Battery, body rates and forces of the motors.
-    pub motors: ToMotors,
-    guard: Guard,
     decimation: u32,
     /// The result of the last check of the reference.
     reference: ReferenceReport,
     limited: MotorLimited,
     fault: Option<Fault>,
+    /// The bounds of a flight.
+    pub config: Config,
+    /// Farthest error that the laws of references act on.
+    pub leash: Leash,
+    /// Battery, body rates and forces of the motors.
+    pub motors: ToMotors,
     /// The command that passes.
     passed: Command,
     /// The last step and its result, kept in place: it is as large as a command may be.
@@ -95,6 +93,9 @@ pub struct Flight {
     is_answer_new: bool,
     steps: u32,
     steps_failed: u32,
+    laws: Laws,
+    /// The reference's source.
+    pub playback: Playback,
 }
 
 impl Flight {
@@ -108,6 +109,7 @@ impl Flight {
             heard_at: None,
             playback: Playback::new(&mut store.trajectories),
             config: CONFIG,
+            leash: Leash::STANDARD,
             guard: fault.map_or(Guard::new(), Guard::faulted),
             decimation: DECIMATION,
             reference: ReferenceReport::Sound,
@@ -399,7 +401,7 @@ impl Flight {
             specific_force_m_s2: None,
             thrust_m_s2: self.laws.thrust_m_s2(),
         };
-        let Self { guard, laws, playback, motors, reference, .. } = self;
+        let Self { guard, laws, playback, motors, leash, reference, .. } = self;
         let looked = match guard.order((&self.config, &MONITOR), &sample, &around) {
             Order::Fly(looked) => looked,
             // The reference is checked meanwhile: once it is sound again the flight goes on.
@@ -413,7 +415,7 @@ impl Flight {
             }
             Order::Off => return Err(NoCommand::Mode(guard.mode())),
         };
-        let stepped = motors.step(laws, playback, tick, &looked, body_rates.is_some());
+        let stepped = motors.step(laws, (playback, leash), tick, &looked, body_rates.is_some());
         let Err(failure) = stepped else { return stepped };
         let instead = match failure {
             NoCommand::Reference(_) => {

@@ -13,17 +13,15 @@ mod motors;
 #[cfg(feature = "motors")]
 mod rescue;
 
+#[cfg(feature = "motors")]
+use quatrack::MotorStep;
 use quatrack::gains::paper;
 use quatrack::gains::table::{AcceptError, AcceptedTable};
 use quatrack::link::{GainStore, LawChoice, Table};
-#[cfg(feature = "motors")]
-use quatrack::{Airframe, MotorStep};
 use quatrack::{Controller, Equilibrium, Handover, Limits, Measured, Memory, Output, Rate, StepError, Target};
 
 pub use self::motors::Actuations;
-#[cfg(feature = "motors")]
-pub use self::motors::table;
-use self::motors::{BUILT_IN_TO_MOTORS, cascade, loaded, step};
+use self::motors::{cascade, loaded, step};
 use crate::vehicle::{STEP_RATE, VEHICLE};
 
 /// Steps from one law to another in flight: a tenth of a second at 500 Hz.
@@ -38,6 +36,18 @@ pub enum Refused {
     Busy,
     /// The table is for another board.
     Accept(AcceptError),
+}
+
+/// The kind of target that the stepped laws follow.
+#[cfg(feature = "motors")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Follow {
+    /// References: the laws of the paper, and those past it.
+    References,
+    /// The flat output itself: the cascade.
+    Samples,
+    /// One of each, on the way from one to the other.
+    Both,
 }
 
 /// The law in force, the way to it from the one before, and the memory of both.
@@ -101,7 +111,7 @@ impl Laws {
             return;
         }
         self.store.assign(rate.map(|rate| (VEHICLE, rate)));
-        if matches!(self.choice.table, Table::Loaded(_) | Table::ActuatorAware | Table::Cascade) {
+        if matches!(self.choice.table, Table::Loaded(_) | Table::Cascade) {
             self.choice = DEFAULT;
         }
         self.settle();
@@ -210,33 +220,28 @@ impl Laws {
         handover
     }
 
-    /// Whether a law that is stepped gives motor forces, and is to be given targets with them.
+    /// The kind of target for the laws that are stepped.
     #[cfg(feature = "motors")]
     #[inline]
-    pub fn follows_forces(&self) -> bool {
-        self.controller.law().follows_forces() || (!self.is_alone && self.is_any_to_motors())
-    }
-
-    /// Whether the law that is stepped takes the flat output itself, and no other beside it.
-    #[cfg(feature = "motors")]
-    #[inline]
-    pub fn follows_samples(&self) -> bool {
-        self.is_alone && self.controller.law().follows_samples()
+    pub fn follow(&self) -> Follow {
+        match (self.is_alone, self.controller.law().follows_samples()) {
+            (true, true) => Follow::Samples,
+            (true, false) => Follow::References,
+            (false, _) => self.follow_together(),
+        }
     }
 
     #[cfg(feature = "motors")]
     #[cold]
     #[inline(never)]
-    fn is_any_to_motors(&self) -> bool {
-        let gives_forces =
-            |choice| self.controller_of(choice).is_some_and(|c| c.law().follows_forces() || c.law().follows_samples());
-        gives_forces(&self.choice) || (!self.handover.is_over() && gives_forces(&self.before))
-    }
-
-    /// The craft as the law in force reckons with it, for targets with motor forces.
-    #[cfg(feature = "motors")]
-    pub fn airframe(&self) -> Option<&Airframe> {
-        Some(self.actuations.of(self.choice.table)?.airframe())
+    fn follow_together(&self) -> Follow {
+        let takes_samples = |choice| self.controller_of(choice).is_some_and(|c| c.law().follows_samples());
+        let new = takes_samples(&self.choice);
+        match (new, if self.handover.is_over() { new } else { takes_samples(&self.before) }) {
+            (true, true) => Follow::Samples,
+            (false, false) => Follow::References,
+            _ => Follow::Both,
+        }
     }
 
     /// The output of a step.
@@ -295,7 +300,6 @@ impl Laws {
     #[inline(never)]
     fn built_in(&self, choice: &LawChoice) -> Option<Controller<'static>> {
         let law = match choice.table {
-            Table::ActuatorAware if self.rate() == Some(STEP_RATE) => BUILT_IN_TO_MOTORS?.into(),
             Table::Cascade if self.rate() == Some(STEP_RATE) => cascade()?,
             _ => choice.built_in()?,
         };

@@ -8,11 +8,10 @@ use pyo3::types::{PyDict, PyString, PyTuple};
 use quatrack::gains::table::{GainTable as CoreTable, TableKind};
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::control_law::ControlLaw;
-use quatrack_simulation::flight::motor_laws::CraftLaw;
 use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::rigid_loop::RigidSample;
 use quatrack_simulation::scenario::compare::Table;
-use quatrack_simulation::scenario::{Law, Recording, Scenario, TableLaw, start_table};
+use quatrack_simulation::scenario::{Law, Recording, Scenario, start_table};
 use quatrack_simulation::vehicles;
 
 use crate::arrays::array;
@@ -77,7 +76,7 @@ fn record(
     scenario.record(&mut Interruptible { law, cancelled }, &flown).map_err(|error| error.to_string())
 }
 
-/// Flies a table for motor forces on the vehicle that it was made for.
+/// Flies a table of the cascade on the vehicle that it was made for.
 fn record_table(
     scenario: &Scenario,
     bytes: &[u8],
@@ -87,30 +86,26 @@ fn record_table(
     let table = CoreTable::from_bytes(bytes).map_err(|error| error.to_string())?;
     let (kind, head) = (table.kind(), *table.head());
     let refused = |reason: String| format!("{}: {reason}", head.name);
-    if !matches!(kind, TableKind::ActuatorAware | TableKind::Cascade) {
-        return Err(refused(format!(
-            "its kind is {kind}; a scenario takes a table for motor forces, or a law by its name"
-        )));
+    let not_of_cascade =
+        || refused(format!("its kind is {kind}; a scenario takes a table of the cascade, or a law by its name"));
+    if kind != TableKind::Cascade {
+        return Err(not_of_cascade());
     }
     if vehicles::id(&scenario.vehicle) != head.vehicle.id {
         return Err(refused(format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name())));
     }
     let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| refused(error.to_string()))?;
-    if let Some(cascade) = accepted.cascade() {
-        let (own_kg, told_kg) = (scenario.vehicle.mass_kg() as f32, scenario.told.mass_kg as f32);
-        if !cascade.certified.holds_mass(own_kg, told_kg) {
-            let percent = 100.0 * cascade.certified.mass_share;
-            let reason = format!("told {told_kg} kg; it is certified for {own_kg} kg and {percent:.0} % more or less");
-            return Err(refused(reason));
-        }
-        let law = start_table(&scenario.vehicle, &scenario.told, cascade);
-        let mut law = law.map_err(|error| refused(error.to_string()))?;
-        return record(scenario, law.as_mut(), course, cancelled);
+    let cascade = accepted.cascade().ok_or_else(not_of_cascade)?;
+    let (own_kg, told_kg) = (scenario.vehicle.mass_kg() as f32, scenario.told.mass_kg as f32);
+    if !cascade.certified.holds_mass(own_kg, told_kg) {
+        let percent = 100.0 * cascade.certified.mass_share;
+        return Err(refused(format!(
+            "told {told_kg} kg; it is certified for {own_kg} kg and {percent:.0} % more or less"
+        )));
     }
-    let law = CraftLaw::of_table(&scenario.vehicle, accepted).map_err(|error| refused(error.to_string()))?;
-    let mut flying = TableLaw::hovering(&law, scenario.vehicle.hover_thrust_n())
-        .ok_or_else(|| refused("becomes no controller".to_owned()))?;
-    record(scenario, &mut flying, course, cancelled)
+    let law = start_table(&scenario.vehicle, &scenario.told, cascade);
+    let mut law = law.map_err(|error| refused(error.to_string()))?;
+    record(scenario, law.as_mut(), course, cancelled)
 }
 
 fn flown(py: Python<'_>, scenario: &Scenario, flies: Flies, course: Option<PiecewisePolynomial>) -> PyResult<Flight> {

@@ -23,15 +23,6 @@ macro_rules! built_in {
 }
 
 built_in!(
-    "actuator-aware",
-    "actuator-aware-20ms",
-    "actuator-aware-63ms",
-    "actuator-aware-brushless",
-    "actuator-aware-kit",
-    "actuator-aware-kit-20ms",
-    "actuator-aware-kit-63ms",
-    "actuator-brushless-20ms",
-    "actuator-brushless-63ms",
     "along-aggressive",
     "along-mild",
     "cascade-100ms",
@@ -121,8 +112,7 @@ impl GainTable {
         let design = read.map_err(|error| refused(format!("{origin}: {error}")))?;
         let certified =
             long_call(cls.py(), move |_| design.certify())?.map_err(|error| refused(format!("{origin}: {error}")))?;
-        let bytes =
-            certified.to_bytes().ok_or_else(|| refused(format!("{origin}: no law on board flies these gains")))?;
+        let bytes = certified.to_bytes().ok_or_else(|| refused(format!("{origin}: {}", certified.without_table())))?;
         Self::read(&bytes, None)
     }
 

@@ -5,7 +5,10 @@ use pyo3::types::PyString;
 use quatrack::gains::ConstantGain;
 use quatrack::gains::paper;
 use quatrack::gains::table::GainTable as CoreTable;
-use quatrack::{Actuation, Cascade, Controller, ErrorForm, FeedForward, Limits, Memory, Rate, Settings};
+use quatrack::{
+    Actuation, ActuatorAware, ActuatorAwareGain, Cascade, Controller, ErrorForm, FeedForward, Limits, Memory, Rate,
+    Settings,
+};
 use quatrack_design::vehicle::Vehicle;
 use quatrack_simulation::scenario::{ToldFigures, actuation_of, actuator_aware_of, cascade_of, cascade_of_table};
 use quatrack_simulation::vehicles;
@@ -20,6 +23,8 @@ pub(crate) const NAMES: [&str; 6] = ["quatrack", "actuator-aware", "lqr-e", "lya
 enum Kept {
     Cascade(Box<Cascade>),
     Constant(Box<ConstantGain>),
+    /// With the actuation that it is flown with.
+    ActuatorAware(Box<(ActuatorAwareGain, Actuation)>),
     /// With the law of a table of the cascade.
     Table {
         table: Box<CoreTable<'static>>,
@@ -102,11 +107,7 @@ impl OwnedLaw {
                 let (vehicle, told) = craft.ok_or_else(needed)?;
                 let (gain, lag_s) = actuator_aware_of(&vehicle, &told).map_err(refused)?;
                 let actuation = actuation_of(&vehicle, &told, lag_s, RATE).map_err(refused)?;
-                return Ok(own(
-                    Kept::Constant(Box::new(ConstantGain::ActuatorAware(gain))),
-                    Some(actuation),
-                    Limits::NONE,
-                ));
+                return Ok(own(Kept::ActuatorAware(Box::new((gain, actuation))), Some(actuation), Limits::NONE));
             }
             _ => {}
         }
@@ -197,9 +198,12 @@ impl OwnedLaw {
         let parsed;
         let table = match &self.kept {
             Kept::Cascade(cascade) => return Ok(run(&Controller::new(&**cascade, self.limits))),
+            Kept::ActuatorAware(flown) => {
+                let (gain, actuation) = &**flown;
+                return Ok(run(&Controller::new(ActuatorAware::new(gain, actuation), self.limits)));
+            }
             Kept::Constant(gain) => {
-                let law = gain.law(self.rate, &settings).map_err(refused)?;
-                let controller = Controller::new(law, self.limits);
+                let controller = Controller::new(gain.law(self.rate, &settings), self.limits);
                 return Ok(run(&self
                     .actuation
                     .as_ref()

@@ -92,7 +92,7 @@ def test_steps_are_of_as_many_crafts_always():
 
 
 def test_a_table_is_flown_on_its_own_vehicle():
-    table = q.GainTable.builtin("actuator-aware-brushless")
+    table = q.GainTable.builtin("cascade-brushless-50ms")
     assert q.Controller(table).rate_hz == 500
     with pytest.raises(q.QuatrackError, match="made for crazyflie-2.1-brushless .* make its table anew"):
         q.Controller(table, "crazyflie-2.1")

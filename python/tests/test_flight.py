@@ -66,11 +66,10 @@ def test_all_laws_fly_where_none_is_asked_for():
     assert {"quatrack", "mellinger", "lee", "pid"} <= set(table.flights)
 
 
-def test_a_table_for_motor_forces_flies():
-    for name in ("actuator-aware-brushless", "cascade-brushless-50ms"):
-        flight = q.fly(SHORT, q.GainTable.builtin(name))
-        assert flight.lost is None and flight.iae < 1e-3 and flight.law == name
-    with pytest.raises(q.QuatrackError, match="a scenario takes a table for motor forces"):
+def test_a_table_of_the_cascade_flies():
+    flight = q.fly(SHORT, q.GainTable.builtin("cascade-brushless-50ms"))
+    assert flight.lost is None and flight.iae < 1e-3 and flight.law == "cascade-brushless-50ms"
+    with pytest.raises(q.QuatrackError, match="a scenario takes a table of the cascade"):
         q.fly(SHORT, q.GainTable.builtin("lqr-e"))
 
 

@@ -13,9 +13,9 @@ use crate::actuation::Actuation;
 use crate::cascade::{Cascade, CascadeInput};
 use crate::command::Limits;
 use crate::error::{StateError, StepError};
-use crate::law::{ActuatorAware, AlongTrajectory, IntegralAction};
-use crate::motor_reference::MotorReference;
-use crate::state::State;
+#[cfg(feature = "actuator-aware")]
+use crate::law::ActuatorAware;
+use crate::law::{AlongTrajectory, IntegralAction};
 
 /// A law, the limits that its commands keep to, and the actuation that carries them to the motors. To be called at a
 /// fixed rate.
@@ -36,6 +36,7 @@ impl<'a> Controller<'a> {
     pub fn new(law: impl Into<Law<'a>>, limits: Limits) -> Self {
         let law = law.into();
         let actuation = match &law {
+            #[cfg(feature = "actuator-aware")]
             Law::ActuatorAware(law) => Some(law.actuation),
             #[cfg(feature = "cascade")]
             Law::Cascade(law) => Some(law.actuation()),
@@ -48,6 +49,7 @@ impl<'a> Controller<'a> {
     #[inline]
     pub const fn with_actuation(self, actuation: &'a Actuation) -> Self {
         match self.law {
+            #[cfg(feature = "actuator-aware")]
             Law::ActuatorAware(_) => self,
             #[cfg(feature = "cascade")]
             Law::Cascade(_) => self,
@@ -105,11 +107,8 @@ impl<'a> Controller<'a> {
             Law::FlatOutput(_) => registers::flat_output(self, measured.state, target.reference),
             Law::IntegralAction(law) => integral(law, &self.limits, memory, measured, target),
             Law::AlongTrajectory(law) => along(law, &self.limits, measured, target),
-            Law::ActuatorAware(law) => {
-                let Some(body_rates_rad_s) = measured.body_rates_rad_s else { return Err(StepError::NoBodyRates) };
-                let Some(reference) = target.motors else { return Err(StepError::NoForces) };
-                actuator_aware(law, memory, measured.state, body_rates_rad_s, reference)
-            }
+            #[cfg(feature = "actuator-aware")]
+            Law::ActuatorAware(law) => actuator_aware(law, memory, measured, target),
             #[cfg(feature = "cascade")]
             Law::Cascade(law) => cascade(law, memory, measured, target),
         }
@@ -175,8 +174,8 @@ pub(super) fn carried(
     }
 }
 
-// Each out of line, so that no law pays for the registers of another. The actuator-aware one is inlined where there is a system: a
-// caller there can compile it for instructions that not every processor has.
+// Each out of line, so that no law pays for the registers of another. The actuator-aware one, which flies where there is a system
+// alone, is inlined: a caller there can compile it for instructions that not every processor has.
 
 #[inline(never)]
 fn integral(
@@ -209,15 +208,17 @@ fn along(
     }
 }
 
-#[cfg_attr(target_os = "none", inline(never))]
-#[cfg_attr(not(target_os = "none"), inline(always))]
+#[cfg(feature = "actuator-aware")]
+#[inline(always)]
 fn actuator_aware(
     law: &ActuatorAware<'_>,
     memory: &mut Memory,
-    state: &State,
-    body_rates_rad_s: &Vector3<f32>,
-    reference: &MotorReference,
+    measured: Measured<'_>,
+    target: Target<'_>,
 ) -> Result<Output, StepError> {
+    let Some(body_rates_rad_s) = measured.body_rates_rad_s else { return Err(StepError::NoBodyRates) };
+    let Some(reference) = target.motors else { return Err(StepError::NoForces) };
+    let state = measured.state;
     if state.normalized().is_some()
         && let Some((forces_n, limited)) =
             law.step((&mut memory.forces_n, &mut memory.integral_m_s), state, body_rates_rad_s, reference)
@@ -225,11 +226,8 @@ fn actuator_aware(
         return Ok(Output::Forces(MotorStep { forces_n, limited }));
     }
     // Copies, so that only a refusal has them in memory where this is inlined.
-    #[cfg(not(target_os = "none"))]
     let copies = (*state, *body_rates_rad_s);
-    #[cfg(not(target_os = "none"))]
-    let (state, body_rates_rad_s) = (&copies.0, &copies.1);
-    Err(refuse(Measured::new(state).with_body_rates(body_rates_rad_s)))
+    Err(refuse(Measured::new(&copies.0).with_body_rates(&copies.1)))
 }
 
 #[cfg(feature = "cascade")]

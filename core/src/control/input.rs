@@ -8,6 +8,7 @@ use crate::cascade::Followed;
 use crate::command::Command;
 #[cfg(feature = "cascade")]
 use crate::motor_reference::FifthOrderSample;
+#[cfg(feature = "actuator-aware")]
 use crate::motor_reference::MotorReference;
 #[cfg(feature = "cascade")]
 use crate::quaternion::{Heading, Quaternion};
@@ -73,10 +74,11 @@ impl<'a> From<&'a RigidState> for Measured<'a> {
     }
 }
 
-/// The target at a step, borrowed: with as many derivatives as the law needs ([`super::Law::follows_forces`]).
+/// The target at a step, borrowed: with as many derivatives as the law needs.
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
     pub(crate) reference: &'a Reference,
+    #[cfg(feature = "actuator-aware")]
     pub(crate) motors: Option<&'a MotorReference>,
     pub(crate) progress: Option<Progress>,
     #[cfg(feature = "cascade")]
@@ -91,6 +93,7 @@ impl<'a> Target<'a> {
     pub const fn new(reference: &'a Reference) -> Self {
         Self {
             reference,
+            #[cfg(feature = "actuator-aware")]
             motors: None,
             progress: None,
             #[cfg(feature = "cascade")]
@@ -100,6 +103,7 @@ impl<'a> Target<'a> {
         }
     }
 
+    #[cfg(feature = "actuator-aware")]
     /// The same with the motor forces that fly it.
     #[inline]
     pub const fn with_forces(motors: &'a MotorReference) -> Self {
@@ -156,6 +160,7 @@ impl<'a> From<&'a Reference> for Target<'a> {
     }
 }
 
+#[cfg(feature = "actuator-aware")]
 impl<'a> From<&'a MotorReference> for Target<'a> {
     fn from(motors: &'a MotorReference) -> Self {
         Self::with_forces(motors)

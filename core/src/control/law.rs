@@ -2,7 +2,9 @@
 
 #[cfg(feature = "cascade")]
 use crate::cascade::Cascade;
-use crate::law::{ActuatorAware, AlongTrajectory, Equilibrium, FlatOutput, IntegralAction};
+#[cfg(feature = "actuator-aware")]
+use crate::law::ActuatorAware;
+use crate::law::{AlongTrajectory, Equilibrium, FlatOutput, IntegralAction};
 
 /// Any law.
 // With a tag of its own, where one in a gap between fields would take five instructions of every step to be read.
@@ -19,6 +21,7 @@ pub enum Law<'a> {
     /// Gains over time along a trajectory.
     AlongTrajectory(AlongTrajectory<'a>),
     /// Straight to motor forces, with the motors' lag in the model.
+    #[cfg(feature = "actuator-aware")]
     ActuatorAware(ActuatorAware<'a>),
     /// Straight to motor forces, in nested loops with limits, told of the air.
     #[cfg(feature = "cascade")]
@@ -26,7 +29,8 @@ pub enum Law<'a> {
 }
 
 impl Law<'_> {
-    /// Whether it gives motor forces: it then takes measured body rates, and a target made with
+    #[cfg(feature = "actuator-aware")]
+    /// Whether it follows motor forces: it then takes measured body rates, and a target made with
     /// [`super::Target::with_forces`] for the craft of its [`crate::Actuation`].
     #[inline]
     pub const fn follows_forces(&self) -> bool {
@@ -43,15 +47,22 @@ impl Law<'_> {
     /// Whether it moves on the integral of the position error.
     #[inline]
     pub const fn integrates(&self) -> bool {
-        matches!(self, Self::ActuatorAware(_) | Self::IntegralAction(_))
+        match self {
+            #[cfg(feature = "actuator-aware")]
+            Self::ActuatorAware(_) => true,
+            Self::IntegralAction(_) => true,
+            _ => false,
+        }
     }
 
     /// Whether the integral of one means the same to the other: both are of one kind that integrates.
     pub(crate) const fn integrates_like(&self, other: &Self) -> bool {
-        matches!(
-            (self, other),
-            (Self::ActuatorAware(_), Self::ActuatorAware(_)) | (Self::IntegralAction(_), Self::IntegralAction(_))
-        )
+        match (self, other) {
+            #[cfg(feature = "actuator-aware")]
+            (Self::ActuatorAware(_), Self::ActuatorAware(_)) => true,
+            (Self::IntegralAction(_), Self::IntegralAction(_)) => true,
+            _ => false,
+        }
     }
 }
 
@@ -79,6 +90,7 @@ impl<'a> From<AlongTrajectory<'a>> for Law<'a> {
     }
 }
 
+#[cfg(feature = "actuator-aware")]
 impl<'a> From<ActuatorAware<'a>> for Law<'a> {
     fn from(law: ActuatorAware<'a>) -> Self {
         Self::ActuatorAware(law)

@@ -4,6 +4,7 @@
 use nalgebra::Vector3;
 
 use crate::math::sqrt;
+use crate::reference::Reference;
 use crate::state::State;
 
 /// Farthest that a position is asked for from the measured one, m, and a velocity, m/s: one length for both.
@@ -16,6 +17,19 @@ pub struct Leash {
 }
 
 impl Leash {
+    /// A metre, and a metre a second.
+    pub const STANDARD: Self = Self { length_m: 1.0 };
+
+    /// None: the laws as they are in the paper.
+    pub const NONE: Self = Self { length_m: f32::INFINITY };
+
+    /// Draws a reference whose position and velocity are too far away towards the craft. Its attitude, thrust and body rates
+    /// come of its acceleration and jerk, and stay.
+    #[inline]
+    pub fn hold(&self, reference: &mut Reference, measured: &State) {
+        self.draw(&mut reference.state.position_m, &mut reference.state.velocity_m_s, measured);
+    }
+
     /// Draws a position and a velocity that are too far away towards the craft, a metre a second counting like a metre.
     #[inline]
     pub fn draw(&self, position_m: &mut Vector3<f32>, velocity_m_s: &mut Vector3<f32>, measured: &State) {
@@ -35,6 +49,7 @@ impl Leash {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::reference::FlatSample;
 
     #[test]
     fn a_goal_beyond_the_leash_comes_to_its_end_and_one_within_stays() {
@@ -50,5 +65,21 @@ mod tests {
         let (mut position, mut velocity) = (near, slow);
         leash.draw(&mut position, &mut velocity, &measured);
         assert_eq!((position, velocity), (near, slow));
+    }
+
+    #[test]
+    fn a_reference_is_drawn_in_place_and_goes_on_asking_for_its_attitude() {
+        let measured = State::at_rest(Vector3::new(0.0, 0.0, 1.0));
+        let flat = FlatSample {
+            acceleration_m_s2: Vector3::new(2.0, 0.0, 0.0),
+            ..FlatSample::at_rest(Vector3::new(5.0, 0.0, 1.0), 0.5)
+        };
+        let far = Reference::from_flat(&flat).unwrap();
+        let mut drawn = far;
+        Leash::STANDARD.hold(&mut drawn, &measured);
+        let at_its_end = State { position_m: Vector3::new(1.0, 0.0, 1.0), ..*far.state() };
+        assert_eq!((drawn.state(), drawn.input()), (&at_its_end, far.input()));
+        Leash::NONE.hold(&mut drawn, &State::at_rest(Vector3::new(1e9, 0.0, 0.0)));
+        assert_eq!(drawn.state(), &at_its_end);
     }
 }

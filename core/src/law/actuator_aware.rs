@@ -11,6 +11,7 @@
 use nalgebra::Vector3;
 
 use super::difference;
+use super::force_range::ForceRange;
 use crate::actuation::Actuation;
 use crate::gain::{Gain, GainError};
 use crate::mixer::{MotorLimited, Parts};
@@ -57,6 +58,7 @@ struct Chains {
 pub struct ActuatorAware<'a> {
     pub(crate) gain: &'a ActuatorAwareGain,
     pub(crate) actuation: &'a Actuation,
+    range: ForceRange,
 }
 
 impl ActuatorAwareGain {
@@ -165,10 +167,11 @@ const fn columns_of_feedback(gain: &Gain<4, 19>) -> [[f32; 4]; 19] {
 impl Chains {
     /// Nothing unless every column drives one part alone, by the pattern of its signs and with entries of the same size.
     const fn of(columns: &[[f32; 4]; 19]) -> Option<Self> {
-        const THRUST: [f32; 4] = Parts::SIGNS_OF_THRUST;
-        const ROLL: [f32; 4] = Parts::SIGNS_OF_ROLL;
-        const PITCH: [f32; 4] = Parts::SIGNS_OF_PITCH;
-        const YAW: [f32; 4] = Parts::SIGNS_OF_YAW;
+        // Signs with which M1 to M4 have each part: the rows of the table of [`mod@crate::airframe`].
+        const THRUST: [f32; 4] = [1.0, 1.0, 1.0, 1.0];
+        const ROLL: [f32; 4] = [-1.0, -1.0, 1.0, 1.0];
+        const PITCH: [f32; 4] = [-1.0, 1.0, 1.0, -1.0];
+        const YAW: [f32; 4] = [-1.0, 1.0, -1.0, 1.0];
         let [x, y, z, vx, vy, vz, rotation_x, rotation_y, rotation_z, p, q, r, f1, f2, f3, f4, ix, iy, iz] = columns;
         let thrust = [size(z, &THRUST), size(vz, &THRUST), size(iz, &THRUST), Some(0.0), Some(0.0)];
         let roll = [size(y, &ROLL), size(vy, &ROLL), size(rotation_x, &ROLL), size(p, &ROLL), size(iy, &ROLL)];
@@ -222,7 +225,7 @@ impl<'a> ActuatorAware<'a> {
     /// The law on a craft at a control rate, those of the gain's design. References are to be made for the actuation's
     /// airframe, [`crate::Airframe::commanded_at`] that rate: they too depend on its motor lag.
     pub const fn new(gain: &'a ActuatorAwareGain, actuation: &'a Actuation) -> Self {
-        Self { gain, actuation }
+        Self { gain, actuation, range: ForceRange::of(actuation.airframe()) }
     }
 
     /// Commanded forces (N) within the motors' range and whether any was cut; nothing, and the memory as it was, where
@@ -252,7 +255,7 @@ impl<'a> ActuatorAware<'a> {
             integral: heading.to_heading_frame(*integral_m_s),
         };
         let asked = self.gain.feedback.added_to(reference.commands_n, &errors);
-        let (commands, limited) = actuation.range.saturate(&asked)?;
+        let (commands, limited) = self.range.saturate(&asked)?;
         *forces_n = actuation.lag.next(forces_n, &commands);
         if !limited.any() {
             let (h, i) = (actuation.lag.period_s(), *integral_m_s);

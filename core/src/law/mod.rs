@@ -3,12 +3,16 @@
 //! A law does not check its inputs and does not fail: numbers that are not finite, and inputs outside the domain of its
 //! map, come out as a command that is not finite, which [`crate::control`] refuses.
 
+#[cfg(feature = "actuator-aware")]
 mod actuator_aware;
 mod along_trajectory;
 mod equilibrium;
 mod flat_output;
+#[cfg(feature = "actuator-aware")]
+mod force_range;
 mod integral_action;
 
+#[cfg(feature = "actuator-aware")]
 pub use actuator_aware::{ActuatorAware, ActuatorAwareGain};
 pub use along_trajectory::{AlongTrajectory, GainSchedule, Knot, ScheduleError};
 pub use equilibrium::{Equilibrium, EquilibriumGain, ErrorForm};

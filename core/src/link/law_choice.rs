@@ -20,8 +20,6 @@ pub enum Table {
     LqrF,
     /// A loaded one, see [`super::GainStore::table`]: slot 0 is the one in use, slot 1 the one before.
     Loaded(u8),
-    /// The actuator-aware law's for this craft, straight to motor forces; takes neither feed-forward nor error form.
-    ActuatorAware,
     /// The cascade's for this craft where no lag of its motors is stated; takes neither feed-forward nor error form.
     Cascade,
 }
@@ -54,7 +52,7 @@ impl LawChoice {
             Table::LqrE => equilibrium(&paper::LQR_E),
             Table::LyapF => flat_output(&paper::LYAP_F),
             Table::LqrF => flat_output(&paper::LQR_F),
-            Table::Loaded(_) | Table::ActuatorAware | Table::Cascade => None,
+            Table::Loaded(_) | Table::Cascade => None,
         }
     }
 }

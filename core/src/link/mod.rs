@@ -75,7 +75,7 @@ pub use upload::{BlobKind, Chunk, Progress, UploadBegin, UploadError};
 pub use window::Admission;
 
 /// Version of the frame layout and of every message in it. A changed message is a changed version.
-pub const PROTOCOL_VERSION: u8 = 4;
+pub const PROTOCOL_VERSION: u8 = 5;
 
 /// Bytes of the longest blob of any kind.
 pub const BLOB_BYTES_MAX: usize = {

@@ -144,6 +144,8 @@ pub enum ParameterId {
     BatteryVoltage,
     /// [`Parameter::BodyRateBandwidth`].
     BodyRateBandwidth,
+    /// [`Parameter::Leash`].
+    Leash,
 }
 
 /// A parameter and its value.
@@ -168,6 +170,8 @@ pub enum Parameter {
     BatteryVoltage(f32),
     /// Bandwidth of the loop that follows a law's body rates about body x, y, z, rad/s.
     BodyRateBandwidth([f32; 3]),
+    /// Farthest error that the laws of references act on, m and m/s; infinity for the laws as they are in the paper.
+    Leash(f32),
 }
 
 impl Parameter {
@@ -183,6 +187,7 @@ impl Parameter {
             Self::UploadsRefused(_) => ParameterId::UploadsRefused,
             Self::BatteryVoltage(_) => ParameterId::BatteryVoltage,
             Self::BodyRateBandwidth(_) => ParameterId::BodyRateBandwidth,
+            Self::Leash(_) => ParameterId::Leash,
         }
     }
 }

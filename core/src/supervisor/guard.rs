@@ -56,8 +56,9 @@ impl Circumstances {
     };
 }
 
-/// Monitor, state machine, and the way down.
+/// Monitor, state machine, and the way down. The fields that every step looks at come first, within the reach of a load.
 #[derive(Clone, Copy, Debug)]
+#[repr(C)]
 pub struct Guard {
     monitor: Monitor,
     supervisor: Supervisor,
@@ -150,10 +151,11 @@ impl Guard {
             && config.geofence.is_none()
             && around.battery_v.is_none_or(|volts| volts >= config.battery_least_v)
             && supervisor.is_in_range(limited.any(), sample.now, config)
-            && sample.state.is_some_and(|state| tilted(state) <= TILTED_MOST)
-            && (!cuts_thrust(limited)
+            && (!limited.any()
+                || !cuts_thrust(limited)
                 || sample.thrust_m_s2 <= CLIMB_LEAST_M_S2
                 || sample.state.is_some_and(|state| !is_at_rest(&state.velocity_m_s)))
+            && sample.state.is_some_and(|state| tilted(state) <= TILTED_MOST)
             && self.monitor.keeps(monitor, sample)
     }
 

@@ -53,7 +53,8 @@ impl MonitorConfig {
 /// Squared norms between which a quaternion is an attitude and is scaled to norm 1: of 0.7 and of 1.4.
 const NORM_SQUARED: [f32; 2] = [0.49, 1.96];
 /// Squared norms that every law takes as they are.
-const NORM_SQUARED_NEAR: [f32; 2] = [0.98, 1.02];
+const NORM_SQUARED_NEAR: [f32; 2] = [1.0 - NEAR, 1.0 + NEAR];
+const NEAR: f32 = 0.02;
 /// Largest specific force that is believed, m/s^2: 16 g.
 const FORCE_MAX_M_S2: f32 = 157.0;
 /// Change of a body rate from which on the gyroscope moves, rad/s: one step of its output at 2000 degrees a second.
@@ -65,6 +66,8 @@ const QUIET_TICKS: Tick = 30;
 const DRAG_PER_S: f32 = 0.4;
 /// Longest step of the bridge, s.
 const STEP_MAX_S: f32 = 0.05;
+/// A bound below which no sum of squares is.
+const NOTHING_IS: f32 = -1.0;
 /// Share of a new difference of attitudes in the body rates that are made of them.
 const DIFFERENCE_SHARE: f32 = 0.5;
 
@@ -111,8 +114,9 @@ pub struct Sample<'a> {
     pub thrust_m_s2: f32,
 }
 
-/// The monitor's memory.
+/// The monitor's memory; first the part that every step looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Monitor {
     /// The newest estimate as it was given, and its body rates.
     given: State,
@@ -120,10 +124,11 @@ pub struct Monitor {
     at: Tick,
     /// When the body rates were others the last time.
     turned_at: Tick,
+    /// Below which the sum of [`motion_of`] needs no closer look; nothing is, before a sound estimate has come and while something
+    /// is bridged.
+    calm_below: f32,
     /// A sound estimate has come.
     is_known: bool,
-    /// One has, and nothing has been bridged since.
-    is_well: bool,
     /// The last step is flown on a bridged state.
     is_bridged: bool,
     /// Something is not sound, or stays the same.
@@ -173,8 +178,8 @@ impl Monitor {
             rates: ZERO,
             at: 0,
             turned_at: 0,
+            calm_below: NOTHING_IS,
             is_known: false,
-            is_well: false,
             is_bridged: false,
             bridge: None,
         }
@@ -186,34 +191,38 @@ impl Monitor {
         if self.keeps(config, sample) { self.looked() } else { self.look_closely(config, sample) }
     }
 
-    /// Keeps the sample of a step where all of it is sound and nothing has been bridged, which is seen by a few
-    /// comparisons; whether it is.
+    /// Keeps the sample of a step where all of it is sound and nothing has been bridged, which is seen by a few comparisons; whether
+    /// it is. They are stricter than the bounds: a sample that fails one gets the closer look.
     #[inline(always)]
     pub(super) fn keeps(&mut self, config: &MonitorConfig, sample: &Sample<'_>) -> bool {
         let rates = sample.body_rates_rad_s.unwrap_or(&NO_RATES);
         let Some(state) = sample.state else { return false };
-        let is_sound = self.is_well
-            && is_attitude(state.attitude, NORM_SQUARED_NEAR)
-            && is_place(state, config)
-            && (sample.body_rates_rad_s.is_none() || is_turning(rates, config));
-        if !is_sound {
+        if !(is_near_unit(state.attitude) && motion_of(state, rates, config) < self.calm_below) {
             return false;
         }
-        // An estimate that comes more rarely than steps is the same in between; body rates may be, too.
-        let is_held = sample.body_rates_rad_s.is_some() && is_same(state, &self.given);
-        let turns = sample.body_rates_rad_s.is_none() || is_moving(rates, &self.rates);
-        let quiet = |since: Tick| sample.now.wrapping_sub(since) > QUIET_TICKS;
-        if is_held && quiet(self.at) || !turns && quiet(self.turned_at) {
+        // An estimate that comes more rarely than steps is the same in between; body rates may be, too. Most differ in the first
+        // that is looked at.
+        let has_changed = state.velocity_m_s.x.to_bits() != self.given.velocity_m_s.x.to_bits();
+        if sample.body_rates_rad_s.is_none() || has_changed && rates.x != self.rates.x {
+            (self.at, self.turned_at) = (sample.now, sample.now);
+        } else if !self.is_still_briefly(state, rates, sample.now) {
             return false;
-        }
-        if !is_held {
-            self.at = sample.now;
-        }
-        if turns {
-            self.turned_at = sample.now;
         }
         (self.given, self.rates) = (*state, *rates);
         true
+    }
+
+    /// Notes the tick of the last change where a part of the sample may be the same as before; whether none has been for too long.
+    #[inline(always)]
+    fn is_still_briefly(&mut self, state: &State, rates: &Vector3<f32>, now: Tick) -> bool {
+        let at = if is_same(state, &self.given) { self.at } else { now };
+        let turned_at = if is_moving(rates, &self.rates) { now } else { self.turned_at };
+        let is_brief = |since: Tick| now.wrapping_sub(since) <= QUIET_TICKS;
+        let is_brief = is_brief(at) && is_brief(turned_at);
+        if is_brief {
+            (self.at, self.turned_at) = (at, turned_at);
+        }
+        is_brief
     }
 
     /// The state and body rates that the last step is flown on.
@@ -282,8 +291,10 @@ impl Monitor {
             bridge.state.attitude = attitude;
         }
         self.is_known |= place.is_some() && attitude.is_some();
-        if let Some(state) = sample.state {
-            self.given = *state;
+        if let Some(State { position_m: p, attitude, velocity_m_s: v }) = sample.state {
+            // Number by number: as a whole it is a move between places that may overlap, which links 1.6 kB.
+            let (position_m, velocity_m_s) = (Vector3::new(p.x, p.y, p.z), Vector3::new(v.x, v.y, v.z));
+            self.given = State { position_m, attitude: *attitude, velocity_m_s };
         }
         if given_rates.is_none_or(|rates| rates != self.rates) {
             self.turned_at = now;
@@ -297,7 +308,7 @@ impl Monitor {
             && bridge.still_gyroscope.is_none()
             && is_attitude(self.given.attitude, NORM_SQUARED_NEAR);
         self.bridge = (!is_over).then_some(bridge);
-        self.is_well = is_over;
+        self.calm_below = if is_over { motion_max(config) } else { NOTHING_IS };
         let is_given = soundness == Soundness::Sound && is_attitude(self.given.attitude, NORM_SQUARED_NEAR);
         self.is_bridged = !(is_over || is_given);
         Looked { soundness, velocity_bridged_ticks, ..self.looked() }
@@ -403,6 +414,30 @@ fn is_attitude(q: Quaternion, [least, most]: [f32; 2]) -> bool {
     squared >= least && squared <= most
 }
 
+/// The same of [`NORM_SQUARED_NEAR`] by one comparison.
+#[inline(always)]
+fn is_near_unit(q: Quaternion) -> bool {
+    let squared = (q.x * q.x + q.y * q.y) + (q.w * q.w + q.z * q.z);
+    (squared - 1.0).abs() <= NEAR
+}
+
+/// Position, velocity and body rates as one sum of squares. Below [`motion_max`] each is within its own bound; one that is no number
+/// is below nothing.
+#[inline(always)]
+fn motion_of(state: &State, w: &Vector3<f32>, config: &MonitorConfig) -> f32 {
+    let (p, v) = (&state.position_m, &state.velocity_m_s);
+    let per_m2 = motion_max(config) / (config.position_max_m * config.position_max_m);
+    let motion = (v.x * v.x + v.y * v.y + v.z * v.z) + (w.x * w.x + w.y * w.y + w.z * w.z);
+    (p.x * p.x + p.y * p.y + p.z * p.z) * per_m2 + motion
+}
+
+/// The square of the lesser of the bounds of velocity and body rates.
+#[inline(always)]
+fn motion_max(config: &MonitorConfig) -> f32 {
+    let most = shorter(config.speed_max_m_s, config.body_rate_max_rad_s);
+    most * most
+}
+
 #[inline(always)]
 fn is_place(state: &State, config: &MonitorConfig) -> bool {
     let (p, v) = (&state.position_m, &state.velocity_m_s);
@@ -422,14 +457,9 @@ fn is_moving(rates: &Vector3<f32>, before: &Vector3<f32>) -> bool {
     rates.x != before.x || rates.y != before.y || rates.z != before.z
 }
 
-/// Whether two estimates have the same bits; a NaN is the same as itself. Most differ in the first that is looked at.
+/// Whether two estimates have the same bits; a NaN is the same as itself.
 #[inline(always)]
 fn is_same(a: &State, b: &State) -> bool {
-    a.velocity_m_s.x.to_bits() == b.velocity_m_s.x.to_bits() && is_all_the_same(a, b)
-}
-
-#[inline(always)]
-fn is_all_the_same(a: &State, b: &State) -> bool {
     let differ = |a: f32, b: f32| a.to_bits() ^ b.to_bits();
     let (p, q, v) = (&a.position_m, &a.attitude, &a.velocity_m_s);
     let (o, r, u) = (&b.position_m, &b.attitude, &b.velocity_m_s);

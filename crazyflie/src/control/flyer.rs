@@ -30,13 +30,13 @@ pub const FADE_STEPS: u16 = 125;
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(super) struct Flyer {
-    pub(super) stream: Stream,
     pub(super) headings: HeadingStream,
     pub(super) ahead: Ahead,
-    pub(super) flight: Flight,
-    shaping: Shaping,
-    settings: Settings,
     pub(super) outcome: Outcome,
+    pub(super) stream: Stream,
+    pub(super) flight: Flight,
+    settings: Settings,
+    shaping: Shaping,
     pub(super) craft: Craft,
     memory: Memory,
     table: Table,
@@ -343,9 +343,8 @@ impl Flyer {
                 self.memory.assume_hovering(self.craft.airframe());
             }
             let feed_forward = self.settings.feed_forward;
-            if let (Ok(old), Ok(new)) = (old.law(feed_forward), new.law(feed_forward)) {
-                self.handover.begin_again(FADE_STEPS, &old, &new, &mut self.memory);
-            }
+            let (old, new) = (old.law(feed_forward), new.law(feed_forward));
+            self.handover.begin_again(FADE_STEPS, &old, &new, &mut self.memory);
         }
         self.ahead.forget();
     }

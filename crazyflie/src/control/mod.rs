@@ -55,6 +55,7 @@ const CONFIGS: (&Config, &MonitorConfig) = (&Config::STANDARD, &MonitorConfig::S
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub struct Controller {
+    guard: Guard,
     inbox: Inbox,
     /// The heading of the newest setpoint is still to be taken.
     is_heading_due: bool,
@@ -67,7 +68,6 @@ pub struct Controller {
     why: Why,
     background: Background,
     flyer: Flyer,
-    guard: Guard,
 }
 
 impl Controller {
@@ -362,8 +362,8 @@ impl Controller {
     }
 }
 
-/// Whether all measurements of a step are sound. A function of its own, so that its values have registers of their own.
-#[inline(never)]
+/// Whether all measurements of a step are sound.
+#[inline(always)]
 fn goes_on(
     guard: &mut Guard,
     (sensors, state): (&abi::SensorData, &abi::State),

@@ -16,7 +16,7 @@ pub(crate) const CONTROLLER: Controller = {
     let tuning = Tuning { scales: Scales::ONE, air: Air::NONE, limits: CascadeLimits::STANDARD };
     let default = &CRAZYFLIE_2_1_DEFAULT.table;
     let Ok(table) = Table::of_cascade(&default.gains, default.motor_lag_s, &craft, &tuning) else { panic!("no lag") };
-    let bounds = Bounds { leash: Leash { length_m: 1.0 }, speed_m_s: 1.0, acceleration_m_s2: 1.0 };
+    let bounds = Bounds { leash: Leash::STANDARD, speed_m_s: 1.0, acceleration_m_s2: 1.0 };
     let settings = Settings { bounds, limits: Limits::NONE, feed_forward: FeedForward::With };
     Controller::new(craft, table, settings)
 };

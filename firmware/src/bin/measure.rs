@@ -2,14 +2,13 @@
 //!
 //! Both files are in the folder in which the emulator runs, all numbers little-endian, 32 bits.
 //!
-//! `states.bin`: the rows of a dense gain; three limits (least and most thrust, rates); the rows of a dense actuator-aware
-//! gain; then, for each flight, course (0 mild, 1 aggressive), controller (4 is the dense gain, 5 the way to the motors),
-//! whether it is flown at its worst, number of steps; then ten floats a step.
+//! `states.bin`: the rows of a dense gain; three limits (least and most thrust, rates); then, for each flight, course
+//! (0 mild, 1 aggressive), controller (4 is the dense gain), whether it is flown at its worst, number of steps; then ten
+//! floats a step.
 //!
 //! `counts.bin`: cost of reading the counter, counts of two loops of known length; then, for each step of each flight,
 //! counts of the reference, of the law (least, sum, most) and of the tick, the four floats of the tick's command, and a hash
-//! of all commands of the law. On the way to the motors: count of the stored reference; least, sum, most of that at its
-//! worst, of the actuator-aware law and of that with the dense gain; and a hash of all of them.
+//! of all commands of the law.
 //!
 //! As recorded, the law is the paper's, within the first limits. At its worst it has every form that costs more: errors in
 //! the heading frame of a reference that turns, without feed-forward and with it, within each of the limits, the measured
@@ -18,20 +17,16 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-#[path = "measure/motors.rs"]
-mod motors;
-
-#[cfg(target_os = "none")]
 mod image {
     use core::hint::black_box;
 
     use cortex_m_rt::entry;
-    use quatrack::law::{ActuatorAwareGain, EquilibriumGain};
+    use quatrack::law::EquilibriumGain;
     use quatrack::link::{LawChoice, LimitsSetting, StateIn, Table, TrajectoryId};
     use quatrack::nalgebra::Vector3;
     use quatrack::{
-        Actuation, Airframe, Command, Controller, Equilibrium, ErrorForm, FeedForward, Measured, Memory, Piece, Player,
-        Quaternion, Rate, Reference, ReferenceError, State, Step, Target, Tick, Trajectory,
+        Command, Controller, Equilibrium, ErrorForm, FeedForward, Leash, Measured, Memory, Piece, Player, Quaternion,
+        Reference, ReferenceError, State, Step, Target, Tick, Trajectory,
     };
     use quatrack_firmware::counter::Counter;
     use quatrack_firmware::craft::NoCraft;
@@ -41,13 +36,8 @@ mod image {
     use quatrack_firmware::{stored, tick};
     use stm32f4::stm32f405::Peripherals;
 
-    use crate::motors::{self, Motors};
-
     /// Rounds of `delay`, a loop of two instructions: the costs differ by 2000, however long call and return are.
     const LOOPS: [u32; 2] = [100, 1100];
-
-    /// In the place of a controller: the way to the motors.
-    const TO_MOTORS: u32 = 5;
 
     /// Heading at the start of a turning course and its rate, rad and rad/s.
     const TURN: [f32; 2] = [0.3, 0.5];
@@ -58,16 +48,10 @@ mod image {
         // Too large for the stack.
         static mut MILD: [Piece; stored::MILD.len()] = stored::MILD;
         static mut AGGRESSIVE: [Piece; stored::AGGRESSIVE.len()] = stored::AGGRESSIVE;
-        static mut MILD_SEPTIC: [Piece; stored::MILD.len()] = stored::MILD;
-        static mut AGGRESSIVE_SEPTIC: [Piece; stored::AGGRESSIVE.len()] = stored::AGGRESSIVE;
-        exit(run(STORE, [MILD, AGGRESSIVE], [MILD_SEPTIC, AGGRESSIVE_SEPTIC]).is_some())
+        exit(run(STORE, [MILD, AGGRESSIVE]).is_some())
     }
 
-    fn run(
-        store: &'static mut Store,
-        turning: [&'static mut [Piece]; 2],
-        septic: [&'static mut [Piece]; 2],
-    ) -> Option<()> {
+    fn run(store: &'static mut Store, turning: [&'static mut [Piece]; 2]) -> Option<()> {
         let peripherals = Peripherals::take()?;
         let counter = Counter::start(peripherals.TIM5, &peripherals.RCC);
         let mut states = File::open(c"states.bin", Mode::Read)?;
@@ -80,40 +64,24 @@ mod image {
         });
         write_words(&mut counts, [overhead, loops[0], loops[1]])?;
         let turning = turning.map(|pieces| turn(pieces, TURN));
-        let septic = septic.map(|pieces| {
-            motors::septic(pieces);
-            turn(pieces, motors::TURN)
-        });
         let mut rows = [[0.0; 9]; 4];
         for row in &mut rows {
             *row = read_words(&mut states)?.map(f32::from_bits);
         }
         let dense = EquilibriumGain::new(rows).ok()?;
         let limits = [setting(&mut states)?, setting(&mut states)?, setting(&mut states)?];
-        let mut rows = [[0.0; 19]; 4];
-        for row in &mut rows {
-            *row = read_words(&mut states)?.map(f32::from_bits);
-        }
-        let dense_to_motors = ActuatorAwareGain::new(rows).ok()?;
-        let step_rate = Rate::from_hz(TICK_RATE.hz() / TICKS_PER_STEP)?;
-        let actuation = Actuation::new(&Airframe::CRAZYFLIE_2_1.commanded_at(step_rate), step_rate).ok()?;
         let mut flight = Flight::new(store, None);
         // The dearest steps are limited, all of them.
         flight.config.saturation_max_ticks = Tick::MAX;
+        // As in the paper: the law by itself has no leash.
+        flight.leash = Leash::NONE;
         let mut bench = Bench { counter, overhead, timing: Timing::new(1), flight, dense, limits, states, counts };
         bench.timing.set_decimation(1);
         while let Some([course, controller, is_worst, steps]) = read_words(&mut bench.states) {
-            let (id, stored, turning, septic): (_, &[Piece], _, _) = match (course, turning, septic) {
-                (0, [mild, _], [septic, _]) => (TrajectoryId::Mild, &stored::MILD, mild, septic),
-                (_, [_, aggressive], [_, septic]) => {
-                    (TrajectoryId::Aggressive, &stored::AGGRESSIVE, aggressive, septic)
-                }
+            let (id, stored, turning): (_, &[Piece], _) = match (course, turning) {
+                (0, [mild, _]) => (TrajectoryId::Mild, &stored::MILD, mild),
+                (_, [_, aggressive]) => (TrajectoryId::Aggressive, &stored::AGGRESSIVE, aggressive),
             };
-            if controller == TO_MOTORS {
-                let mut motors = Motors::new(&dense_to_motors, &actuation, stored, septic)?;
-                (0..steps).try_for_each(|step| motors.step(&mut bench, step))?;
-                continue;
-            }
             let course = Course { id, stored: Trajectory::new(stored).ok()?, turning: Trajectory::new(turning).ok()? };
             let table = [Table::LyapF, Table::LyapE, Table::LqrF, Table::LqrE].get(controller as usize).copied();
             match (is_worst, table) {
@@ -141,15 +109,15 @@ mod image {
     }
 
     /// The counter, the recorded flights and the controllers that are counted.
-    pub(crate) struct Bench {
-        pub(crate) counter: Counter,
+    struct Bench {
+        counter: Counter,
         overhead: u32,
         timing: Timing,
         flight: Flight,
         dense: EquilibriumGain,
         limits: [LimitsSetting; 3],
         states: File,
-        pub(crate) counts: File,
+        counts: File,
     }
 
     /// Out of line, so that both loops are the same one, with the same padding before it.
@@ -166,17 +134,17 @@ mod image {
 
     /// Counts of calls, and a hash of their results.
     #[derive(Clone, Copy)]
-    pub(crate) struct Calls {
-        pub(crate) least: u32,
-        pub(crate) sum: u32,
-        pub(crate) most: u32,
-        pub(crate) hash: u32,
+    struct Calls {
+        least: u32,
+        sum: u32,
+        most: u32,
+        hash: u32,
     }
 
     impl Calls {
-        pub(crate) const NONE: Self = Self { least: u32::MAX, sum: 0, most: 0, hash: 0x811c_9dc5 };
+        const NONE: Self = Self { least: u32::MAX, sum: 0, most: 0, hash: 0x811c_9dc5 };
 
-        pub(crate) fn add(&mut self, count: u32) {
+        fn add(&mut self, count: u32) {
             self.least = self.least.min(count);
             self.sum = self.sum.wrapping_add(count);
             self.most = self.most.max(count);
@@ -184,7 +152,7 @@ mod image {
     }
 
     /// A hash carried on.
-    pub(crate) fn hashed<const N: usize>(hash: u32, words: [u32; N]) -> u32 {
+    fn hashed<const N: usize>(hash: u32, words: [u32; N]) -> u32 {
         words.iter().fold(hash, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193))
     }
 
@@ -306,7 +274,7 @@ mod image {
             write_words(&mut self.counts, [of_reference, least, sum, most, of_tick, thrust, p, q, r, hash])
         }
 
-        pub(crate) fn since(&self, start: u32) -> u32 {
+        fn since(&self, start: u32) -> u32 {
             self.counter.now().wrapping_sub(start).wrapping_sub(self.overhead)
         }
 
@@ -317,7 +285,7 @@ mod image {
             self.timing.set_decimation(1);
         }
 
-        pub(crate) fn read_state(&mut self) -> Option<State> {
+        fn read_state(&mut self) -> Option<State> {
             let [x, y, z, q0, q1, q2, q3, vx, vy, vz] = read_words(&mut self.states)?.map(f32::from_bits);
             Some(State {
                 position_m: Vector3::new(x, y, z),
@@ -361,7 +329,7 @@ mod image {
         (file.read(flat) == whole).then(|| bytes.map(u32::from_le_bytes))
     }
 
-    pub(crate) fn write_words<const N: usize>(file: &mut File, words: [u32; N]) -> Option<()> {
+    fn write_words<const N: usize>(file: &mut File, words: [u32; N]) -> Option<()> {
         file.write(words.map(u32::to_le_bytes).as_flattened()).then_some(())
     }
 }

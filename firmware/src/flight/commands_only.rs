@@ -4,7 +4,7 @@
 use quatrack::link::NoCommand;
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::Looked;
-use quatrack::{Measured, MotorForces, Output, Target, Tick};
+use quatrack::{Leash, Measured, MotorForces, Output, Target, Tick};
 
 use crate::craft::BodyRates;
 use crate::drivers::battery::CellVoltage;
@@ -57,14 +57,17 @@ impl ToMotors {
     pub(super) fn step(
         &mut self,
         laws: &mut Laws,
-        playback: &mut Playback,
+        (playback, leash): (&mut Playback, &Leash),
         tick: Tick,
         looked: &Looked<'_>,
         _has_body_rates: bool,
     ) -> Result<Output, NoCommand> {
         // Looked at where it lies: to move a reference out costs as many instructions as the product with a gain.
-        match &playback.reference(tick) {
-            Ok(reference) => laws.step(Measured::new(looked.state), Target::new(reference)).map_err(NoCommand::Step),
+        match &mut playback.reference(tick) {
+            Ok(reference) => {
+                leash.hold(reference, looked.state);
+                laws.step(Measured::new(looked.state), Target::new(reference)).map_err(NoCommand::Step)
+            }
             Err(error) => Err(NoCommand::Reference(*error)),
         }
     }

@@ -3,11 +3,11 @@
 use quatrack::link::NoCommand;
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::Looked;
-use quatrack::{Measured, MotorForces, Output, StepError, Target, Tick};
+use quatrack::{Leash, Measured, MotorForces, Output, Target, Tick};
 
 use crate::craft::BodyRates;
 use crate::drivers::battery::CellVoltage;
-use crate::laws::Laws;
+use crate::laws::{Follow, Laws};
 use crate::playback::Playback;
 use crate::vehicle::STOPPED;
 
@@ -99,32 +99,36 @@ impl ToMotors {
     pub(super) fn step(
         &mut self,
         laws: &mut Laws,
-        playback: &mut Playback,
+        (playback, leash): (&mut Playback, &Leash),
         tick: Tick,
         looked: &Looked<'_>,
         has_body_rates: bool,
     ) -> Result<Output, NoCommand> {
-        let follows_samples = laws.follows_samples();
-        if !has_body_rates && (self.answers_by_forces || laws.follows_forces() || follows_samples) {
+        let follow = laws.follow();
+        if !has_body_rates && (self.answers_by_forces || follow != Follow::References) {
             return Err(NoCommand::NoBodyRates);
         }
         let measured = Measured::new(looked.state);
         let measured = if has_body_rates { measured.with_body_rates(looked.body_rates_rad_s) } else { measured };
-        let output = if follows_samples {
-            let (sample, heading) = playback.sample(tick).map_err(NoCommand::Reference)?;
-            laws.step(measured, Target::with_sample(&sample, heading))
-        } else if laws.follows_forces() {
-            let airframe = laws.airframe().ok_or(NoCommand::Step(StepError::NoActuation))?;
-            let reference = playback.motor_reference(tick, airframe).map_err(NoCommand::Reference)?;
-            // For the cascade, on the way from one law to another.
-            let (sample, heading) = playback.sample(tick).map_err(NoCommand::Reference)?;
-            let target = Target::with_forces(&reference).at(playback.progress());
-            laws.step(measured, target.and_sample(&sample, heading))
-        } else {
+        let output = match follow {
             // Looked at where it lies: to move a reference out costs as many instructions as the product with a gain.
-            match &playback.reference(tick) {
-                Ok(reference) => laws.step(measured, Target::new(reference).at(playback.progress())),
+            Follow::References => match &mut playback.reference(tick) {
+                Ok(reference) => {
+                    leash.hold(reference, looked.state);
+                    laws.step(measured, Target::new(reference).at(playback.progress()))
+                }
                 Err(error) => return Err(NoCommand::Reference(*error)),
+            },
+            Follow::Samples => {
+                let (sample, heading) = playback.sample(tick).map_err(NoCommand::Reference)?;
+                laws.step(measured, Target::with_sample(&sample, heading))
+            }
+            Follow::Both => {
+                let mut reference = playback.reference(tick).map_err(NoCommand::Reference)?;
+                leash.hold(&mut reference, looked.state);
+                let (sample, heading) = playback.sample(tick).map_err(NoCommand::Reference)?;
+                let target = Target::new(&reference).at(playback.progress());
+                laws.step(measured, target.and_sample(&sample, heading))
             }
         };
         let output = output.map_err(NoCommand::Step)?;

@@ -4,15 +4,12 @@ use quatrack::gains::table::{AcceptedTable, TableKind};
 use quatrack::link::{LawChoice, Table};
 use quatrack::supervisor::{Certified, Levelled, Looked};
 use quatrack::{
-    Actuation, ActuatorAware, Controller, FifthOrderSample, Heading, Law, Limits, Measured, Memory, Output, Settings,
-    StepError, Target,
+    Actuation, Controller, FifthOrderSample, Heading, Law, Limits, Measured, Memory, Output, Settings, StepError,
+    Target,
 };
 
 use super::Laws;
 use crate::rates::TICK_RATE;
-
-/// There is none.
-pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> = None;
 
 /// There is none.
 pub(crate) const fn cascade() -> Option<Law<'static>> {

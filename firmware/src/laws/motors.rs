@@ -5,25 +5,17 @@ use quatrack::cascade::{Cascade, CascadeLimits};
 use quatrack::gains::table::{AcceptedTable, CascadeTable};
 use quatrack::link::{LawChoice, Table};
 use quatrack::{
-    Actuation, ActuatorAware, BodyRateLoop, Controller, Law, Limits, Measured, Memory, Output, Settings, StepError,
-    Target,
+    Actuation, BodyRateLoop, Controller, Law, Limits, Measured, Memory, Output, Settings, StepError, Target,
 };
 
 use super::rescue::CASCADE;
 use crate::rates::TICK_RATE;
 use crate::vehicle::{ACTUATION, AIRFRAME};
 
-/// The table in the image.
-pub mod table {
-    include!("../../../gains/generated/actuator-aware.rs");
-}
-
 /// The law of nested loops in the image, for steps at [`crate::vehicle::STEP_RATE`].
 pub(crate) fn cascade() -> Option<Law<'static>> {
     Some(Law::from(&CASCADE))
 }
-
-static TO_MOTORS: Actuation = ACTUATION;
 
 /// The board's ways to its motors: its own, and that of each slot's table, which may reckon with another motor lag; and the
 /// cascades that are made of loaded tables.
@@ -106,10 +98,6 @@ impl Actuations {
         }
     }
 }
-
-/// The law of motor forces in the image, for steps at [`crate::vehicle::STEP_RATE`].
-pub(crate) const BUILT_IN_TO_MOTORS: Option<ActuatorAware<'static>> =
-    Some(ActuatorAware::new(&table::ACTUATOR_AWARE, &TO_MOTORS));
 
 /// A step of any law.
 #[inline(always)]

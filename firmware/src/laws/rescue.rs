@@ -20,9 +20,7 @@ pub(crate) static CASCADE: Cascade = match TABLE.flown(&AIRFRAME, STEP_RATE, &Ca
     Err(_) => panic!("the motors are too fast for this rate"),
 };
 
-/// Lags of motors (s) that the table for motor forces in the image is certified for, and how much heavier or lighter the craft may
-/// be, as a share.
-const TO_MOTORS_LAG_S: [f32; 2] = [0.05, 0.126];
+/// How much heavier or lighter, as a share, the craft may be under a loaded table that does not say.
 const MASS_SHARE: f32 = 0.2;
 
 impl Laws {
@@ -40,13 +38,13 @@ impl Laws {
         };
         match self.choice.table {
             Table::Cascade => Certified::For(covering(TABLE.certified.motor_lag_s, TABLE.certified.mass_share)),
-            Table::ActuatorAware => Certified::For(covering(TO_MOTORS_LAG_S, MASS_SHARE)),
             Table::Loaded(slot) => self.store.table(slot).map_or(Certified::ForNone, |table| {
                 let rate_hz = self.rate().map_or(0, quatrack::Rate::hz);
-                Certified::For(Coverage {
-                    rate_hz,
-                    ..covering([0.0, table.head().certificate.motor_lag_max_s], MASS_SHARE)
-                })
+                let covered = match table.cascade() {
+                    Some(of) => covering(of.certified.motor_lag_s, of.certified.mass_share),
+                    None => covering([0.0, table.head().certificate.motor_lag_max_s], MASS_SHARE),
+                };
+                Certified::For(Coverage { rate_hz, ..covered })
             }),
             // Those of the paper know no motors: behind this craft's, none is stable.
             _ => Certified::ForNone,

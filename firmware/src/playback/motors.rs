@@ -2,11 +2,9 @@
 //! jerk, and without higher derivatives.
 
 use quatrack::error::Field;
-use quatrack::{
-    Airframe, FifthOrderSample, FlatSample, Heading, MotorReference, Player, Reference, ReferenceError, Tick,
-};
+use quatrack::{FifthOrderSample, FlatSample, Heading, Player, Reference, ReferenceError, Tick};
 
-use super::{NOWHERE, Playback, Source};
+use super::{Playback, Source};
 
 impl Playback {
     /// The flat output at a tick of the clock and its heading, for a law that makes its own reference of it.
@@ -39,34 +37,6 @@ impl Playback {
             Source::Nothing => return Err(nowhere()),
         };
         Ok((sample, Heading::from_angle(sample.flat.heading_rad)))
-    }
-
-    /// The reference at a tick of the clock, down to the motor forces of a craft.
-    ///
-    /// # Errors
-    /// [`ReferenceError`] where it cannot be flown.
-    pub fn motor_reference(&mut self, now: Tick, airframe: &Airframe) -> Result<MotorReference, ReferenceError> {
-        let tick = self.trajectory_tick(now);
-        let sample = match &mut self.source {
-            Source::Flash(player) if self.moving => return player.motor_reference(tick, airframe),
-            Source::Link(sample) => return MotorReference::from_flat(&FifthOrderSample::of_jerk(*sample), airframe),
-            Source::Flash(player) => player.at(tick),
-            Source::Uploaded(bookmark) => {
-                let trajectory = self.store.active().trajectory();
-                match trajectory.and_then(|trajectory| Player::resume(trajectory, *bookmark)) {
-                    Some(mut player) if self.moving => {
-                        let reference = player.motor_reference(tick, airframe);
-                        *bookmark = player.bookmark();
-                        return reference;
-                    }
-                    Some(mut player) => player.at(tick),
-                    // Another trajectory has been put to use since this one was started.
-                    None => NOWHERE,
-                }
-            }
-            Source::Nothing => NOWHERE,
-        };
-        MotorReference::hover(sample.position_m, sample.heading_rad, airframe)
     }
 }
 

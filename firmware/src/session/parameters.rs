@@ -1,5 +1,6 @@
 //! Parameters of the board: an id in, the value in force out; a value in, put in force or refused.
 
+use quatrack::Leash;
 use quatrack::link::{Parameter, ParameterId, Refusal};
 
 use super::{Session, Shared, Vitals, disarmed};
@@ -9,6 +10,9 @@ use crate::rates::TICK_RATE_HZ;
 
 /// Longest decimation: one step a second.
 const DECIMATION_MAX: u32 = TICK_RATE_HZ;
+
+/// Shortest leash that can be set, m: on a shorter one a flight does not get anywhere.
+const LEASH_MIN_M: f32 = 0.1;
 
 /// Longest age and silence that can be set, ticks: ten seconds.
 const AGE_MAX_TICKS: u32 = 10 * TICK_RATE_HZ;
@@ -25,6 +29,7 @@ impl<K: Keep> Session<K> {
             ParameterId::UploadsRefused => Parameter::UploadsRefused(self.uploads_refused),
             ParameterId::BatteryVoltage => Parameter::BatteryVoltage(flight.motors.battery().volts()),
             ParameterId::BodyRateBandwidth => Parameter::BodyRateBandwidth(flight.bandwidth_rad_s()),
+            ParameterId::Leash => Parameter::Leash(flight.leash.length_m),
         })
     }
 
@@ -69,6 +74,10 @@ impl<K: Keep> Session<K> {
                 let set = flight.with(|flight| flight.set_bandwidth(bandwidth_rad_s));
                 set.map_err(|_| Refusal::OutOfRange)?;
             }
+            Parameter::Leash(length_m) if length_m >= LEASH_MIN_M => {
+                flight.with(|flight| flight.leash = Leash { length_m });
+            }
+            Parameter::Leash(_) => return Err(Refusal::OutOfRange),
         }
         Ok(())
     }

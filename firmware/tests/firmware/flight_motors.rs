@@ -12,20 +12,20 @@ use quatrack::link::{ForcesOut, FromBoard, LawChoice, NoCommand, RigidStateIn, S
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{ArmError, Fault, Mode, Reason};
 use quatrack::{
-    Actuation, ActuatorAware, Controller, Equilibrium, FlatSample, Handover, Heading, Limits, Memory, MotorForces,
-    MotorReference, Output, Quaternion, Rate, RigidState, State, Target, Tick,
+    Actuation, Cascade, Controller, Equilibrium, FlatSample, Handover, Heading, Leash, Limits, Measured, Memory,
+    MotorForces, Output, Player, Quaternion, RigidState, State, StepError, Target, Tick,
 };
 use quatrack_firmware::craft::{BoardCraft, BodyRates, Craft};
 use quatrack_firmware::drivers::battery::CellVoltage;
 use quatrack_firmware::drivers::bmi088::{Address, Bandwidth, Gyro, Range};
 use quatrack_firmware::drivers::motors::Motors;
 use quatrack_firmware::drivers::thrust_curve::ThrustCurve;
-use quatrack_firmware::flight::{CONFIG, Flight, LOCK_STEP, table};
+use quatrack_firmware::flight::{CONFIG, Flight, LOCK_STEP};
 use quatrack_firmware::laws::{FADE_STEPS, Refused};
 use quatrack_firmware::stored;
-use quatrack_firmware::vehicle::{ACTUATION, AIRFRAME};
+use quatrack_firmware::vehicle::{ACTUATION, AIRFRAME, STEP_RATE};
 
-const LAWS: [Table; 2] = [Table::LqrE, Table::ActuatorAware];
+const LAWS: [Table; 2] = [Table::LqrE, Table::Cascade];
 const NONE: MotorForces = [0.0; 4];
 
 /// Somewhere below the start and turning: every law asks for thrust, and for something else at every step.
@@ -74,19 +74,40 @@ fn stopped(flight: &Flight) -> Reason {
 
 static ON_THE_CRAFT: Actuation = ACTUATION;
 
+fn cascade() -> Cascade {
+    let of = &CRAZYFLIE_2_1_DEFAULT.table;
+    of.flown(&AIRFRAME, STEP_RATE, &CascadeLimits::STANDARD, &of.air).unwrap()
+}
+
 /// The same law in the core, down to the motors.
-fn core(table: Table, limits: Limits) -> Controller<'static> {
+fn core(table: Table, limits: Limits, cascade: &Cascade) -> Controller<'_> {
     match table {
-        Table::ActuatorAware => Controller::new(ActuatorAware::new(&table::ACTUATOR_AWARE, &ON_THE_CRAFT), limits),
+        Table::Cascade => Controller::new(cascade, limits),
         _ => Controller::new(Equilibrium::new(&paper::LQR_E), limits).with_actuation(&ON_THE_CRAFT),
+    }
+}
+
+/// The forces of the core at a tick of the trajectory.
+fn stepped(
+    player: &mut Player<'_>,
+    tick: Tick,
+    measured: &RigidState,
+    step: impl FnOnce(Measured<'_>, Target<'_>) -> Result<Output, StepError>,
+) -> quatrack::MotorStep {
+    let (mut reference, sample) = (player.reference(tick).unwrap(), player.at_fifth_order(tick));
+    Leash::STANDARD.hold(&mut reference, &measured.state);
+    let heading = Heading::from_angle(sample.flat.heading_rad);
+    match step(measured.into(), Target::new(&reference).and_sample(&sample, heading)) {
+        Ok(Output::Forces(step)) => step,
+        other => panic!("tick {tick}: no forces but {other:?}"),
     }
 }
 
 #[test]
 fn forces_are_the_cores_to_the_bit() {
     for table in LAWS {
-        let mut flight = flying(table, 100);
-        let controller = core(table, flight.limits().check().unwrap());
+        let (mut flight, cascade) = (flying(table, 100), cascade());
+        let controller = core(table, flight.limits().check().unwrap(), &cascade);
         let mut memory = Memory::at_rest();
         let mut player = stored::player(TrajectoryId::Mild).unwrap();
         for step in 0..200 {
@@ -96,9 +117,9 @@ fn forces_are_the_cores_to_the_bit() {
                 flight.hear(now);
                 flight.step(now, false, BodyRates::NoGyroscope);
             }
-            let reference = player.motor_reference(now - 100, &AIRFRAME).unwrap();
-            let measured = state(step);
-            let expected = controller.step_to_motors(&mut memory, (&measured).into(), (&reference).into()).unwrap();
+            let expected = stepped(&mut player, now - 100, &state(step), |measured, target| {
+                controller.step_to_motors(&mut memory, measured, target).map(Output::Forces)
+            });
             let found = answered(&mut flight).result.unwrap();
             assert_eq!(found.forces_n.map(f32::to_bits), expected.forces_n.map(f32::to_bits), "{table:?}, step {step}");
             assert_eq!(found.limited, expected.limited);
@@ -108,45 +129,15 @@ fn forces_are_the_cores_to_the_bit() {
 }
 
 #[test]
-fn a_law_that_takes_over_in_flight_knows_the_motors_and_comes_in_parts() {
-    let mut flight = flying(Table::LqrE, 0);
-    let first = *flight.forces_n();
-    flight.select(LawChoice::new(Table::ActuatorAware)).expect("it is in flash");
-    // As the core has it: from the forces that the lag gives after one step of the first law, from motors at rest.
-    let mut memory = Memory::new(ACTUATION.lag().next(&NONE, &first)).unwrap();
-    let limits = flight.limits().check().unwrap();
-    let (old, new) = (core(Table::LqrE, limits), core(Table::ActuatorAware, limits));
-    let mut way = Handover::begin(FADE_STEPS, old.law(), new.law(), &mut memory);
-    let mut player = stored::player(TrajectoryId::Mild).unwrap();
-    let measured = state(0);
-    for step in 1..=FADE_STEPS + 5 {
-        let tick = 2 * Tick::from(step);
-        flight.hear(tick);
-        flight.accept_rigid(RigidStateIn { tick, state: measured }, tick);
-        flight.step(tick, false, BodyRates::NoGyroscope);
-        let reference = player.motor_reference(tick, &AIRFRAME).unwrap();
-        let target = Target::with_forces(&reference);
-        let Ok(Output::Forces(expected)) = way.step((&old, &new), &mut memory, (&measured).into(), target) else {
-            panic!("step {step}: no forces");
-        };
-        assert_eq!(flight.forces_n(), &expected.forces_n, "step {step}");
-    }
-    assert!(way.is_over());
-}
-
-#[test]
 fn the_cascade_takes_over_in_flight_and_its_forces_are_the_cores() {
     let mut flight = flying(Table::LqrE, 0);
     let first = *flight.forces_n();
     flight.select(LawChoice::new(Table::Cascade)).expect("it is in flash");
-    let of = &CRAZYFLIE_2_1_DEFAULT.table;
-    let rate = ACTUATION.lag().period_s();
-    let cascade = of
-        .flown(&AIRFRAME, Rate::from_hz((1.0 / rate).round() as u32).unwrap(), &CascadeLimits::STANDARD, &of.air)
-        .unwrap();
+    let cascade = cascade();
+    // As the core has it: from the forces that the lag gives after one step of the first law, from motors at rest.
     let mut memory = Memory::new(ACTUATION.lag().next(&NONE, &first)).unwrap();
     let limits = flight.limits().check().unwrap();
-    let (old, new) = (core(Table::LqrE, limits), Controller::new(&cascade, limits));
+    let (old, new) = (core(Table::LqrE, limits, &cascade), core(Table::Cascade, limits, &cascade));
     let mut way = Handover::begin(FADE_STEPS, old.law(), new.law(), &mut memory);
     let mut player = stored::player(TrajectoryId::Mild).unwrap();
     for step in 1..=FADE_STEPS + 50 {
@@ -155,20 +146,12 @@ fn the_cascade_takes_over_in_flight_and_its_forces_are_the_cores() {
         flight.hear(tick);
         flight.accept_rigid(RigidStateIn { tick, state: measured }, tick);
         flight.step(tick, false, BodyRates::NoGyroscope);
-        let sample = player.at_fifth_order(tick);
-        let heading = Heading::from_angle(sample.flat.heading_rad);
-        let reference = MotorReference::from_flat(&sample, cascade.airframe()).unwrap();
-        let target = Target::with_forces(&reference).and_sample(&sample, heading);
-        let Ok(Output::Forces(expected)) = way.step((&old, &new), &mut memory, (&measured).into(), target) else {
-            panic!("step {step}: no forces");
-        };
+        let expected = stepped(&mut player, tick, &measured, |measured, target| {
+            way.step((&old, &new), &mut memory, measured, target)
+        });
         assert_eq!(flight.forces_n(), &expected.forces_n, "step {step}");
     }
     assert!(way.is_over());
-    // At a rate that it is not made for there is none.
-    let mut other = board(Table::Cascade);
-    other.set_decimation(1);
-    assert_ne!(other.law().table, Table::Cascade);
 }
 
 #[test]
@@ -328,7 +311,6 @@ fn a_law_that_no_certificate_covers_is_not_armed_for_motors() {
     for (table, expected) in [
         (Table::LqrE, Err(ArmError::NotCertified)),
         (Table::LyapF, Err(ArmError::NotCertified)),
-        (Table::ActuatorAware, Ok(())),
         (Table::Cascade, Ok(())),
     ] {
         let mut flight = board(table);
@@ -336,7 +318,7 @@ fn a_law_that_no_certificate_covers_is_not_armed_for_motors() {
         flight.accept_rigid(RigidStateIn { tick: 0, state: state(0) }, 0);
         assert_eq!(flight.arm(0), expected, "{table:?}");
     }
-    let mut flight = board(Table::ActuatorAware);
+    let mut flight = board(Table::Cascade);
     flight.hear(0);
     assert_eq!(flight.arm(0), Err(ArmError::NoState));
     let mut tilted = state(0);
@@ -356,7 +338,7 @@ fn without_body_rates_a_law_that_needs_none_commands_and_drives_nothing() {
     assert_eq!((flight.mode(), flight.forces_n()), (Mode::Flying, &NONE));
     assert!(matches!(flight.take_message(), Some(FromBoard::Command(command)) if command.result.is_ok()));
 
-    let mut flight = flying(Table::ActuatorAware, 0);
+    let mut flight = flying(Table::Cascade, 0);
     flight.accept(StateIn { tick: 2, state: state(1).state }, 2);
     flight.step(2, false, BodyRates::NoGyroscope);
     assert_eq!(stopped(&flight), Reason::StepFailed);
@@ -384,7 +366,7 @@ fn the_gyroscope_counts_before_rates_that_came_with_the_state() {
 
 #[test]
 fn in_lock_step_with_a_simulation_the_motors_stay_off() {
-    let mut flight = board(Table::ActuatorAware);
+    let mut flight = board(Table::Cascade);
     flight.set_decimation(LOCK_STEP);
     flight.hear(0);
     flight.arm(0).expect("no motor turns");
@@ -397,15 +379,15 @@ fn in_lock_step_with_a_simulation_the_motors_stay_off() {
 }
 
 #[test]
-fn the_actuator_aware_table_is_flown_at_its_rate_alone() {
-    let mut flight = board(Table::ActuatorAware);
+fn the_cascade_in_the_image_is_flown_at_its_rate_alone() {
+    let mut flight = board(Table::Cascade);
     flight.set_decimation(LOCK_STEP);
-    assert_eq!(flight.law().table, Table::ActuatorAware, "states are taken to come at its rate");
+    assert_eq!(flight.law().table, Table::Cascade, "states are taken to come at its rate");
     flight.set_decimation(1);
     assert_eq!(flight.law().table, Table::LqrE, "dropped at 1 kHz, as loaded tables are");
-    assert_eq!(flight.select(LawChoice::new(Table::ActuatorAware)), Err(Refused::NoTable));
+    assert_eq!(flight.select(LawChoice::new(Table::Cascade)), Err(Refused::NoTable));
     flight.set_decimation(2);
-    assert_eq!(flight.select(LawChoice::new(Table::ActuatorAware)), Ok(()));
+    assert_eq!(flight.select(LawChoice::new(Table::Cascade)), Ok(()));
 }
 
 #[test]

@@ -6,6 +6,7 @@ mod gyro;
 mod kept_uploads;
 mod keyed_session;
 mod laws;
+mod leash;
 mod motors;
 mod session;
 mod signed_tables;

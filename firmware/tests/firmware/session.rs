@@ -67,13 +67,8 @@ fn state() -> impl Strategy<Value = State> {
 }
 
 fn message() -> impl Strategy<Value = ToBoard> {
-    let table = prop_oneof![
-        Just(Table::LqrE),
-        Just(Table::LyapF),
-        Just(Table::ActuatorAware),
-        Just(Table::Cascade),
-        any::<u8>().prop_map(Table::Loaded)
-    ];
+    let table =
+        prop_oneof![Just(Table::LqrE), Just(Table::LyapF), Just(Table::Cascade), any::<u8>().prop_map(Table::Loaded)];
     let parameter = prop_oneof![
         (0..4_u32).prop_map(Parameter::Decimation),
         any::<u32>().prop_map(Parameter::StateAgeMaxTicks),

@@ -1,7 +1,7 @@
 //! An image that takes signed gain tables alone: no other is flown, however good its certificate.
 
 use quatrack::gains::paper;
-use quatrack::gains::table::{GainTable, Rows, TABLE_BYTES_MAX};
+use quatrack::gains::table::{GainTable, Rows, TABLE_BYTES_MAX, TableError};
 use quatrack::link::{
     BlobError, BlobKind, Encoder, FRAME_BYTES, FromBoard, GivenKeys, KEY_BYTES, Key, LawChoice, LoopStatistics, Nonce,
     Refusal, Table, ToBoard, UploadBegin, signature,
@@ -114,6 +114,9 @@ fn negated() -> Vec<u8> {
     GainTable::new(head, &Rows::Equilibrium(rows)).unwrap().to_bytes(&mut [0; TABLE_BYTES_MAX]).unwrap().to_vec()
 }
 
+/// A table of the law before the cascade, sound and certified.
+const ACTUATOR_AWARE: &[u8] = include_bytes!("../../../tests/data/actuator-aware.bin");
+
 const UNSIGNED: Result<(), Refusal> = Err(Refusal::Blob(BlobError::Unsigned));
 
 #[test]
@@ -161,4 +164,15 @@ fn any_bit_of_a_signed_table_counts() {
 fn a_signed_table_is_taken_where_any_are() {
     let mut cable = Board::started(None, quatrack_firmware::kept::NoFlash);
     assert_eq!(cable.commit(&signed(TABLE, &random_key())), Ok(()));
+}
+
+#[test]
+fn a_table_of_the_actuator_aware_law_is_refused_by_name_signed_or_not() {
+    let key = random_key();
+    let refused = Err(Refusal::Blob(BlobError::GainTable(TableError::ActuatorAware.into())));
+    for (signing, blob) in [(None, ACTUATOR_AWARE.to_vec()), (Some(key), signed(ACTUATOR_AWARE, &key))] {
+        let mut board = Board::started(signing, quatrack_firmware::kept::NoFlash);
+        assert_eq!(board.commit(&blob), refused);
+        assert!(!board.has_table());
+    }
 }

@@ -125,12 +125,10 @@ fn a_table_is_sent_in_flight_and_taken_over_without_a_bump() {
 }
 
 #[test]
-fn an_actuator_aware_table_is_refused_by_name_and_gains_along_a_trajectory_too() {
+fn an_actuator_aware_table_is_refused_by_name() {
     let craft = vehicles::by_name("crazyflie-2.1").unwrap();
     let _firmware = Firmware::start(&craft, &Tune::new(5, 0.0), QUIET);
-    let limits = Limits::new(1.8, 16.5, Vector3::new(20.0, 20.0, 10.0)).unwrap();
-    let rows = Rows::ActuatorAware { motor_lag_s: 0.02, rows: [[0.1; 19]; 4] };
-    let (status, words) = send_for_words(&table_of(KNOWN[0].vehicle, limits, &rows));
+    let (status, words) = send_for_words(include_bytes!("../../data/actuator-aware.bin"));
     assert_eq!((status, words.as_str()), (Status::ActuatorAware as u8, "actuator-aware: outdated"));
     assert_eq!(ffi::quatrack.log.refusal.load(Relaxed), Refusal::Law as u16);
 }

@@ -28,7 +28,7 @@ impl<'t> AcceptedTable<'t> {
     /// Its law, within the tighter of the table's and the board's limits: a controller.
     ///
     /// # Errors
-    /// [`ControllerError`] where a table for motor forces is not given the actuation of its lag, or one of the cascade not its own
+    /// [`ControllerError`] where a table of the cascade is not given its own
     /// [`CascadeTable::flown`](crate::gains::table::CascadeTable::flown).
     #[inline]
     pub fn controller(&self, settings: &Settings<'t>) -> Result<Controller<'t>, ControllerError> {
@@ -48,16 +48,7 @@ impl<'t> AcceptedTable<'t> {
     pub fn law(&self, settings: &Settings<'t>) -> Result<Law<'t>, ControllerError> {
         let rate = self.content.head.rate;
         match &self.content.gains {
-            Gains::Constant(gain) => gain.law(rate, settings),
-            Gains::ToMotors { gain, lag } => {
-                if let Some(actuation) = settings.actuation
-                    && actuation.lag() != lag
-                {
-                    let (table_s, actuation_s) = (lag.lag_s(), actuation.lag().lag_s());
-                    return Err(ControllerError::MotorLag { table_s, actuation_s });
-                }
-                gain.law(rate, settings)
-            }
+            Gains::Constant(gain) => Ok(gain.law(rate, settings)),
             #[cfg(feature = "cascade")]
             Gains::Cascade { lag, .. } => {
                 let Some(cascade) = settings.cascade else { return Err(ControllerError::NoCascade) };
@@ -121,7 +112,6 @@ impl<'t> AcceptedTable<'t> {
     /// The motor lag that it was designed for, if it reckons with one.
     pub const fn lag(&self) -> Option<&'t MotorLag> {
         match &self.content.gains {
-            Gains::ToMotors { lag, .. } => Some(lag),
             #[cfg(feature = "cascade")]
             Gains::Cascade { lag, .. } => Some(lag),
             _ => None,

@@ -44,6 +44,8 @@ pub enum TableError {
         /// Its number.
         found: u8,
     },
+    /// A table of the law before the cascade, which no board flies any more.
+    ActuatorAware,
     /// The matrix has other dimensions than its kind.
     Dimensions {
         /// The kind that the table states.
@@ -251,6 +253,10 @@ impl fmt::Display for TableError {
                 )
             }
             Self::Kind { found } => write!(f, "kind {found} is not flown by this firmware; update it"),
+            Self::ActuatorAware => f.write_str(
+                "of the actuator-aware law, which is not flown any more; design one of the cascade: `quatrack gains design` with \
+                 method = \"cascade\"",
+            ),
             Self::Dimensions { kind, rows, columns } => {
                 let (m, n) = kind.dimensions();
                 write!(f, "{rows} by {columns}, but {kind} is {m} by {n}; generate it again")

@@ -61,10 +61,6 @@ impl<'b> GainTable<'b> {
         let (kind, head) = (self.kind(), &self.content.head);
         match &self.content.gains {
             Gains::Constant(_) => wire::write(buffer, kind, head, &[], self.rows()?.entries().iter().copied()),
-            Gains::ToMotors { lag, .. } => {
-                let field = lag.lag_s().to_le_bytes();
-                wire::write(buffer, kind, head, &field, self.rows()?.entries().iter().copied())
-            }
             #[cfg(feature = "cascade")]
             Gains::Cascade { table, .. } => {
                 wire::write(buffer, kind, head, &table.fields(), table.gains.numbers().into_iter())
@@ -100,7 +96,7 @@ impl<'b> GainTable<'b> {
     /// The gain, if it is one matrix that is the same all the time.
     pub const fn gain(&self) -> Option<&ConstantGain> {
         match &self.content.gains {
-            Gains::Constant(gain) | Gains::ToMotors { gain, .. } => Some(gain),
+            Gains::Constant(gain) => Some(gain),
             #[cfg(feature = "cascade")]
             Gains::Cascade { .. } => None,
             Gains::Along { .. } => None,
@@ -119,7 +115,6 @@ impl<'b> GainTable<'b> {
     /// The motor lag that it was designed for, if it reckons with one.
     pub const fn lag(&self) -> Option<&MotorLag> {
         match &self.content.gains {
-            Gains::ToMotors { lag, .. } => Some(lag),
             #[cfg(feature = "cascade")]
             Gains::Cascade { lag, .. } => Some(lag),
             _ => None,
@@ -142,13 +137,6 @@ impl<'b> GainTable<'b> {
             Some(ConstantGain::Equilibrium(gain)) => Rows::Equilibrium(*gain.gain().rows()),
             Some(ConstantGain::FlatOutput(gain)) => Rows::FlatOutput(*gain.gain().rows()),
             Some(ConstantGain::Integral(gain)) => Rows::Integral(gain.rows()),
-            Some(ConstantGain::ActuatorAware(gain)) => {
-                let motor_lag_s = match self.lag() {
-                    Some(lag) => lag.lag_s(),
-                    None => return None,
-                };
-                Rows::ActuatorAware { motor_lag_s, rows: *gain.gain().rows() }
-            }
             None => return None,
         })
     }
@@ -161,7 +149,7 @@ impl GainTable<'static> {
     /// [`TableError`], as [`Self::from_bytes`] would find in it.
     pub fn new(head: TableHead, rows: &Rows) -> Result<Self, TableError> {
         head.check()?;
-        Ok(Self { content: Content { head, gains: Gains::new(rows, &head)? }, knots: &[] })
+        Ok(Self { content: Content { head, gains: Gains::new(rows)? }, knots: &[] })
     }
 
     /// The same of one of the cascade.

@@ -7,7 +7,8 @@ use super::error::count;
 use super::error::{KnotFault, TableError};
 use super::{ENTRY_MAX, ENTRY_MIN, KNOTS_MAX, Rows, TableHead, TableKind, wire};
 use crate::gains::ConstantGain;
-use crate::law::{ActuatorAwareGain, EquilibriumGain, FlatOutputGain, GainSchedule, IntegralGain, Knot};
+use crate::law::{EquilibriumGain, FlatOutputGain, GainSchedule, IntegralGain, Knot};
+#[cfg(feature = "cascade")]
 use crate::motor_lag::MotorLag;
 
 /// All of a table but the gains at knots, which stay where they are.
@@ -22,17 +23,12 @@ pub(crate) struct Content {
 pub(crate) enum Gains {
     /// The same all the time.
     Constant(ConstantGain),
-    /// The same all the time, for motor forces: with the lag that it was designed for.
-    ToMotors { gain: ConstantGain, lag: MotorLag },
     /// Of the cascade, with the lag in its table.
     #[cfg(feature = "cascade")]
     Cascade { table: CascadeTable, lag: MotorLag },
     /// At knots along the trajectory of a checksum.
     Along { steps_per_knot: u16, trajectory: u32 },
 }
-
-/// Bytes of the field between head and gains for motor forces: the lag.
-const LAG_BYTES: usize = 4;
 
 /// Bytes of the fields between head and gains along a trajectory: knots, their spacing, the trajectory's checksum.
 pub(super) const ALONG_BYTES: usize = 2 + 2 + 4;
@@ -43,19 +39,17 @@ impl Gains {
             Self::Constant(ConstantGain::Equilibrium(_)) => TableKind::Equilibrium,
             Self::Constant(ConstantGain::FlatOutput(_)) => TableKind::FlatOutput,
             Self::Constant(ConstantGain::Integral(_)) => TableKind::Integral,
-            Self::Constant(ConstantGain::ActuatorAware(_)) | Self::ToMotors { .. } => TableKind::ActuatorAware,
             #[cfg(feature = "cascade")]
             Self::Cascade { .. } => TableKind::Cascade,
             Self::Along { .. } => TableKind::AlongTrajectory,
         }
     }
 
-    pub(super) fn new(rows: &Rows, head: &TableHead) -> Result<Self, TableError> {
+    pub(super) fn new(rows: &Rows) -> Result<Self, TableError> {
         match rows {
             Rows::Equilibrium(rows) => Self::equilibrium(rows),
             Rows::FlatOutput(rows) => Self::flat_output(rows),
             Rows::Integral(rows) => Self::integral(rows),
-            Rows::ActuatorAware { motor_lag_s, rows } => Self::to_motors(rows, *motor_lag_s, head),
         }
     }
 
@@ -81,19 +75,17 @@ impl Gains {
                 wire::read_entries(rest, rows.as_flattened_mut());
                 Self::integral(&rows)?
             }
-            TableKind::ActuatorAware => {
-                let (field, entries) = rest.split_first_chunk::<LAG_BYTES>().unwrap_or((&[0; LAG_BYTES], &[]));
-                let mut rows = [[0.0; 19]; 4];
-                wire::read_entries(entries, rows.as_flattened_mut());
-                Self::to_motors(&rows, f32::from_le_bytes(*field), head)?
-            }
+            TableKind::ActuatorAware => return Err(TableError::ActuatorAware),
             #[cfg(feature = "cascade")]
             TableKind::Cascade => {
                 let ended = TableError::Length { bytes: count(rest.len()), wanted: count(cascade::BYTES) };
                 Self::cascade(&CascadeTable::read(rest, ended)?, head)?
             }
             #[cfg(not(feature = "cascade"))]
-            TableKind::Cascade => return Err(TableError::Kind { found: kind.number() }),
+            TableKind::Cascade => {
+                let _ = head;
+                return Err(TableError::Kind { found: kind.number() });
+            }
             TableKind::AlongTrajectory => return Self::along(rest),
         };
         Ok((gains, &[]))
@@ -122,17 +114,6 @@ impl Gains {
         Ok(Self::Constant(ConstantGain::Integral(gain)))
     }
 
-    fn to_motors(rows: &[[f32; 19]; 4], lag_s: f32, head: &TableHead) -> Result<Self, TableError> {
-        let gain = ActuatorAwareGain::new(*rows).map_err(TableError::Gain)?;
-        in_proportion(rows.as_flattened(), 19)?;
-        let unfit = TableError::MotorLag { lag_s };
-        if lag_s > head.certificate.motor_lag_max_s {
-            return Err(unfit);
-        }
-        let lag = MotorLag::new(lag_s, head.rate).map_err(|_| unfit)?;
-        Ok(Self::ToMotors { gain: ConstantGain::ActuatorAware(gain), lag })
-    }
-
     fn along(rest: &[u8]) -> Result<(Self, &[Knot]), TableError> {
         let (fields, entries) = rest.split_first_chunk::<ALONG_BYTES>().unwrap_or((&[0; ALONG_BYTES], &[]));
         let [_, _, s0, s1, t0, t1, t2, t3] = *fields;
@@ -152,7 +133,8 @@ impl Gains {
 /// Bytes of the payload of a kind's table behind the head, from its start.
 ///
 /// # Errors
-/// [`TableError::Knots`] for gains along a trajectory of too few or too many knots; `ended` where their number is cut off.
+/// [`TableError::ActuatorAware`]; [`TableError::Knots`] for gains along a trajectory of too few or too many knots; `ended` where
+/// their number is cut off.
 pub(super) fn bytes_behind_head(kind: TableKind, rest: &[u8], ended: TableError) -> Result<usize, TableError> {
     Ok(match kind {
         TableKind::AlongTrajectory => {
@@ -161,7 +143,7 @@ pub(super) fn bytes_behind_head(kind: TableKind, rest: &[u8], ended: TableError)
             let knots = require_knots(u16::from_le_bytes([k0, k1]))?;
             ALONG_BYTES + knots * kind.gain_bytes()
         }
-        TableKind::ActuatorAware => LAG_BYTES + kind.gain_bytes(),
+        TableKind::ActuatorAware => return Err(TableError::ActuatorAware),
         #[cfg(feature = "cascade")]
         TableKind::Cascade => cascade::BYTES,
         #[cfg(not(feature = "cascade"))]

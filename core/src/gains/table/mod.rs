@@ -73,7 +73,8 @@ pub const KNOTS_MAX: usize = 60;
 pub const TABLE_BYTES_MAX: usize =
     wire::FRAME_BYTES + wire::HEAD_BYTES + ALONG_BYTES + KNOTS_MAX * TableKind::AlongTrajectory.gain_bytes();
 
-/// Bytes of the longest table whose gain is the same all the time: one for motor forces, a float for the lag beside its gain.
+/// Bytes of the longest table whose gain is the same all the time: one of the actuator-aware law, a float for the lag beside its
+/// gain, which is to come whole and be refused by name.
 pub const CONSTANT_TABLE_BYTES_MAX: usize =
     wire::FRAME_BYTES + wire::HEAD_BYTES + 4 + TableKind::ActuatorAware.gain_bytes();
 
@@ -91,7 +92,7 @@ pub enum TableKind {
     Integral,
     /// [`crate::AlongTrajectory`], 4 by 9 at each knot.
     AlongTrajectory,
-    /// [`crate::ActuatorAware`], 4 by 19.
+    /// The law before the cascade, 4 by 19: no table of it is read ([`TableError::ActuatorAware`]).
     ActuatorAware,
     /// The cascade (feature `cascade`): 16 gains of four chains.
     Cascade,
@@ -108,13 +109,6 @@ pub enum Rows {
     /// Outputs `[T p q r]` from errors `[x y z q1 q2 q3 vx vy vz ix iy iz]`, the last three their integrals, metre
     /// seconds.
     Integral([[f32; 12]; 4]),
-    /// Outputs and errors as in [`crate::ActuatorAwareGain`].
-    ActuatorAware {
-        /// The lag of the motors that it was designed for, s.
-        motor_lag_s: f32,
-        /// The entries.
-        rows: [[f32; 19]; 4],
-    },
 }
 
 impl Rows {
@@ -124,7 +118,6 @@ impl Rows {
             Self::Equilibrium(rows) => rows.as_flattened(),
             Self::FlatOutput(rows) => rows.as_flattened(),
             Self::Integral(rows) => rows.as_flattened(),
-            Self::ActuatorAware { rows, .. } => rows.as_flattened(),
         }
     }
 }

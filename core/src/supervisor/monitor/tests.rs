@@ -77,6 +77,30 @@ fn a_sound_flight_is_given_as_it_is() {
 }
 
 #[test]
+fn each_bound_is_its_own_however_the_others_are() {
+    // Together beyond the bound of the first look, each next to its own bound: 30 m/s, 34.9 rad/s, 10 km.
+    for (v, w, p, expected) in [
+        (29.9, 34.8, 9_990.0, Soundness::Sound),
+        (29.9, 0.0, 0.0, Soundness::Sound),
+        (0.0, 34.8, 0.0, Soundness::Sound),
+        (0.0, 0.0, 9_990.0, Soundness::Sound),
+        (30.1, 0.0, 0.0, Soundness::Bridged),
+        (0.0, 35.0, 0.0, Soundness::Bridged),
+        (0.0, 0.0, 10_010.0, Soundness::Bridged),
+    ] {
+        let mut bench = Bench::flying();
+        for _ in 0..10 {
+            let (mut fast, mut turning) = (state(bench.now), rates(bench.now));
+            (fast.velocity_m_s.y, fast.velocity_m_s.x, fast.position_m.z) = (v, 0.0, p);
+            (turning.x, turning.z) = (w + turning.x, 0.0);
+            let (soundness, found, turned) = bench.look(Some(fast), Some(turning));
+            assert_eq!(soundness, expected, "{v} m/s, {w} rad/s, {p} m");
+            assert!(expected != Soundness::Sound || (found, turned) == (fast, turning));
+        }
+    }
+}
+
+#[test]
 fn a_position_or_velocity_that_is_none_is_bridged_for_half_a_second_and_then_lost() {
     let bad = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 3e38, 1.1e4, -1.1e4];
     for value in bad {

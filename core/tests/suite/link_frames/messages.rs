@@ -48,7 +48,7 @@ fn flat_sample() -> impl Strategy<Value = FlatSample> {
 
 fn law_choice() -> impl Strategy<Value = LawChoice> {
     let table = prop_oneof![
-        sample::select(vec![Table::LyapE, Table::LqrE, Table::LyapF, Table::LqrF, Table::ActuatorAware]),
+        sample::select(vec![Table::LyapE, Table::LqrE, Table::LyapF, Table::LqrF, Table::Cascade]),
         any::<u8>().prop_map(Table::Loaded)
     ];
     let feed_forward = sample::select(vec![FeedForward::Without, FeedForward::With]);

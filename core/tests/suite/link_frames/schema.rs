@@ -59,9 +59,10 @@ fn to_board() -> Vec<ToBoard> {
             state: RigidState { state: state_in().state, body_rates_rad_s: Vector3::new(7.0, 8.0, 9.0) },
         }),
         ToBoard::UploadKeep { id: 1 },
-        ToBoard::SelectLaw(LawChoice::new(Table::ActuatorAware)),
+        ToBoard::SelectLaw(LawChoice::new(Table::Cascade)),
         ToBoard::SetParameter(Parameter::BatteryVoltage(3.75)),
         ToBoard::SetParameter(Parameter::BodyRateBandwidth([25.0, 25.0, 10.0])),
+        ToBoard::SetParameter(Parameter::Leash(1.0)),
     ]
 }
 
@@ -149,7 +150,7 @@ fn lines<M: Message + std::fmt::Debug>(messages: &[M]) -> String {
 
 #[test]
 fn frames_have_the_bytes_of_their_protocol_version() {
-    assert_eq!(PROTOCOL_VERSION, 4, "a new version has frames of its own: write them down");
-    insta::assert_snapshot!("to_board_version_4", lines(&to_board()));
-    insta::assert_snapshot!("from_board_version_4", lines(&from_board()));
+    assert_eq!(PROTOCOL_VERSION, 5, "a new version has frames of its own: write them down");
+    insta::assert_snapshot!("to_board_version_5", lines(&to_board()));
+    insta::assert_snapshot!("from_board_version_5", lines(&from_board()));
 }

@@ -3,7 +3,10 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use quatrack_simulation::faults::{Crafts, Row, VEHICLES, fly, kinds};
+use quatrack_cli::pil::emulated::{self, Equipment, Transport};
+use quatrack_cli::pil::interrupt::Interrupt;
+use quatrack_cli::pil::{PilError, faults as on_board, image};
+use quatrack_simulation::faults::{Crafts, Fault, Row, VEHICLES, fly, kinds};
 use serde::Serialize;
 
 use super::{Failure, output};
@@ -16,6 +19,7 @@ use super::{Failure, output};
 /// Examples:
 ///   quatrack faults --json faults.json
 ///   quatrack faults --only gyro --vehicle crazyflie-2.1-brushless
+///   quatrack faults --emulator
 #[derive(clap::Args)]
 #[command(verbatim_doc_comment)]
 pub(crate) struct Args {
@@ -25,6 +29,9 @@ pub(crate) struct Args {
     /// Only this craft.
     #[arg(long, value_name = "NAME", value_parser = VEHICLES)]
     vehicle: Option<String>,
+    /// Fly the worst twelve that a board sees over its link by the image on an emulated board instead, at a hover.
+    #[arg(long, conflicts_with = "vehicle")]
+    emulator: bool,
     /// Write the table as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -38,17 +45,14 @@ struct Table<'a> {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let only = args.only.as_deref().unwrap_or("");
-    let faults: Vec<_> = kinds().into_iter().filter(|fault| fault.name.starts_with(only)).collect();
+    let is_asked =
+        |fault: &Fault| fault.name.starts_with(only) && (!args.emulator || on_board::WORST.contains(&fault.name));
+    let faults: Vec<Fault> = kinds().into_iter().filter(is_asked).collect();
     if faults.is_empty() {
         return Err(Failure::input(format!("--only {only}: no fault begins with this; leave it out to see all")));
     }
-    let mut rows = Vec::new();
-    for name in VEHICLES.into_iter().filter(|name| args.vehicle.as_deref().is_none_or(|asked| asked == *name)) {
-        let craft = Crafts::by_name(name).ok_or_else(|| Failure::input(format!("{name}: not known")))?;
-        for fault in &faults {
-            rows.push(fly(fault, &craft).map_err(Failure::input)?);
-        }
-    }
+    let mut rows =
+        if args.emulator { by_a_board(&faults).map_err(Failure::input)? } else { by_the_core(&faults, args)? };
     rows.sort_by_key(|row| faults.iter().position(|fault| fault.name == row.fault));
     output::print(&text(&rows))?;
     if let Some(path) = &args.json {
@@ -61,6 +65,25 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .map(|row| format!("{} on {}", row.fault, row.vehicle))
         .collect();
     if wrong.is_empty() { Ok(()) } else { Err(Failure::verdict(format!("not as it should be: {}", wrong.join("; ")))) }
+}
+
+fn by_the_core(faults: &[Fault], args: &Args) -> Result<Vec<Row>, Failure> {
+    let mut rows = Vec::new();
+    for name in VEHICLES.into_iter().filter(|name| args.vehicle.as_deref().is_none_or(|asked| asked == *name)) {
+        let craft = Crafts::by_name(name).ok_or_else(|| Failure::input(format!("{name}: not known")))?;
+        for fault in faults {
+            rows.push(fly(fault, &craft).map_err(Failure::input)?);
+        }
+    }
+    Ok(rows)
+}
+
+/// On one emulated board, one after the other.
+fn by_a_board(faults: &[Fault]) -> Result<Vec<Row>, PilError> {
+    let interrupt = Interrupt::listen()?;
+    let image = image::build(&image::checkout()?, Transport::Pipes.image())?;
+    let mut client = emulated::connect(&image, Transport::Pipes, Equipment::default(), interrupt)?;
+    faults.iter().map(|fault| on_board::fly(&mut client, fault)).collect()
 }
 
 fn text(rows: &[Row]) -> String {

@@ -182,8 +182,7 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
             wrote(&mut text, &file.path);
         }
         if certified.table.is_none() {
-            text += "  no table: no law on board remembers its last commands, so delay_samples above 0 has gains and a \
-                     certificate only\n";
+            text += &format!("  no table: {}\n", certified.without_table());
         }
         output::print(&text)?;
         summaries.push(json!({ "design": path, "name": document["name"], "figures": document["figures"] }));
@@ -222,12 +221,8 @@ fn craft(path: &Path, out: &Path) -> Result<(), Failure> {
 
 /// Notes for an owner about the method.
 fn notes(certified: &Certified) -> String {
-    let Some(note) = unscaled(&certified.design) else { return String::new() };
-    let mut text = format!("  {note}\n");
-    if certified.design.problem.named().1 == "actuator-aware" {
-        text += "  this is the law before the cascade: for a table of that write method = \"cascade\" and leave [weights] out\n";
-    }
-    text
+    unscaled(&certified.design).map_or_else(String::new, |note| format!("  {note}
+"))
 }
 
 /// Every figure that a design can ask for, beside the minimum of this one.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use quatrack::link::{LawChoice, LimitsSetting, Parameter, Protection, ToBoard, TrajectoryCommand};
-use quatrack::{Command, ErrorForm, State, Step};
+use quatrack::{Command, ErrorForm, Leash, State, Step};
 use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 use quatrack_simulation::flight::metrics::Metrics;
@@ -113,13 +113,14 @@ const FLIGHTS: u32 = (COURSES.len() * Controller::ALL.len()) as u32;
 
 fn prepare(client: &mut Client) -> Result<(), PilError> {
     client.request(&ToBoard::Disarm)?;
-    // Lock-step, with the limits off as in the reproduction of the paper.
+    // Lock-step, with limits and leash off as in the reproduction of the paper.
     client.set(Parameter::Decimation(0))?;
     client.set(Parameter::Limits(LimitsSetting {
         thrust_min_m_s2: f32::MIN,
         thrust_max_m_s2: f32::MAX,
         body_rates_max_rad_s: [f32::MAX; 3],
     }))?;
+    client.set(Parameter::Leash(Leash::NONE.length_m))?;
     client.set(Parameter::StateAgeMaxTicks(PATIENCE_TICKS))?;
     client.set(Parameter::LinkSilenceMaxTicks(PATIENCE_TICKS))
 }

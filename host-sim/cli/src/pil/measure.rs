@@ -22,11 +22,7 @@ use super::image;
 use super::interrupt::Interrupt;
 use super::link::{self, LinkReport};
 use super::lock_step;
-use super::motors::MotorFlight;
-use super::worst_case::{
-    self,
-    motors::{self, Motors},
-};
+use super::worst_case;
 use super::{PilError, bits};
 
 /// Longest time for an emulator to count all flights.
@@ -73,21 +69,13 @@ impl Tally {
 #[derive(Clone, Debug, Serialize)]
 pub struct InstructionReport {
     /// A step of each law, with validation, sign handling and saturation: each controller's, `any E table` for a gain
-    /// without a zero, `actuator-aware` down to the motors, and `any actuator-aware table` for a gain that does not
-    /// decouple.
+    /// without a zero. The cascade is counted in the Crazyflie object.
     pub law: BTreeMap<String, Count>,
     /// The reference of a tick: polynomial to jerk, and the flat map.
     pub reference: Count,
     /// The same on a trajectory that turns.
     #[serde(rename = "reference turning")]
     pub reference_turning: Count,
-    /// The reference down to motor forces and their commands: polynomial to the fifth derivative, and the flat map
-    /// carried on.
-    #[serde(rename = "reference to motor forces")]
-    pub motor_reference: Count,
-    /// The same on a trajectory of degree 7 that turns, also where a piece begins.
-    #[serde(rename = "reference to motor forces turning")]
-    pub motor_reference_turning: Count,
     /// A whole tick on a trajectory that does not turn.
     pub tick: Count,
     /// The estimator, counted by its own image.
@@ -101,7 +89,7 @@ pub struct InstructionReport {
     /// Code and tables of the control path, without stored trajectories: all that its own image puts in flash, start-up
     /// code and vector table included.
     pub flash_bytes: u32,
-    /// The same down to the motors: every law, the actuator-aware one included, to four forces.
+    /// The same down to the motors: every law, the cascade included, to four forces.
     pub flash_to_motors_bytes: u32,
     /// Variables of the image that flies, uploads included.
     pub ram_bytes: u32,
@@ -161,21 +149,10 @@ fn state_words(state: &State) -> [f32; 10] {
     [r.x, r.y, r.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z]
 }
 
-/// The number of the way to the motors, in the place of a controller's.
-const TO_MOTORS: usize = Controller::ALL.len() + 1;
-
-/// The flights of which the states are counted on the way to the motors.
-fn to_motors(flights: &[Recorded]) -> impl Iterator<Item = &Recorded> {
-    flights.iter().filter(|flight| flight.controller == Controller::LqrE)
-}
-
 fn states_file(flights: &[Recorded]) -> Vec<u8> {
     let mut bytes = worst_case::head();
-    let of_paper = runs(flights).map(|(flight, controller, is_worst)| {
+    for (flight, controller, is_worst) in runs(flights) {
         let controller = Controller::ALL.iter().position(|c| Some(*c) == controller).unwrap_or(Controller::ALL.len());
-        (flight, controller, is_worst)
-    });
-    for (flight, controller, is_worst) in of_paper.chain(to_motors(flights).map(|flight| (flight, TO_MOTORS, true))) {
         for word in [flight.course as u32, controller as u32, u32::from(is_worst), flight.steps.len() as u32] {
             bytes.extend(word.to_le_bytes());
         }
@@ -233,8 +210,6 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<InstructionReport, PilE
     if long.wrapping_sub(*short) != LOOP_INSTRUCTIONS {
         return Err(PilError::Miscounts { counted: long.wrapping_sub(*short), instructions: LOOP_INSTRUCTIONS });
     }
-    let of_paper = 10 * runs(flights).map(|(flight, ..)| flight.steps.len()).sum::<usize>();
-    let (words, words_to_motors) = words.split_at_checked(of_paper).ok_or_else(too_short)?;
     let (rows, _) = words.as_chunks::<10>();
     let mut rows = rows.iter();
     let mut law = BTreeMap::<String, Tally>::new();
@@ -265,13 +240,10 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<InstructionReport, PilE
             }
         }
     }
-    let [motor_reference, motor_reference_turning] = report_to_motors(flights, words_to_motors, &mut law)?;
     Ok(InstructionReport {
         law: law.into_iter().map(|(name, tally)| (name, tally.count())).collect(),
         reference: reference.count(),
         reference_turning: turning.count(),
-        motor_reference: motor_reference.count(),
-        motor_reference_turning: motor_reference_turning.count(),
         tick: tick.count(),
         estimator: None,
         link: None,
@@ -282,35 +254,6 @@ fn report(flights: &[Recorded], words: &[u32]) -> Result<InstructionReport, PilE
         stack_bytes: 0,
         image_flash_bytes: 0,
     })
-}
-
-/// The laws' counts into `law`; those of the reference, stored and at its worst, out.
-fn report_to_motors(
-    flights: &[Recorded],
-    words: &[u32],
-    law: &mut BTreeMap<String, Tally>,
-) -> Result<[Tally; 2], PilError> {
-    let (rows, _) = words.as_chunks::<11>();
-    let mut rows = rows.iter();
-    let [mut stored, mut turning, mut designed, mut dense] = [Tally::NONE; 4];
-    let [of_laws, of_reference] = motors::CALLS;
-    for flight in to_motors(flights) {
-        let mut host = Motors::new(flight.course)?;
-        for (step, (state, _)) in flight.steps.iter().enumerate() {
-            let too_short = || PilError::Answer("it counted fewer steps to the motors than were flown".to_owned());
-            let [of_stored, a, b, c, d, e, f, g, h, i, hash] = *rows.next().ok_or_else(too_short)?;
-            stored.add([of_stored; 3], 1);
-            turning.add([a, b, c], of_reference);
-            designed.add([d, e, f], of_laws);
-            dense.add([g, h, i], of_laws);
-            if hash != host.step(step as u32, state)? {
-                return Err(PilError::Answer(format!("to the motors, step {step}: other forces than the host's")));
-            }
-        }
-    }
-    law.insert(MotorFlight::ActuatorAware.to_string(), designed);
-    law.insert(motors::ANY_TABLE.to_owned(), dense);
-    Ok([stored, turning])
 }
 
 impl fmt::Display for InstructionReport {
@@ -328,8 +271,6 @@ impl fmt::Display for InstructionReport {
         }
         row("reference", &self.reference)?;
         row("reference, turning", &self.reference_turning)?;
-        row("reference to motors", &self.motor_reference)?;
-        row("reference to motors, turning", &self.motor_reference_turning)?;
         row("whole tick", &self.tick)?;
         if let Some(estimator) = &self.estimator {
             for (name, count) in &estimator.prediction {
@@ -347,7 +288,7 @@ impl fmt::Display for InstructionReport {
             writeln!(f, "{:<32}{:>18}", "signature of a gain table", signature)?;
         }
         writeln!(f, "\ncontrol path   flash {:>6} bytes, without stored trajectories", self.flash_bytes)?;
-        writeln!(f, "to the motors  flash {:>6} bytes, the actuator-aware law included", self.flash_to_motors_bytes)?;
+        writeln!(f, "to the motors  flash {:>6} bytes, the cascade included", self.flash_to_motors_bytes)?;
         if let Some(estimator::EstimatorReport { prediction_stack_bytes, update_stack_bytes, .. }) = &self.estimator {
             writeln!(
                 f,

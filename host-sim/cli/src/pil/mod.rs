@@ -1,6 +1,7 @@
 //! The image on its processor, emulated or real: flights in; commands, instruction counts and verdicts out.
 //!
 //! ```text
+//! faults           flights with something wrong, under an emulated board
 //! lock_step        the paper's flights under the target's commands, compared with the host's
 //!   motors         the same down to the motors, on a rigid craft
 //! measure          instructions a step, flash, RAM
@@ -23,6 +24,7 @@ pub mod crazyflie;
 pub mod emulated;
 pub mod emulator;
 pub mod estimator;
+pub mod faults;
 pub mod flights;
 pub mod image;
 pub mod interrupt;

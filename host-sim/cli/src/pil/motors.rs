@@ -8,11 +8,13 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use nalgebra::{Vector3, Vector4};
+use quatrack::cascade::CascadeLimits;
+use quatrack::gains::cascade::CRAZYFLIE_2_1_DEFAULT;
 use quatrack::gains::paper;
 use quatrack::link::{LawChoice, LimitsSetting, Parameter, Table, ToBoard, TrajectoryCommand};
 use quatrack::{
-    Actuation, ActuatorAware, Airframe, BodyRateLoop, Controller, Equilibrium, Limits, Memory, MotorForces, Player,
-    Quaternion, Rate, RigidState, State,
+    Actuation, Airframe, BodyRateLoop, Cascade, Controller, Equilibrium, Heading, Leash, Limits, Measured, Memory,
+    MotorForces, Player, Quaternion, Rate, RigidState, State, Target,
 };
 use quatrack_design::model::position;
 use quatrack_design::vehicle::Vehicle;
@@ -31,12 +33,6 @@ use super::bits::Fnv1a;
 use super::client::Client;
 use super::flights::{COURSES, PATIENCE_TICKS, Plans, RATE_HZ, share, trajectory_id};
 
-/// The same file that the image is built from.
-#[allow(unreachable_pub, reason = "the image needs it public")]
-mod table {
-    include!("../../../../gains/generated/actuator-aware.rs");
-}
-
 /// Control steps a sample of the position error.
 const STEPS_A_SAMPLE: u32 = RATE_HZ / 100;
 
@@ -46,19 +42,19 @@ pub enum MotorFlight {
     /// (LQR-E) through body-rate loop and mixer, on motors of 20 ms.
     #[serde(rename = "LQR-E")]
     LqrE,
-    /// The actuator-aware law, on the craft's own motors.
-    #[serde(rename = "actuator-aware")]
-    ActuatorAware,
+    /// The cascade, on the craft's own motors.
+    #[serde(rename = "cascade")]
+    Cascade,
 }
 
 impl MotorFlight {
     /// All.
-    pub const ALL: [Self; 2] = [Self::LqrE, Self::ActuatorAware];
+    pub const ALL: [Self; 2] = [Self::LqrE, Self::Cascade];
 
     fn table(self) -> Table {
         match self {
             Self::LqrE => Table::LqrE,
-            Self::ActuatorAware => Table::ActuatorAware,
+            Self::Cascade => Table::Cascade,
         }
     }
 
@@ -66,7 +62,7 @@ impl MotorFlight {
     fn lag_s(self, vehicle: &Vehicle) -> f64 {
         match self {
             Self::LqrE => 0.02,
-            Self::ActuatorAware => vehicle.motors().lag_s,
+            Self::Cascade => vehicle.motors().lag_s,
         }
     }
 
@@ -80,7 +76,7 @@ impl fmt::Display for MotorFlight {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::LqrE => "LQR-E",
-            Self::ActuatorAware => "actuator-aware",
+            Self::Cascade => "cascade",
         })
     }
 }
@@ -117,6 +113,7 @@ struct HostCore {
     flight: MotorFlight,
     limits: Limits,
     actuation: Actuation,
+    cascade: Cascade,
     player: Player<'static>,
     memory: Memory,
 }
@@ -130,25 +127,33 @@ impl HostCore {
         let body_rates =
             BodyRateLoop::new(&airframe, flight.bandwidth_rad_s(vehicle)).map_err(|error| refused(&error))?;
         let actuation = Actuation::new(&airframe, rate).map_err(|error| refused(&error))?;
+        let of = &CRAZYFLIE_2_1_DEFAULT.table;
+        let cascade = of.flown(&airframe, rate, &CascadeLimits::STANDARD, &of.air).map_err(|error| refused(&error))?;
         Ok(Self {
             flight,
             limits: vehicles::limits(vehicle).map_err(|error| refused(&error))?,
             actuation: actuation.with_body_rates(body_rates),
+            cascade,
             player: Player::new(trajectory, rate),
             memory: Memory::at_rest(),
         })
     }
 
     fn step(&mut self, tick: u32, state: &RigidState) -> Result<MotorForces, String> {
-        let reference = self.player.motor_reference(tick, self.actuation.airframe()).map_err(|e| e.to_string())?;
-        let controller = match self.flight {
-            MotorFlight::LqrE => Controller::new(Equilibrium::new(&paper::LQR_E), self.limits),
-            MotorFlight::ActuatorAware => {
-                Controller::new(ActuatorAware::new(&table::ACTUATOR_AWARE, &self.actuation), self.limits)
+        let (memory, measured) = (&mut self.memory, Measured::from(state));
+        let step = match self.flight {
+            MotorFlight::LqrE => {
+                let reference = self.player.reference(tick).map_err(|error| error.to_string())?;
+                let controller = Controller::new(Equilibrium::new(&paper::LQR_E), self.limits);
+                let controller = controller.with_actuation(&self.actuation);
+                controller.step_to_motors(memory, measured, Target::new(&reference))
+            }
+            MotorFlight::Cascade => {
+                let sample = self.player.at_fifth_order(tick);
+                let target = Target::with_sample(&sample, Heading::from_angle(sample.flat.heading_rad));
+                Controller::new(&self.cascade, self.limits).step_to_motors(memory, measured, target)
             }
         };
-        let controller = controller.with_actuation(&self.actuation);
-        let step = controller.step_to_motors(&mut self.memory, state.into(), (&reference).into());
         Ok(step.map_err(|error| error.to_string())?.forces_n)
     }
 }
@@ -198,6 +203,7 @@ fn prepare(
     client.set(Parameter::Limits(setting))?;
     client.set(Parameter::BodyRateBandwidth(flight.bandwidth_rad_s(vehicle)))?;
     client.set(Parameter::StateAgeMaxTicks(PATIENCE_TICKS))?;
+    client.set(Parameter::Leash(Leash::NONE.length_m))?;
     client.request(&ToBoard::SelectLaw(LawChoice::new(flight.table())))?;
     client.request(&ToBoard::Trajectory(TrajectoryCommand::Start(trajectory_id(course))))?;
     client.request(&ToBoard::Arm)

@@ -3,8 +3,6 @@
 //! The reference turns, errors are in its heading frame, the reference's input is left out and fed forward, the limits are
 //! off, below and above the command, and the measured quaternion changes its sign every step.
 
-pub(super) mod motors;
-
 use quatrack::law::EquilibriumGain;
 use quatrack::link::{LawChoice, LimitsSetting};
 use quatrack::{
@@ -42,14 +40,13 @@ fn dense() -> [[f32; 9]; 4] {
     paper::LQR_E.gain().rows().map(|row| row.map(|entry| if entry == 0.0 { 0.1 } else { entry }))
 }
 
-/// The target's settings before the flights: the dense gain, the limits and the dense gain to the motors.
+/// The target's settings before the flights: the dense gain and the limits.
 pub(super) fn head() -> Vec<u8> {
     let limits = LIMITS.iter().flat_map(|limits| {
         let [p, q, r] = limits.body_rates_max_rad_s;
         [limits.thrust_min_m_s2, limits.thrust_max_m_s2, p, q, r]
     });
-    let to_motors = motors::dense().into_iter().flatten();
-    dense().into_iter().flatten().chain(limits).chain(to_motors).flat_map(f32::to_le_bytes).collect()
+    dense().into_iter().flatten().chain(limits).flat_map(f32::to_le_bytes).collect()
 }
 
 /// The answers expected of the target.

@@ -173,31 +173,27 @@ fn gains_of_ones_own_fly_the_craft_that_their_design_names() {
     let name = vehicle.lines().find(|line| line.starts_with("name")).expect("a name");
     let own = vehicle.replace(mass, "mass_kg = 0.030").replace(name, "name = \"own-craft\"");
     fs::write(folder.join("own.toml"), &own).unwrap();
-    let design = fs::read_to_string(root.join("actuator-aware.toml")).unwrap();
+    let design = fs::read_to_string(root.join("cascade-100ms.toml")).unwrap();
     let named = design.lines().find(|line| line.starts_with("vehicle")).expect("a vehicle");
     let path = folder.join("mine.toml");
     fs::write(&path, design.replace(named, "vehicle = \"own.toml\"")).unwrap();
 
-    let path = path.to_str().unwrap();
-    let flown = quatrack(&["fly", "--gains", path, "--trajectory", "mild"]);
-    let printed = String::from_utf8(flown.stdout).unwrap();
-    assert!(flown.status.success(), "{}", String::from_utf8_lossy(&flown.stderr));
-    assert!(printed.contains("of the motors, own-craft") && !printed.contains("lost"), "{printed}");
-    let own = folder.join("own.toml");
-    let same = quatrack(&["fly", "--gains", path, "--trajectory", "mild", "--vehicle", own.to_str().unwrap()]);
-    assert_eq!(String::from_utf8(same.stdout).unwrap(), printed);
+    let (path, own) = (path.to_str().unwrap(), folder.join("own.toml"));
+    let hover = |vehicle: &[&str], file: &Path| {
+        let fly = ["fly", "--gains", path, "--course", "hover", "--json", file.to_str().unwrap()];
+        quatrack(&[&fly, vehicle].concat())
+    };
+    // On its own craft in vacuum at hover, told the true mass, it has nothing to do but to learn that there is no air.
+    let files = ["design.json", "vehicle.json"].map(|name| folder.join(name));
+    for (file, vehicle) in files.iter().zip([&[][..], &["--vehicle", own.to_str().unwrap()]]) {
+        let flown = hover(vehicle, file);
+        assert!(flown.status.success(), "{}", String::from_utf8_lossy(&flown.stderr));
+        let figures = json(file);
+        assert!(figures["law"] == "mine" && figures["max_error_m"].as_f64().unwrap() < 1e-4, "{figures}");
+    }
+    assert_eq!(json(&files[0]), json(&files[1]), "the design names its craft");
 
-    // The same table is the law of a scenario: in vacuum, at hover, told the true mass, it has nothing to do.
-    let file = folder.join("hover.json");
-    let craft = own.to_str().unwrap();
-    let hover = ["fly", "--gains", path, "--vehicle", craft, "--course", "hover", "--json", file.to_str().unwrap()];
-    let hover = quatrack(&hover);
-    assert!(hover.status.success(), "{}", String::from_utf8_lossy(&hover.stderr));
-    let figures = json(&file);
-    // The f32 of the core leaves a newton's 1e-7, integrated by the law.
-    assert!(figures["law"] == "mine" && figures["max_error_m"].as_f64().unwrap() < 1e-4, "{figures}");
-
-    let other = quatrack(&["fly", "--gains", path, "--trajectory", "mild", "--vehicle", "crazyflie-2.1"]);
+    let other = hover(&["--vehicle", "crazyflie-2.1"], &folder.join("other.json"));
     let said = String::from_utf8(other.stderr).unwrap();
     assert_eq!((other.status.code(), said.lines().count()), (Some(2), 1), "{said}");
     assert!(said.contains("made for own-craft") && said.contains("crazyflie-2.1"), "{said}");

@@ -25,7 +25,7 @@ use crate::vehicles;
 const BEGINS_S: f64 = 2.0;
 const LASTS_S: f64 = 12.0;
 /// Height of the course, m.
-const HEIGHT_M: f64 = 1.5;
+pub const HEIGHT_M: f64 = 1.5;
 /// Deviations of the estimate: position, velocity, gyroscope, accelerometer.
 const NOISE: [f64; 4] = [1e-3, 1e-2, 0.02, 0.05];
 /// Speed at which a craft that comes to the floor has crashed, m/s, and the cosine of its tilt.
@@ -118,7 +118,7 @@ fn course(t: f64, speed: f64) -> [Vector3<f64>; 3] {
 /// # Errors
 /// [`PlantError`] for figures that no plant can have.
 pub fn fly(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
-    flown(fault, craft, &mut UnderGuard::armed(&craft.cascade))
+    fly_by(fault, craft, &mut UnderGuard::armed(&craft.cascade))
 }
 
 /// The same by the Crazyflie object, through its C interface.
@@ -126,10 +126,14 @@ pub fn fly(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
 /// # Errors
 /// [`PlantError`] for figures that no plant can have.
 pub fn fly_object(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
-    flown(fault, craft, &mut Object::hovering(&craft.vehicle))
+    fly_by(fault, craft, &mut Object::hovering(&craft.vehicle))
 }
 
-fn flown(fault: &Fault, craft: &Crafts, flight: &mut impl Flown) -> Result<Row, PlantError> {
+/// The same by any controller that begins at a hover at the start of the course.
+///
+/// # Errors
+/// [`PlantError`] for what no plant can be.
+pub fn fly_by(fault: &Fault, craft: &Crafts, flight: &mut impl Flown) -> Result<Row, PlantError> {
     let vehicle = &craft.vehicle;
     let off = &fault.craft;
     let mut truth = Truth::as_designed(vehicle);

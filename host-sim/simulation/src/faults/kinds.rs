@@ -43,7 +43,7 @@ impl Signals<'_> {
 }
 
 /// A controller that flies a craft through a fault.
-pub(super) trait Flown {
+pub trait Flown {
     /// Motor forces of a step at a tick, N; nothing where the motors are off.
     fn step(&mut self, now: Tick, signals: &Signals<'_>) -> Option<Vector4<f64>>;
 
@@ -74,6 +74,7 @@ pub struct Craft {
 const SOUND: Craft = Craft { mass: 1.0, inertia: 1.0, lag: 1.0, centre_m: 0.0, wind_m_s: 0.0, wall_m: None };
 
 /// A kind of fault.
+#[derive(Clone, Copy)]
 pub struct Fault {
     /// Its name.
     pub name: &'static str,

@@ -5,12 +5,11 @@ use nalgebra::{DMatrix, SMatrix, Vector4};
 use quatrack::airframe::AirframeError;
 use quatrack::cascade::{AirError, CascadeGainError};
 use quatrack::gain::GainError;
-use quatrack::gains::table::AcceptedTable;
 use quatrack::law::ActuatorAwareGain;
 use quatrack::motor_lag::MotorLagError;
 use quatrack::{
     Actuation, ActuatorAware, Airframe, Controller as CoreController, ControllerError, Equilibrium, Limits,
-    ReferenceError, Settings,
+    ReferenceError,
 };
 use quatrack_design::certify::{
     CertifyError, Controller, Plant, Region, RegionCertificate, Timing, certify, certify_region,
@@ -136,21 +135,10 @@ pub struct CraftLaw<'a> {
 #[derive(Clone, Copy, Debug)]
 enum ControllerSource<'a> {
     Gain(&'a ActuatorAwareGain),
-    Table(AcceptedTable<'a>),
     ByBodyRates(Equilibrium<'a>, Limits),
 }
 
 impl<'a> CraftLaw<'a> {
-    /// A table that was read, on the vehicle that it was accepted for.
-    ///
-    /// # Errors
-    /// [`FlightError::Airframe`] where the core refuses the vehicle.
-    pub fn of_table(vehicle: &Vehicle, table: AcceptedTable<'a>) -> Result<Self, FlightError> {
-        let lag_s = table.lag().map_or_else(|| vehicle.motors().lag_s, |lag| f64::from(lag.lag_s()));
-        let board = Actuation::new(&motor_loop::airframe(vehicle, lag_s)?, motor_loop::RATE)?;
-        Ok(Self { flown: ControllerSource::Table(table), actuation: table.actuation(&board) })
-    }
-
     /// A law of the paper on a vehicle's motors, through the core's body-rate loop and mixer.
     ///
     /// # Errors
@@ -178,10 +166,6 @@ impl<'a> CraftLaw<'a> {
             ControllerSource::ByBodyRates(law, limits) => {
                 Ok(CoreController::new(*law, *limits).with_actuation(&self.actuation))
             }
-            ControllerSource::Table(table) => table.controller(&Settings {
-                actuation: Some(&self.actuation),
-                ..Settings::new(Limits::NONE, motor_loop::RATE)
-            }),
         }
     }
 }

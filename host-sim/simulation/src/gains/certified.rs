@@ -33,7 +33,7 @@ pub struct Certified {
     pub cascade_region: Option<CascadeRegionCertificate>,
     /// The certificate that the table carries.
     pub statement: BoardCertificate,
-    /// The table; none where no law on board flies the gains, as those that remember past commands.
+    /// The table; none where no law on board flies the gains, as those that remember past commands, or the actuator-aware ones.
     pub table: Option<Table>,
 }
 
@@ -87,7 +87,7 @@ impl Design {
             certificate: statement.on_board(),
         };
         let table = if designed.past_command_gains.is_empty() {
-            Some(self.table(head, &designed.gains).map_err(GainsError::Table)?)
+            self.table(head, &designed.gains).map_err(GainsError::Table)?
         } else {
             None
         };
@@ -123,15 +123,16 @@ impl Design {
         }
     }
 
-    fn table(&self, head: TableHead, gains: &Gains) -> Result<Table, TableError> {
-        match gains.rows(self.problem.motor_lag_s().unwrap_or_default() as f32) {
-            TableRows::Fixed(rows) => Table::new(head, &rows),
-            TableRows::Chains(gains) => Table::of_cascade(head, &self.cascade_table(gains)?),
+    fn table(&self, head: TableHead, gains: &Gains) -> Result<Option<Table>, TableError> {
+        Ok(Some(match gains.rows() {
+            TableRows::Fixed(rows) => Table::new(head, &rows)?,
+            TableRows::Chains(gains) => Table::of_cascade(head, &self.cascade_table(gains)?)?,
+            TableRows::ActuatorAware(_) => return Ok(None),
             TableRows::OverTime(gains) => {
                 let (trajectory, steps_per_knot) = self.problem.schedule().unwrap_or_default();
-                Table::over_time(&head, &ScheduleRows { trajectory, steps_per_knot, gains: &gains })
+                Table::over_time(&head, &ScheduleRows { trajectory, steps_per_knot, gains: &gains })?
             }
-        }
+        }))
     }
 
     fn cascade_table(&self, gains: [f32; 16]) -> Result<CascadeTable, TableError> {
@@ -192,6 +193,20 @@ impl Design {
 }
 
 impl Certified {
+    /// Why there is no table, where there is none.
+    pub fn without_table(&self) -> &'static str {
+        match self.design.problem {
+            Problem::ActuatorAware { .. } => {
+                "no board flies the actuator-aware law any more, so it has gains and a certificate alone; for a table write \
+                 method = \"cascade\" and leave [weights] out"
+            }
+            _ => {
+                "no law on board remembers its last commands, so delay_samples above 0 has gains and a certificate alone; for a \
+                 table set delay_samples = 0"
+            }
+        }
+    }
+
     /// The table as a file; nothing where there is none.
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
         self.table.as_ref()?.to_bytes()

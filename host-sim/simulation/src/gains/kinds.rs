@@ -30,6 +30,8 @@ pub enum TableRows {
     Fixed(Box<Rows>),
     /// The gains of the cascade.
     Chains([f32; GAINS]),
+    /// Of the actuator-aware law, of which no table is made: 4 x 19.
+    ActuatorAware(Box<[[f32; 19]; 4]>),
     /// A gain at each knot.
     OverTime(Vec<[[f32; 9]; 4]>),
 }
@@ -60,14 +62,12 @@ impl Gains {
     }
 
     /// As the core flies it, every entry the nearest f32.
-    ///
-    /// `motor_lag_s` is the lag for which gains for motor forces are flown.
-    pub fn rows(&self, motor_lag_s: f32) -> TableRows {
+    pub fn rows(&self) -> TableRows {
         TableRows::Fixed(Box::new(match self {
             Self::Equilibrium(gain) => Rows::Equilibrium(rounded(gain)),
             Self::FlatOutput(gain) => Rows::FlatOutput(rounded(gain)),
             Self::Integral(gain) => Rows::Integral(rounded(gain)),
-            Self::ActuatorAware(gain) => Rows::ActuatorAware { motor_lag_s, rows: rounded(gain) },
+            Self::ActuatorAware(gain) => return TableRows::ActuatorAware(Box::new(rounded(gain))),
             Self::Cascade(gains) => return TableRows::Chains(gains.map(|gain| gain as f32)),
             Self::Along(along) => return TableRows::OverTime(rounded_along(along)),
         }))
@@ -75,10 +75,11 @@ impl Gains {
 
     /// The same, each row a list; of gains over time the rows of one knot after those of the other.
     pub fn by_rows(&self) -> Vec<Vec<f32>> {
-        let rows = self.rows(0.0);
+        let rows = self.rows();
         let entries = match &rows {
             TableRows::Fixed(rows) => rows.entries(),
             TableRows::Chains(gains) => gains,
+            TableRows::ActuatorAware(rows) => rows.as_flattened(),
             TableRows::OverTime(knots) => knots.as_flattened().as_flattened(),
         };
         entries.chunks(usize::from(self.kind().dimensions().1)).map(<[f32]>::to_vec).collect()

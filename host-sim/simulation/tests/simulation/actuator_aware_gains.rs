@@ -1,14 +1,11 @@
-//! The actuator-aware method of the gain tool: the committed designs, their tables, and the refusals.
+//! The actuator-aware method of the gain tool: the committed designs, their gains, and the refusals.
 
 use std::path::{Path, PathBuf};
 
-use quatrack::Rate;
-use quatrack::gains::ConstantGain;
-use quatrack::gains::table::GainTable;
 use quatrack_design::certify::Region;
 use quatrack_design::design::actuator_aware::ActuatorAwareWeights;
 use quatrack_simulation::flight::motor_laws::{AwareTable, default_lag_s};
-use quatrack_simulation::gains::{Design, Export, GainsError, Problem};
+use quatrack_simulation::gains::{Design, Export, GainsError, Problem, artifacts};
 use quatrack_simulation::vehicles;
 
 const TEXT: &str = include_str!("../../../../gains/actuator-aware.toml");
@@ -18,23 +15,23 @@ fn folder() -> PathBuf {
 }
 
 #[test]
-fn committed_tables_are_those_that_the_flights_are_flown_with() {
+fn committed_gains_are_those_that_the_flights_are_flown_with() {
     for (design, vehicle) in [
         ("actuator-aware", "crazyflie-2.1"),
         ("actuator-aware-kit", "crazyflie-2.1-upgrade-kit"),
         ("actuator-aware-brushless", "crazyflie-2.1-brushless"),
     ] {
         let vehicle = vehicles::by_name(vehicle).expect("built in");
-        let bytes = std::fs::read(folder().join(format!("generated/{design}.bin"))).expect("committed");
-        let table = GainTable::from_bytes(&bytes).expect("sound");
-        assert_eq!((table.head().vehicle.id, table.head().rate.hz()), (vehicles::id(&vehicle), 500), "{design}");
-        let lag_s = default_lag_s(&vehicle);
-        assert_eq!(table.lag().map(quatrack::MotorLag::lag_s), Some(lag_s as f32), "{design}");
+        let text = std::fs::read_to_string(folder().join(format!("generated/{design}.json"))).expect("committed");
+        let document: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let entries: Vec<f32> = (document["gain"]["k"].as_array().expect("rows").iter())
+            .flat_map(|row| {
+                row.as_array().expect("entries").iter().map(|entry| entry.as_f64().expect("a number") as f32)
+            })
+            .collect();
         let weights = &ActuatorAwareWeights::STANDARD;
-        let flown = AwareTable::new(&vehicle, lag_s, weights, &Region::of_any_crazyflie()).expect("designed");
-        assert_eq!(table.gain(), Some(&ConstantGain::ActuatorAware(*flown.gain())), "{design}");
-        let board = quatrack::gains::table::Vehicle { id: vehicles::id(&vehicle), ..table.head().vehicle };
-        assert!(table.accept_for(&board, Rate::from_hz(500).expect("in range")).is_ok(), "{design}");
+        let flown = AwareTable::new(&vehicle, default_lag_s(&vehicle), weights, &Region::of_any_crazyflie());
+        assert_eq!(entries, flown.expect("designed").gain().gain().rows().as_flattened(), "{design}");
     }
 }
 
@@ -80,6 +77,14 @@ fn refusals_name_the_key() {
         .replace("control_rate_hz", "motor_lag_ms = 126.0\ncontrol_rate_hz");
     let misplaced = Design::from_toml("lqr", &lqr, Path::new("")).expect_err("refused").to_string();
     assert!(misplaced.starts_with("motor_lag_ms"), "{misplaced}");
+}
+
+#[test]
+fn no_table_is_made_and_it_is_said_why() {
+    let certified =
+        Design::from_toml("aware", TEXT, Path::new("")).and_then(|design| design.certify()).expect("certified");
+    assert_eq!((certified.to_bytes(), artifacts(&certified, Path::new("")).len()), (None, 1));
+    assert!(certified.without_table().contains("method = \"cascade\""));
 }
 
 #[test]

@@ -1,7 +1,5 @@
 //! The flight of a gain table: its file in; the core flies it as a board does that has loaded it.
 
-mod motors;
-
 use std::path::Path;
 use std::str::FromStr as _;
 
@@ -13,12 +11,11 @@ use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_plan::trajectory::transform::Transform;
 use quatrack_simulation::control_law::ControlLaw;
-use quatrack_simulation::flight::motor_laws::CraftLaw;
 use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::reference::{Exact, Reference};
 use quatrack_simulation::flight::reference_check::ReferenceCheck;
 use quatrack_simulation::gains::{Design, OnBoardTrajectory};
-use quatrack_simulation::scenario::{Scenario, TableLaw, start_table};
+use quatrack_simulation::scenario::{Scenario, start_table};
 use quatrack_simulation::vehicles;
 
 use super::{Args, DescribedFlight, Precision, fly_law, load};
@@ -48,9 +45,6 @@ pub(super) fn fly(args: &Args, path: &Path, rate: Option<Rate>) -> Result<Descri
     }
     if kind == TableKind::Cascade {
         return Err(refused(path, &"a table of the cascade flies a scenario: give --course instead of --trajectory"));
-    }
-    if kind == TableKind::ActuatorAware {
-        return motors::fly(args, path, &table, vehicle, rate, &load(args)?);
     }
     let rate = rate.unwrap_or(head.rate);
     let accepted = table.accept_for(&head.vehicle, rate).map_err(|error| not_accepted(path, &error))?;
@@ -107,7 +101,7 @@ fn not_accepted(path: &Path, error: &AcceptError) -> Failure {
     }
 }
 
-/// Flies a table for motor forces as the law of a scenario, on the vehicle that it was made for.
+/// Flies a table of the cascade as the law of a scenario, on the vehicle that it was made for.
 pub(in crate::cli) fn in_scenario<T>(
     path: &Path,
     source: &Source,
@@ -116,8 +110,10 @@ pub(in crate::cli) fn in_scenario<T>(
 ) -> Result<T, Failure> {
     let table = GainTable::from_bytes(&source.bytes).map_err(|error| no_table(path, &source.bytes, &error))?;
     let (kind, head) = (table.kind(), *table.head());
-    if !matches!(kind, TableKind::ActuatorAware | TableKind::Cascade) {
-        return Err(refused(path, &format!("its kind is {kind}; a scenario takes a table for motor forces, or --law")));
+    let not_of_cascade =
+        || refused(path, &format!("its kind is {kind}; a scenario takes a table of the cascade, or --law"));
+    if kind != TableKind::Cascade {
+        return Err(not_of_cascade());
     }
     if vehicles::id(&scenario.vehicle) != head.vehicle.id {
         let reason = format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name());
@@ -130,19 +126,15 @@ pub(in crate::cli) fn in_scenario<T>(
         }
         other => refused(path, &other),
     })?;
-    if let Some(cascade) = accepted.cascade() {
-        let (own_kg, told_kg) = (scenario.vehicle.mass_kg() as f32, scenario.told.mass_kg as f32);
-        if !cascade.certified.holds_mass(own_kg, told_kg) {
-            let percent = 100.0 * cascade.certified.mass_share;
-            let reason = format!("told {told_kg} kg; it is certified for {own_kg} kg and {percent:.0} % more or less");
-            return Err(refused(path, &reason));
-        }
-        let mut law = start_table(&scenario.vehicle, &scenario.told, cascade).map_err(|error| refused(path, &error))?;
-        return fly(law.as_mut(), head.name.as_str());
+    let cascade = accepted.cascade().ok_or_else(not_of_cascade)?;
+    let (own_kg, told_kg) = (scenario.vehicle.mass_kg() as f32, scenario.told.mass_kg as f32);
+    if !cascade.certified.holds_mass(own_kg, told_kg) {
+        let percent = 100.0 * cascade.certified.mass_share;
+        let reason = format!("told {told_kg} kg; it is certified for {own_kg} kg and {percent:.0} % more or less");
+        return Err(refused(path, &reason));
     }
-    let law = CraftLaw::of_table(&scenario.vehicle, accepted).map_err(|error| refused(path, &error))?;
-    let flying = TableLaw::hovering(&law, scenario.vehicle.hover_thrust_n());
-    fly(&mut flying.ok_or_else(|| refused(path, &"becomes no controller"))?, head.name.as_str())
+    let mut law = start_table(&scenario.vehicle, &scenario.told, cascade).map_err(|error| refused(path, &error))?;
+    fly(law.as_mut(), head.name.as_str())
 }
 
 /// A file that is no table: text is named as such, with the table beside it.
@@ -190,9 +182,7 @@ pub(in crate::cli) fn source(path: &Path) -> Result<Source, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") {
         let design = Design::from_file(path).map_err(|error| gains::failed(path, &error))?;
         let certified = design.certify().map_err(|error| gains::failed(path, &error))?;
-        let bytes = certified
-            .to_bytes()
-            .ok_or_else(|| refused(path, &"no law on board remembers its last commands; set delay_samples = 0"))?;
+        let bytes = certified.to_bytes().ok_or_else(|| refused(path, &certified.without_table()))?;
         return Ok(Source { bytes, vehicle: Some(design.vehicle) });
     }
     let bytes = bounded::read(path).map_err(|error| refused(path, &format!("cannot be read ({error})")))?;

@@ -3,6 +3,7 @@
 mod counts;
 mod emulated;
 mod failures;
+mod faults;
 mod gain_tables;
 mod hard_fault;
 mod keyed;

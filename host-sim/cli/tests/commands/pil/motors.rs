@@ -9,8 +9,8 @@ use quatrack::link::{
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::{Mode, Reason};
 use quatrack::{
-    Actuation, Airframe, Heading, Limits, Measured, Memory, MotorReference, Player, Rate, RigidState, Settings, State,
-    Target, Trajectory,
+    Airframe, Heading, Limits, Measured, Memory, Player, Rate, Reference, RigidState, Settings, State, Target,
+    Trajectory,
 };
 use quatrack_cli::pil::client::Client;
 use quatrack_plan::plan::paper::PaperTrajectory;
@@ -43,7 +43,7 @@ fn a_disarmed_board_gives_no_forces() {
     if !has_emulator() {
         return;
     }
-    for table in [Table::LqrE, Table::ActuatorAware] {
+    for table in [Table::LqrE, Table::Cascade] {
         let mut client = flying(table);
         client.request(&ToBoard::Disarm).unwrap();
         assert_eq!(client.step_rigid(2, &at_rest()).unwrap().result, Err(NoCommand::Mode(Mode::OnGround)));
@@ -55,12 +55,12 @@ fn a_law_to_the_motors_is_not_flown_without_body_rates() {
     if !has_emulator() {
         return;
     }
-    let mut client = flying(Table::ActuatorAware);
+    let mut client = flying(Table::Cascade);
     let without = ToBoard::State(StateIn { tick: 2, state: at_rest().state });
     let FromBoard::Command(answer) = client.ask(&without).unwrap() else { panic!("no command") };
     assert_eq!(answer.result, Err(NoCommand::NoBodyRates));
     assert_eq!(client.telemetry().unwrap().mode, Mode::Stopped(Reason::StepFailed));
-    let mut client = flying(Table::ActuatorAware);
+    let mut client = flying(Table::Cascade);
     let mut bad = at_rest();
     bad.body_rates_rad_s.z = f32::NAN;
     let message = ToBoard::RigidState(RigidStateIn { tick: 2, state: bad });
@@ -83,52 +83,6 @@ fn the_battery_is_told_in_flight_and_the_rate_loop_is_not() {
     client.request(&ToBoard::Disarm).unwrap();
     assert!(client.set(Parameter::BodyRateBandwidth([20.0, 0.0, 20.0])).is_err(), "an axis without a loop");
     client.set(Parameter::BodyRateBandwidth([20.0, 20.0, 10.0])).unwrap();
-}
-
-#[test]
-fn a_table_for_motor_forces_flies_bit_for_bit() {
-    if !has_emulator() {
-        return;
-    }
-    // Designed for motors of 63.5 ms: the board reckons with the table's lag, not with its own craft's.
-    let blob: &[u8] = include_bytes!("../../../../../gains/generated/actuator-aware-63ms.bin");
-    let (rate, ticks) = (Rate::from_hz(500).unwrap(), Rate::from_hz(1000).unwrap());
-    let vehicle = Vehicle { name: Name::literal("crazyflie-2.1"), id: 0x8983_3c06 };
-    let table = GainTable::from_bytes(blob).unwrap();
-    let accepted = table.accept_for(&vehicle, rate).unwrap();
-    let actuation = accepted.actuation(&Actuation::new(&Airframe::CRAZYFLIE_2_1, rate).unwrap());
-    assert_eq!(actuation.lag().lag_s(), 0.0635);
-    let controller =
-        accepted.controller(&Settings { actuation: Some(&actuation), ..Settings::new(Limits::NONE, ticks) });
-    let controller = controller.unwrap();
-
-    let mut client = connected();
-    client.set(Parameter::Decimation(0)).unwrap();
-    client.set(Parameter::StateAgeMaxTicks(10_000)).unwrap();
-    client.set(Parameter::LinkSilenceMaxTicks(10_000)).unwrap();
-    let begin = UploadBegin::of(BlobKind::GainTable, 1, blob).unwrap();
-    let mut answer = client.ask(&ToBoard::UploadBegin(begin)).unwrap();
-    while let FromBoard::Upload(wanted) = answer {
-        let Some(chunk) = wanted.next_chunk(blob) else { break };
-        answer = client.ask(&ToBoard::UploadChunk(chunk)).unwrap();
-    }
-    client.request(&ToBoard::UploadCommit { id: 1 }).unwrap();
-    client.request(&ToBoard::SelectLaw(LawChoice::new(Table::Loaded(0)))).unwrap();
-    client.request(&ToBoard::Trajectory(TrajectoryCommand::Start(TrajectoryId::Mild))).unwrap();
-    client.request(&ToBoard::Arm).unwrap();
-
-    let mut player = Player::new(Trajectory::new(stored::pieces(PaperTrajectory::Mild)).unwrap(), ticks);
-    let mut memory = Memory::at_rest();
-    for step in 0..500_u16 {
-        let tick = 2 * u32::from(step);
-        let reference = player.motor_reference(tick, actuation.airframe()).unwrap();
-        let mut measured = RigidState { state: *reference.state(), body_rates_rad_s: reference.body_rates_rad_s() };
-        measured.state.position_m.z -= 0.01 + 1e-5 * f32::from(step);
-        measured.body_rates_rad_s.x += 0.1;
-        let expected = controller.step_to_motors(&mut memory, (&measured).into(), (&reference).into()).unwrap();
-        let found = client.step_rigid(tick, &measured).unwrap().result;
-        assert_eq!(found, Ok(expected), "step {step}");
-    }
 }
 
 #[test]
@@ -166,8 +120,9 @@ fn a_table_of_the_cascade_flies_bit_for_bit_from_the_first_laws_forces_on() {
     for step in 0..500_u16 {
         let tick = 2 * u32::from(step);
         let sample = player.at_fifth_order(tick);
-        let reference = MotorReference::from_flat(&sample, cascade.airframe()).unwrap();
-        let mut measured = RigidState { state: *reference.state(), body_rates_rad_s: reference.body_rates_rad_s() };
+        let reference = Reference::from_flat(&sample.flat).unwrap();
+        let body_rates_rad_s = reference.input().body_rates_rad_s;
+        let mut measured = RigidState { state: *reference.state(), body_rates_rad_s };
         measured.state.position_m.z -= 0.01 + 1e-5 * f32::from(step);
         measured.body_rates_rad_s.x += 0.1;
         let target = Target::with_sample(&sample, Heading::from_angle(sample.flat.heading_rad));
