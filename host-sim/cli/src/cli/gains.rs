@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use quatrack_simulation::crazyflie::{craft_header, standard_design};
-use quatrack_simulation::gains::{self, Certified, Checked, Design, Failed, GainsError};
+use quatrack_simulation::gains::{self, Certified, Checked, Design, Failed, GainsError, Problem};
 use quatrack_simulation::generated::{self, GenerateError};
 use quatrack_simulation::vehicles;
 use serde::Serialize;
@@ -204,6 +204,12 @@ fn notes(certified: &Certified) -> String {
         "  weights are as written and do not scale with the mass, {mass_kg} kg: twice the mass and inertia fly alike with a quarter \
          of force_input\n"
     );
+    if let Problem::Cascade { region_from, .. } = &certified.design.problem
+        && !region_from.is_empty()
+    {
+        let taken: Vec<&str> = region_from.iter().map(|bound| bound.figure).collect();
+        let _ = writeln!(text, "  its region is that of the vehicle's identified intervals: {}", taken.join(", "));
+    }
     if method == "actuator-aware" {
         text += "  this is the law before the cascade: for a table of that write method = \"cascade\" and leave [weights] out\n";
     }
