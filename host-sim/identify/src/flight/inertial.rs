@@ -49,6 +49,9 @@ const SEEN_VELOCITY_M_S: f64 = 0.2;
 /// Of a sample, rad: the log's attitude itself counts for little, where nothing else tells the heading.
 const SEEN_TURN: f64 = 3.0;
 
+/// Attitude and velocity at every point.
+pub(super) type Motion = (Vec<UnitQuaternion<f64>>, Vec<Vector3<f64>>);
+
 type Vector = SVector<f64, STATES>;
 type Matrix = SMatrix<f64, STATES, STATES>;
 
@@ -66,7 +69,7 @@ struct Step {
 }
 
 /// Attitude and velocity of a grid as its inertial sensors have them; none where they are no numbers.
-pub(super) fn smoothed(grid: &Grid) -> Option<(Vec<UnitQuaternion<f64>>, Vec<Vector3<f64>>)> {
+pub(super) fn smoothed(grid: &Grid) -> Option<Motion> {
     if grid.len() < 2 {
         return None;
     }
