@@ -7,6 +7,7 @@
 //!   own_law         a callable as a law
 //!   plant           the plant of a scenario, for many crafts
 //!     scenario
+//! identify          logs in, figures of a craft out
 //! reproduction      the paper's table
 //! crazyflie         the Crazyflie object through its C interface
 //! controller        the core's controller, for many crafts
@@ -32,6 +33,7 @@ mod error;
 mod estimator;
 mod flight;
 mod gains;
+mod identify;
 mod law;
 mod long_call;
 mod own_law;
@@ -65,6 +67,8 @@ mod _quatrack {
     use crate::flight::{Comparison, Flight, compare, fly};
     #[pymodule_export]
     use crate::gains::GainTable;
+    #[pymodule_export]
+    use crate::identify::{Identified, identify};
     #[pymodule_export]
     use crate::own_law::LawInput;
     #[pymodule_export]

@@ -28,7 +28,9 @@ pub enum IdentifyError {
         reason: String,
     },
     /// A column that the map names and the log does not have.
-    #[error("{path}: no column \"{column}\" for {quantity}; the log has {present}; give --columns a map for this log")]
+    #[error(
+        "{path}: no column \"{column}\" for the {quantity}; the log has {present}; give --columns a map for this log"
+    )]
     Column {
         /// The file.
         path: String,
@@ -42,6 +44,22 @@ pub enum IdentifyError {
     /// No log holds enough flight.
     #[error("{0}")]
     TooLittle(String),
+    /// A mass that is not that of the vehicle, nor near it.
+    #[error(
+        "mass = {mass_kg} kg: {vehicle} has {own_kg} kg, and a craft with its arms a third to three times that: 27 g are 0.027; \
+         or give another --vehicle"
+    )]
+    Mass {
+        /// As given, kg.
+        mass_kg: f64,
+        /// Of the vehicle, kg.
+        own_kg: f64,
+        /// The vehicle.
+        vehicle: String,
+    },
+    /// Figures that make no vehicle.
+    #[error("the figures make no vehicle file: {0}")]
+    Vehicle(String),
     /// A figure that was given from outside.
     #[error("{field} = {value}: must be {must}")]
     Value {

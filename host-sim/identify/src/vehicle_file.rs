@@ -3,15 +3,27 @@
 
 use std::fmt::Write as _;
 
-use quatrack_design::vehicle::Vehicle;
+use quatrack_design::vehicle::{Vehicle, VehicleFile};
 
+use crate::IdentifyError;
 use crate::fit::{Estimate, Fit};
 
 /// Longest name of a vehicle in a gain table, bytes.
 const LONGEST_NAME: usize = 31;
 
-/// TOML that `quatrack gains design` and `--vehicle` take.
-pub fn vehicle_toml(fit: &Fit, vehicle: &Vehicle, logs: &[String]) -> String {
+/// TOML that `quatrack gains design` and `--vehicle` take: it has been read back.
+///
+/// # Errors
+/// [`IdentifyError::Vehicle`] where no vehicle has such figures.
+pub fn vehicle_toml(fit: &Fit, vehicle: &Vehicle, logs: &[String]) -> Result<String, IdentifyError> {
+    let text = written(fit, vehicle, logs);
+    let read: Result<VehicleFile, _> = toml::from_str(&text);
+    let file = read.map_err(|error| IdentifyError::Vehicle(error.message().to_owned()))?;
+    Vehicle::try_from(file).map_err(|error| IdentifyError::Vehicle(error.to_string()))?;
+    Ok(text)
+}
+
+fn written(fit: &Fit, vehicle: &Vehicle, logs: &[String]) -> String {
     let mut text = String::new();
     let of = |name: &str| fit.figures.get(name).and_then(|figure| figure.as_ref().ok());
     let source = format!("quatrack identify, {} log{}", logs.len(), if logs.len() == 1 { "" } else { "s" });

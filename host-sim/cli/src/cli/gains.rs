@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use clap::Subcommand;
 use quatrack_plan::bounded;
 use quatrack_simulation::crazyflie::{craft_header, standard_design, standard_force_input};
-use quatrack_simulation::gains::{self, Certified, Checked, Design, Failed, GainsError};
+use quatrack_simulation::gains::{self, Certified, Checked, Design, Failed, GainsError, Problem};
 use quatrack_simulation::generated::{self, GenerateError};
 use quatrack_simulation::vehicles;
 use serde::Serialize;
@@ -221,8 +221,17 @@ fn craft(path: &Path, out: &Path) -> Result<(), Failure> {
 
 /// Notes for an owner about the method.
 fn notes(certified: &Certified) -> String {
-    unscaled(&certified.design).map_or_else(String::new, |note| format!("  {note}
-"))
+    let mut text = unscaled(&certified.design).map_or_else(String::new, |note| format!("  {note}\n"));
+    if let Problem::Cascade { region_from, .. } = &certified.design.problem
+        && !region_from.is_empty()
+    {
+        let taken: Vec<&str> = region_from.iter().map(|bound| bound.figure).collect();
+        let _ = writeln!(text, "  its region is that of the vehicle's identified intervals: {}", taken.join(", "));
+    }
+    if certified.design.problem.named().1 == "actuator-aware" {
+        text += "  this is the law before the cascade: for a table of that write method = \"cascade\" and leave [weights] out\n";
+    }
+    text
 }
 
 /// Every figure that a design can ask for, beside the minimum of this one.

@@ -67,7 +67,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     output::print(&report.text())?;
     if let Some(path) = &args.out {
-        output::write(path, vehicle_toml(&report.fit, &vehicle, &report.logs).as_bytes())?;
+        let text = vehicle_toml(&report.fit, &vehicle, &report.logs).map_err(Failure::verdict)?;
+        output::write(path, text.as_bytes())?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     if let Some(dir) = &args.plot {

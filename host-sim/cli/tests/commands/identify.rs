@@ -89,3 +89,97 @@ fn a_wrong_unit_is_named_and_a_wrong_column_is_refused() {
     let said = String::from_utf8_lossy(&told.stderr);
     assert!(said.contains("no column \"gyro.a\" for the gyroscope") && said.lines().count() == 1, "{said}");
 }
+
+/// What `identify` writes of a craft whose figures are the file's own: lag, thrust per mass, inertia about x and y, delay and air.
+const INTERVALS: [(&str, f64, f64); 9] = [
+    ("lag_ms", 60.0, 74.0),
+    // Over 4 x 0.124 N / 27 g = 18.37: 8 % less is 8.7 % more mass, 6 % more is 5.7 % less.
+    ("thrust_per_mass_m_s2", 0.92 * 18.370_37, 1.06 * 18.370_37),
+    ("inertia_x_kg_m2", 0.9 * 16.571_710e-6, 1.05 * 16.571_710e-6),
+    ("inertia_y_kg_m2", 0.95 * 16.655_602e-6, 1.12 * 16.655_602e-6),
+    ("delay_ms", -1.0, 8.0),
+    ("drag_x_per_s", 0.36, 0.42),
+    ("drag_y_per_s", 0.37, 0.43),
+    ("moment_x_n_m_per_m_s", 3.5e-4, 4.1e-4),
+    ("moment_y_n_m_per_m_s", 4.0e-4, 4.6e-4),
+];
+
+const BY_INTERVALS: &str = "description = \"A craft that its own flights told of.\"\nvehicle = \"craft.toml\"\n\
+                            linearisation = \"equilibrium\"\nmethod = \"cascade\"\ncontrol_rate_hz = 500\n\
+                            [region]\nfrom = \"identified\"\nforce_percent = [70.0, 105.0]\n[minimum]\nphase_all_deg = 32.0\n";
+
+#[test]
+fn a_design_takes_its_region_from_the_intervals_of_its_craft() {
+    let folder = folder("identify-region");
+    let craft = include_str!("../../../../gains/vehicles/crazyflie-2.1.toml")
+        .replace("mass_kg = 0.029", "mass_kg = 0.027")
+        .replace("lag_s = 0.126", "lag_s = 0.067")
+        .replace("name = \"crazyflie-2.1\"", "name = \"crazyflie-2.1-own\"");
+    let table = |(name, low, high): &(&str, f64, f64)| {
+        format!("\n[identified.{name}]\nlow = {low}\nhigh = {high}\nsource = \"quatrack identify, 2 logs\"\n")
+    };
+    let write = |intervals: &[(&str, f64, f64)], design: &str| {
+        let vehicle = craft.clone() + &intervals.iter().map(table).collect::<String>();
+        fs::write(folder.join("craft.toml"), vehicle).unwrap();
+        fs::write(folder.join("own.toml"), design).unwrap();
+        quatrack(&["gains", "design", folder.join("own.toml").to_str().unwrap()])
+    };
+    let designed = write(&INTERVALS, BY_INTERVALS);
+    assert!(designed.status.success(), "{}", String::from_utf8_lossy(&designed.stderr));
+    let said = String::from_utf8_lossy(&designed.stdout).into_owned();
+    assert!(
+        said.contains("its region is that of the vehicle's identified intervals: lag_ms, thrust_per_mass_m_s2,"),
+        "{said}"
+    );
+
+    // The certificate has the bounds, and where they are from.
+    let document = json(&folder.join("generated/own.json"));
+    let bounds = &document["region"]["bounds"];
+    let share = |key: &str| bounds[key].as_f64().unwrap();
+    assert_eq!(bounds["lag_s"], serde_json::json!([0.06, 0.074]));
+    // Rounded to the six digits that a document has.
+    for (key, value) in [
+        ("mass_share", 1.0 / 0.92 - 1.0),
+        ("inertia_share", 0.12),
+        // No flight turned the heading: as much as the built-in tables have.
+        ("yaw_inertia_share", 0.3),
+        ("delay_s", 0.008),
+        ("drag_per_s", 0.43),
+    ] {
+        assert!((share(key) / value - 1.0).abs() < 1e-5, "{key}: {} for {value}", share(key));
+    }
+    assert_eq!(bounds["moment_n_s"], serde_json::json!([4.1e-4, 4.6e-4]));
+    let from = &document["design"]["parameters"]["region_from"];
+    assert_eq!(from[0]["figure"], "lag_ms");
+    assert_eq!(from[0]["source"], "quatrack identify, 2 logs");
+    for made in ["own.toml", "generated/own.json"] {
+        let shown = quatrack(&["gains", "show", folder.join(made).to_str().unwrap()]);
+        let said = String::from_utf8_lossy(&shown.stdout).into_owned();
+        for line in [
+            "motor lag            60.0 to 74.0 ms",
+            "mass                 9 % more or less than told",
+            "inertia              12 % more or less than told, about yaw 30 %",
+            "by the 95 % intervals in the vehicle's file",
+            "motor_lag_ms         lag_ms 60.00000 to 74.00000 (quatrack identify, 2 logs)",
+        ] {
+            assert!(said.contains(line), "{made} has no `{line}`: {said}");
+        }
+    }
+    let shown = quatrack(&["gains", "show", folder.join("generated/own.bin").to_str().unwrap()]);
+    assert!(String::from_utf8_lossy(&shown.stdout).contains("inertia              12 % more or less than told\n"));
+
+    // What the flights did not tell is named; what is stated needs no interval.
+    let refused = write(&INTERVALS[..2], BY_INTERVALS);
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2), "{said}");
+    assert!(said.contains("identified.inertia_x_kg_m2 is missing; region.from = \"identified\" needs it"), "{said}");
+    let stated = BY_INTERVALS.replace("force_percent", "inertia_percent = 25.0\ndelay_ms = 10.0\nforce_percent");
+    let designed = write(&INTERVALS[..2], &stated);
+    assert!(designed.status.success(), "{}", String::from_utf8_lossy(&designed.stderr));
+    let bounds = &json(&folder.join("generated/own.json"))["region"]["bounds"];
+    assert_eq!((&bounds["inertia_share"], &bounds["delay_s"]), (&0.25.into(), &0.01.into()));
+    // Without the word nothing is taken.
+    let refused = write(&INTERVALS, &BY_INTERVALS.replace("from = \"identified\"\n", ""));
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(said.contains("motor_lag_ms is missing"), "{said}");
+}

@@ -12,6 +12,7 @@ use super::layout::{DAMPING, SHARED};
 use super::prior::{Base, Prior};
 use super::problem::Prepared;
 use super::refine::{Refined, Start, refine};
+use crate::filter::mean;
 
 /// Of the torques' variance below the corner, mean of both axes: less, and the filters are not believed. The flights of NanoBench have 0.915,
 /// simulated crafts in gusts 0.945 and more.
@@ -89,6 +90,19 @@ impl Posterior {
             })
             .collect();
         Self { values: refined.values.clone(), draws, blocks, way: Way::Filters(refined) }
+    }
+
+    /// Deviation of a parameter by what the flights say of it, without what was believed before.
+    pub(super) fn by_data(&self, j: usize) -> f64 {
+        let priors = match &self.way {
+            Way::Balances { refined, .. } => &refined.priors,
+            Way::Filters(refined) => &refined.priors,
+        };
+        let all: Vec<f64> = self.draws.iter().map(|draw| draw[j]).collect();
+        let middle = mean(&all);
+        let variance = mean(&all.iter().map(|value| (value - middle).powi(2)).collect::<Vec<_>>());
+        let precision = 1.0 / variance.max(1e-300) - priors[j].precision(self.values[j]);
+        if precision > 0.0 { precision.sqrt().recip() } else { f64::INFINITY }
     }
 
     /// The same way once more with other parameters kept.

@@ -102,15 +102,21 @@ pub fn fit(flights: &[Flight], base: &Base) -> Result<Fit, IdentifyError> {
         let filtered = Posterior::filtered(&sections, base, flights.len(), &posterior.values, priors, &fixed);
         posterior = filtered.unwrap_or(posterior);
     }
-    let Summary { full, drive, yaws, model, explained: [x, y, thrust] } =
-        summary(&sections, base, &posterior.values, &drags);
+    let Summary { full, yaws, model, explained: [x, y, thrust] } = summary(&sections, base, &posterior.values, &drags);
+    if ![x, y, thrust].iter().all(|share| share.is_finite()) {
+        return Err(IdentifyError::TooLittle(
+            "nothing that is a number comes out of these logs; check the map's columns, or give the logs one by one"
+                .to_owned(),
+        ));
+    }
     let flight_fits = flight_fits(&sections, base, &model, &full);
     let mut figures = Figures { base, all: BTreeMap::new(), spread: few_units(&posterior.blocks) };
     figures.refined(&posterior, voltage);
     figures.apart(&sections, base, &posterior, voltage);
     figures.drag(&drags);
-    figures.yaw(&yaws, &full, &drive);
-    figures.biases(&flight_fits, &sections);
+    figures.yaw(&yaws);
+    figures.biases(&flight_fits);
+    figures.turning([x, y, thrust], yaws.explained);
     let explained = [x, y, thrust, drags[0].explained, drags[1].explained];
     Ok(Fit {
         base: base.clone(),
@@ -164,7 +170,6 @@ fn explained(sections: &[Prepared], base: &Base, model: &Model, full: &[f64]) ->
 /// Figures that follow from the values.
 struct Summary {
     full: Vec<f64>,
-    drive: Drive,
     yaws: Regression,
     model: Model,
     explained: [f64; 3],
@@ -176,7 +181,7 @@ fn summary(sections: &[Prepared], base: &Base, values: &DVector<f64>, drags: &[R
     let yaws = yaw(sections, base, &drive, &full);
     let model = model(values, drags, &yaws);
     let explained = explained(sections, base, &model, &full);
-    Summary { full, drive, yaws, model, explained }
+    Summary { full, yaws, model, explained }
 }
 
 /// From the best lag of the curve, the vehicle's own powers, and the thrust that carries the craft.
@@ -279,14 +284,23 @@ struct Figures<'a> {
 /// Systematic errors of figures, as a share and at 95 %, on simulated crafts whose flights are as long as one likes:
 /// attitude and velocity are of an estimator that does not know of drag, and the course of a command between its samples
 /// is not in the log.
-const SYSTEMATIC: [(&str, f64); 6] = [
-    ("lag_", 0.07),
+const SYSTEMATIC: [(&str, f64); 8] = [
+    ("lag_", 0.11),
+    ("command_power", 0.07),
+    ("inertia_z", 0.16),
     ("inertia_", 0.08),
     ("drag_", 0.07),
     ("moment_", 0.08),
     ("thrust_", 0.05),
     ("hover_command", 0.02),
 ];
+
+/// What no body and no motor has less of than nothing.
+const POSITIVE: [&str; 6] = ["lag_", "inertia_", "rotor_inertia", "command_power", "thrust_", "hover_command"];
+
+/// Share of the torques about an axis that has to be explained before anything is told of them: less, and the flight is at rest, or its
+/// columns are not what the map says.
+const TORQUES_LEAST: f64 = 0.5;
 
 const STEPS: &str = "fly 20 s of steps between corners, which turn the craft fast";
 const SPEED: &str = "fly 30 s at 1 m/s and more in both directions";
@@ -298,7 +312,8 @@ impl Figures<'_> {
     fn put(&mut self, name: &'static str, value: f64, draws: &[f64], most: f64, manoeuvre: &str) {
         let mut estimate = interval(value, draws, self.spread);
         let half = 0.5 * (estimate.high - estimate.low);
-        let told = half <= most && half.is_finite();
+        let positive = POSITIVE.iter().any(|start| name.starts_with(start));
+        let told = half <= most && half.is_finite() && value.is_finite() && !(positive && estimate.low <= 0.0);
         if let Some((_, share)) = SYSTEMATIC.iter().find(|(start, _)| name.starts_with(start)) {
             // Errors of estimator and model, which drawing blocks of the same flight does not show.
             let more = share * value.abs();
@@ -310,6 +325,39 @@ impl Figures<'_> {
         self.all.insert(name, if told { Ok(estimate) } else { Err(refused()) });
     }
 
+    /// Refuses a figure that what was believed before the flight tells, and not the flight.
+    fn excited(&mut self, posterior: &Posterior, name: &'static str, j: usize, most: f64, manoeuvre: &str) {
+        let by_data = 1.96 * posterior.by_data(j);
+        if by_data > most {
+            let reason = format!("this flight does not tell it, at most +-{most:.2e} at 95 % would: {manoeuvre}");
+            self.all.insert(name, Err(reason));
+        }
+    }
+
+    /// Refuses what torques tell about axes whose torques are not explained.
+    fn turning(&mut self, explained: [f64; 3], yaw: f64) {
+        let shares = [("x", explained[0]), ("y", explained[1]), ("z", yaw)];
+        for (axis, share) in shares.into_iter().filter(|(_, share)| *share < TORQUES_LEAST) {
+            let manoeuvre = if axis == "z" { TURNS } else { STEPS };
+            let names = self.all.keys().filter(|name| {
+                let turns = ["inertia_", "moment_", "rate_damping_"].iter().any(|start| name.starts_with(start));
+                turns && name.split('_').any(|part| part == axis) || axis == "z" && name.starts_with("rotor_")
+            });
+            for name in names.copied().collect::<Vec<_>>() {
+                let reason = format!(
+                    "the motors explain {share:.2} of the torque about {axis}, {TORQUES_LEAST} is the least: {manoeuvre}"
+                );
+                self.all.insert(name, Err(reason));
+            }
+        }
+        if explained[0].max(explained[1]) < TORQUES_LEAST {
+            for name in ["lag_ms", "lag_rise_ms", "lag_fall_ms", "delay_ms"] {
+                let reason = format!("the motors explain less than {TORQUES_LEAST} of the torques: {STEPS}");
+                self.all.insert(name, Err(reason));
+            }
+        }
+    }
+
     fn refined(&mut self, posterior: &Posterior, voltage: bool) {
         let Posterior { values, draws, .. } = posterior;
         let of = |f: &dyn Fn(&DVector<f64>) -> f64| -> (f64, Vec<f64>) { (f(values), draws.iter().map(f).collect()) };
@@ -317,6 +365,7 @@ impl Figures<'_> {
         let mass = self.base.mass_kg;
         let (lag, all) = of(&|v| 1e3 * v[LAG].exp());
         self.put("lag_ms", lag, &all, 0.3 * lag, STEPS);
+        self.excited(posterior, "lag_ms", LAG, 0.4, STEPS);
         let (delay, all) = of(&|v| 1e3 * v[DELAY]);
         self.put("delay_ms", delay, &all, 8.0, STEPS);
         // The course of a command between two samples is not in the log: half a sample to either side.
@@ -326,9 +375,11 @@ impl Figures<'_> {
         }
         let (power, all) = of(&|v| v[COMMAND_POWER]);
         self.put("command_power", power, &all, 0.3, CLIMBS);
+        self.excited(posterior, "command_power", COMMAND_POWER, 0.5, CLIMBS);
         if voltage {
             let (power, all) = of(&|v| v[VOLTAGE_POWER]);
             self.put("voltage_power", power, &all, 0.4, DISCHARGE);
+            self.excited(posterior, "voltage_power", VOLTAGE_POWER, 0.5, DISCHARGE);
         } else {
             self.all.insert("voltage_power", Err(format!("the log has no voltage: {DISCHARGE}")));
         }
@@ -338,6 +389,15 @@ impl Figures<'_> {
         self.put("thrust_per_mass_m_s2", per_mass, &all, 0.2 * per_mass, CLIMBS);
         let newton: Vec<f64> = all.iter().map(|a| 0.25 * mass * a).collect();
         self.put("thrust_full_n", 0.25 * mass * per_mass, &newton, 0.05 * mass * per_mass, CLIMBS);
+        // A full command is not flown: what it gives is what the power makes of the thrust at hover.
+        if self.all.get("command_power").is_none_or(Result::is_err) {
+            for name in ["thrust_per_mass_m_s2", "thrust_full_n"] {
+                self.all.insert(
+                    name,
+                    Err(format!("the power of the command is not told, by which it follows from hover: {CLIMBS}")),
+                );
+            }
+        }
         // At the reference voltage.
         let hover = |v: &DVector<f64>| (GRAVITY_M_S2 / full(v).exp()).powf(1.0 / v[COMMAND_POWER]);
         let (command, all) = of(&hover);
@@ -355,6 +415,7 @@ impl Figures<'_> {
         {
             let (value, all) = of(&|v| v[INERTIA[axis]].exp());
             self.put(inertia, value, &all, 0.2 * value, STEPS);
+            self.excited(posterior, inertia, INERTIA[axis], 0.3, STEPS);
             let (value, all) = of(&|v| v[MOMENT[axis]]);
             let most = (0.25 * value.abs()).max(2e-3 * self.base.half_arm_m * self.base.mass_kg);
             self.put(moment, value, &all, most, SPEED);
@@ -397,7 +458,7 @@ impl Figures<'_> {
         }
     }
 
-    fn yaw(&mut self, yaws: &Regression, full: &[f64], drive: &Drive) {
+    fn yaw(&mut self, yaws: &Regression) {
         let draws = yaws.draws();
         let column = |j: usize| -> Vec<f64> { draws.iter().map(|v| v[j]).collect() };
         let inertia = yaws.values[0];
@@ -418,16 +479,13 @@ impl Figures<'_> {
             return;
         };
         // J_r = 2 k W kappa L, with W the speed at hover.
-        let _ = (full, drive);
         let speed = (0.25 * self.base.mass_kg * GRAVITY_M_S2 / thrust_n_s2).sqrt();
         let factor = 2.0 * thrust_n_s2 * speed * self.base.torque_per_thrust_m;
         let all: Vec<f64> = column(2).iter().map(|lead| factor * lead).collect();
         self.put(name, factor * yaws.values[2], &all, 0.4 * (factor * yaws.values[2]).abs(), TURNS);
     }
 
-    fn biases(&mut self, flights: &[FlightFit], sections: &[Prepared]) {
-        // By sections where there is one flight; each with its own.
-        let _ = sections;
+    fn biases(&mut self, flights: &[FlightFit]) {
         let of = |f: &dyn Fn(&FlightFit) -> f64| -> Estimate {
             let all: Vec<f64> = flights.iter().map(f).collect();
             let value = mean(&all);

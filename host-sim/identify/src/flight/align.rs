@@ -2,8 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::check::{channel, turning};
 use super::grid::Grid;
+use super::signals::{channel, turning};
 use super::{RATE_HZ, STEP_S};
 use crate::filter::{LowPass, mean, shifted};
 

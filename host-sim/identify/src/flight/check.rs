@@ -1,67 +1,107 @@
-//! Units, order of the quaternion and signs: each against the other signals. A wrong one is named and put right.
+//! Order of the quaternion, unit of angles and signs: the reading of the columns that agrees best with the other signals. What is wrong
+//! is named and put right.
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use quatrack_design::model::GRAVITY_M_S2;
 
 use super::grid::Grid;
+use super::signals::{channel, correlation, turning};
+use super::units::{accelerometer, drag, gyroscope, position, velocity};
 use super::{Notes, RATE_HZ, STEP_S};
 use crate::IdentifyError;
-use crate::filter::{LowPass, derivative, median};
+use crate::filter::{LowPass, derivative};
 use crate::log::ColumnMap;
 
 /// Corner frequency of the compared signals, Hz.
 const CORNER_HZ: f64 = 4.0;
 /// By how much another reading of the columns has to fit better, in sums of five correlations.
 const CLEARLY: f64 = 0.8;
-
-/// Correlation of specific force and velocity from which the sign is wrong: drag has -0.9 and less, a flight without drag none.
-const SPEEDS_UP: f64 = 0.6;
+/// A sum of so much at least makes sense: gravity alone, upwards, has 1.
+const SENSE: f64 = 0.6;
 
 /// One reading of the attitude's columns and of the gyroscope's second one.
 struct Reading {
     name: &'static str,
     attitude: fn(&UnitQuaternion<f64>) -> UnitQuaternion<f64>,
     gyro_y: f64,
+    /// Whether the gyroscope's x and y change places.
+    exchanged: bool,
+    /// Of the accelerometer as a whole.
+    force: f64,
 }
 
-const READINGS: [Reading; 8] = [
-    Reading { name: "", attitude: |q| *q, gyro_y: 1.0 },
+const READINGS: [Reading; 10] = [
+    Reading { name: "", attitude: |q| *q, gyro_y: 1.0, exchanged: false, force: 1.0 },
     Reading {
         name: "the quaternion is scalar first, not last as the map has it: form = \"wxyz\"",
         attitude: |q| raw(q.i, q.j, q.k, q.w),
         gyro_y: 1.0,
+        exchanged: false,
+        force: 1.0,
     },
     Reading {
         name: "the quaternion is scalar last, not first as the map has it: form = \"xyzw\"",
         attitude: |q| raw(q.k, q.w, q.i, q.j),
         gyro_y: 1.0,
+        exchanged: false,
+        force: 1.0,
     },
     Reading {
         name: "the attitude turns world to body; it has to turn body to world: conjugate it",
         attitude: UnitQuaternion::inverse,
         gyro_y: 1.0,
+        exchanged: false,
+        force: 1.0,
     },
     Reading {
         name: "the attitude's pitch has the other sign (nose up positive, as in the Crazyflie's firmware): pitch_up_positive",
         attitude: pitch_mirrored,
         gyro_y: 1.0,
+        exchanged: false,
+        force: 1.0,
     },
     Reading {
         name: "the gyroscope's y has the other sign: the map's frame is x forwards, y left, z up",
         attitude: |q| *q,
         gyro_y: -1.0,
+        exchanged: false,
+        force: 1.0,
     },
     Reading {
         name: "the attitude's pitch and the gyroscope's y have the other sign (nose up positive, as in the Crazyflie's firmware)",
         attitude: pitch_mirrored,
         gyro_y: -1.0,
+        exchanged: false,
+        force: 1.0,
     },
     Reading {
         name: "the quaternion is scalar first and the gyroscope's y has the other sign",
         attitude: |q| raw(q.i, q.j, q.k, q.w),
         gyro_y: -1.0,
+        exchanged: false,
+        force: 1.0,
+    },
+    Reading {
+        name: "the gyroscope's x and y are exchanged: the map's frame is x forwards, y left, z up",
+        attitude: |q| *q,
+        gyro_y: 1.0,
+        exchanged: true,
+        force: 1.0,
+    },
+    Reading {
+        name: "the accelerometer has the other sign: at hover it shows g upwards",
+        attitude: |q| *q,
+        gyro_y: 1.0,
+        exchanged: false,
+        force: -1.0,
     },
 ];
+
+impl Reading {
+    fn gyro(&self, w: &Vector3<f64>) -> Vector3<f64> {
+        let [x, y] = if self.exchanged { [w.y, w.x] } else { [w.x, w.y] };
+        Vector3::new(x, self.gyro_y * y, w.z)
+    }
+}
 
 fn raw(w: f64, x: f64, y: f64, z: f64) -> UnitQuaternion<f64> {
     UnitQuaternion::from_quaternion(Quaternion::new(w, x, y, z))
@@ -77,142 +117,57 @@ fn pitch_mirrored(q: &UnitQuaternion<f64>) -> UnitQuaternion<f64> {
 /// # Errors
 /// [`IdentifyError::Format`] where no reading of the columns makes sense.
 pub(super) fn check(grid: &mut Grid, map: &ColumnMap, name: &str, notes: &mut Notes) -> Result<(), IdentifyError> {
-    let format = |reason: String| IdentifyError::Format { path: name.to_owned(), reason };
     accelerometer(grid, map, name, notes)?;
+    attitude(grid, map, name, notes)?;
+    position(grid, map, name, notes);
     velocity(grid, map, name, notes);
-    let acceleration = acceleration(grid);
-    let scores: Vec<f64> = READINGS.iter().map(|reading| score(grid, reading, &acceleration)).collect();
-    let (best, score) = scores.iter().enumerate().fold((0, f64::NEG_INFINITY), |best, (i, score)| {
-        // The map's own reading wins ties.
-        if *score > best.1 + if i == 0 { 0.0 } else { 1e-6 } { (i, *score) } else { best }
-    });
-    if score < 0.6 {
-        return Err(format(format!(
-            "attitude, gyroscope and accelerometer contradict each other in every reading of the columns (best sum of correlations {score:.1} of 5); check the map's columns, or whether the craft flies in this log"
-        )));
-    }
-    if best != 0 && score > scores[0] + CLEARLY {
-        let reading = &READINGS[best];
-        notes.0.push(format!("{name}: attitude: {}; taken so", reading.name));
-        grid.attitude.iter_mut().for_each(|q| *q = (reading.attitude)(q));
-        grid.gyro.iter_mut().for_each(|w| w.y *= reading.gyro_y);
-    }
     gyroscope(grid, map, name, notes);
     drag(grid, name, notes);
     Ok(())
 }
 
-/// At rest and in flight the median of its size is g.
-fn accelerometer(grid: &mut Grid, map: &ColumnMap, name: &str, notes: &mut Notes) -> Result<(), IdentifyError> {
-    let sizes: Vec<f64> =
-        grid.specific_force.iter().zip(&grid.on_board).filter(|(_, good)| **good).map(|(f, _)| f.norm()).collect();
-    let size = median(&sizes) / GRAVITY_M_S2;
-    let fits = |factor: f64| (0.8..1.25).contains(&(size * factor));
-    if fits(1.0) {
+/// The reading that fits best, where it does so clearly.
+fn attitude(grid: &mut Grid, map: &ColumnMap, name: &str, notes: &mut Notes) -> Result<(), IdentifyError> {
+    let acceleration = acceleration(grid);
+    let bases = [Some(&grid.attitude), grid.other_unit.as_ref().map(|(_, attitude)| attitude)];
+    let mut best = (f64::NEG_INFINITY, 0, 0);
+    let mut own = f64::NEG_INFINITY;
+    for (b, base) in bases.iter().enumerate() {
+        let Some(base) = base else { continue };
+        for (r, reading) in READINGS.iter().enumerate() {
+            let score = score(grid, base, reading, &acceleration);
+            if (b, r) == (0, 0) {
+                own = score;
+            }
+            // The map's own reading wins ties.
+            if score > best.0 + 1e-6 {
+                best = (score, b, r);
+            }
+        }
+    }
+    let (score, base, reading) = (best.0, best.1, &READINGS[best.2]);
+    if score < SENSE {
+        let reason = format!(
+            "attitude, gyroscope and accelerometer contradict each other in every reading of the columns (best sum of correlations \
+             {score:.1} of 5); check the map's columns, or whether the craft flies in this log"
+        );
+        return Err(IdentifyError::Format { path: name.to_owned(), reason });
+    }
+    if (base, best.2) == (0, 0) || score <= own + CLEARLY {
         return Ok(());
     }
-    let mapped = crate::log_scale(&map.accelerometer.unit).unwrap_or(1.0);
-    for unit in ["m/s^2", "g", "mg"] {
-        let factor = crate::log_scale(unit).unwrap_or(1.0) / mapped;
-        if fits(factor) {
-            notes.0.push(format!(
-                "{name}: accelerometer: its columns are in {unit}, not in {} as the map has it: at hover they would show {size:.3} g; taken so",
-                map.accelerometer.unit
-            ));
-            grid.specific_force.iter_mut().for_each(|f| *f *= factor);
-            return Ok(());
-        }
+    if let (1, Some((unit, attitude))) = (base, grid.other_unit.take()) {
+        let said = map.attitude.unit.as_deref().unwrap_or("deg");
+        notes.0.push(format!("{name}: attitude: its angles are in {unit}, not in {said} as the map has it; taken so"));
+        grid.attitude = attitude;
     }
-    let reason = format!(
-        "accelerometer: {size:.3} g is the median of its size, in no unit that is known; at hover it shows g upwards, gravity included"
-    );
-    Err(IdentifyError::Format { path: name.to_owned(), reason })
-}
-
-/// Against the derivative of the position.
-fn velocity(grid: &mut Grid, map: &ColumnMap, name: &str, notes: &mut Notes) {
-    if !grid.has_velocity || grid.position.is_empty() {
-        return;
+    if !reading.name.is_empty() {
+        notes.0.push(format!("{name}: {}; taken so", reading.name));
     }
-    let low = LowPass::new(CORNER_HZ, RATE_HZ);
-    let (mut dot, mut square) = (0.0, 0.0);
-    for axis in 0..3 {
-        let slope = derivative(&low.both_ways(&channel(&grid.position, axis)), STEP_S);
-        let own = low.both_ways(&channel(&grid.velocity, axis));
-        for i in (0..grid.len()).filter(|i| grid.pose[*i]) {
-            dot += slope[i] * own[i];
-            square += slope[i] * slope[i];
-        }
-    }
-    let gain = dot / square.max(1e-12);
-    let right = [1e3, 1e-3, -1.0].into_iter().find(|factor| (0.6..1.6).contains(&(gain / factor)));
-    if let Some(factor) = right {
-        let unit = map.velocity.as_ref().map_or("", |v| v.unit.as_str());
-        notes.0.push(format!(
-            "{name}: velocity: {gain:.3} times the position's rate of change: not in {unit} as the map has it; divided by {factor}"
-        ));
-        grid.velocity.iter_mut().for_each(|v| *v /= factor);
-    }
-}
-
-/// Against the turning of the attitude.
-fn gyroscope(grid: &mut Grid, map: &ColumnMap, name: &str, notes: &mut Notes) {
-    let low = LowPass::new(CORNER_HZ, RATE_HZ);
-    let turning = turning(&grid.attitude);
-    let (mut dot, mut square) = (0.0, 0.0);
-    for axis in 0..2 {
-        let (own, turn) = (low.both_ways(&channel(&grid.gyro, axis)), low.both_ways(&channel(&turning, axis)));
-        for i in (0..grid.len()).filter(|i| grid.pose[*i] && grid.on_board[*i]) {
-            dot += own[i] * turn[i];
-            square += turn[i] * turn[i];
-        }
-    }
-    let gain = dot / square.max(1e-12);
-    let degree = 1_f64.to_radians();
-    for (factor, unit) in [(degree, "deg/s"), (1.0 / degree, "rad/s"), (1e-3, "mrad/s"), (1e3, "rad/s")] {
-        if (0.3..3.0).contains(&(gain * factor)) && !(0.3..3.0).contains(&gain) {
-            notes.0.push(format!(
-                "{name}: gyroscope: {gain:.3} times the attitude's rate of turn: its columns are in {unit}, not in {} as the map has it; taken so",
-                map.gyroscope.unit
-            ));
-            grid.gyro.iter_mut().for_each(|w| *w *= factor);
-            return;
-        }
-    }
-}
-
-/// Air slows a craft down: the specific force across the thrust is against the velocity.
-fn drag(grid: &mut Grid, name: &str, notes: &mut Notes) {
-    let low = LowPass::new(CORNER_HZ, RATE_HZ);
-    let world: Vec<Vector3<f64>> = if grid.has_velocity {
-        grid.velocity.clone()
-    } else {
-        let axes = [0, 1, 2].map(|axis| derivative(&low.both_ways(&channel(&grid.position, axis)), STEP_S));
-        (0..grid.len()).map(|i| Vector3::new(axes[0][i], axes[1][i], axes[2][i])).collect()
-    };
-    let body: Vec<Vector3<f64>> =
-        grid.attitude.iter().zip(&world).map(|(q, v)| q.inverse_transform_vector(v)).collect();
-    let good: Vec<usize> = (0..grid.len()).filter(|i| grid.pose[*i] && grid.on_board[*i]).collect();
-    for axis in 0..2 {
-        let (felt, moved) = (low.both_ways(&channel(&grid.specific_force, axis)), low.both_ways(&channel(&body, axis)));
-        if correlation(&good, &felt, &moved) > SPEEDS_UP {
-            notes.0.push(format!(
-                "{name}: accelerometer: its {} has the other sign: it shows a drag that speeds up; turned round",
-                ["x", "y"][axis]
-            ));
-            grid.specific_force.iter_mut().for_each(|f| f[axis] = -f[axis]);
-        }
-    }
-}
-
-/// Over the points that are good.
-fn correlation(good: &[usize], a: &[f64], b: &[f64]) -> f64 {
-    let mean = |x: &[f64]| good.iter().map(|i| x[*i]).sum::<f64>() / good.len().max(1) as f64;
-    let (a_mean, b_mean) = (mean(a), mean(b));
-    let sum = |f: &dyn Fn(usize) -> f64| good.iter().map(|i| f(*i)).sum::<f64>();
-    let ab = sum(&|i| (a[i] - a_mean) * (b[i] - b_mean));
-    let (aa, bb) = (sum(&|i| (a[i] - a_mean).powi(2)), sum(&|i| (b[i] - b_mean).powi(2)));
-    ab / (aa * bb).sqrt().max(1e-12)
+    grid.attitude.iter_mut().for_each(|q| *q = (reading.attitude)(q));
+    grid.gyro.iter_mut().for_each(|w| *w = reading.gyro(w));
+    grid.specific_force.iter_mut().for_each(|f| *f *= reading.force);
+    Ok(())
 }
 
 /// Acceleration in the world frame, low-passed.
@@ -228,41 +183,27 @@ fn acceleration(grid: &Grid) -> [Vec<f64>; 2] {
 }
 
 /// Correlations of the two turning rates and of the two horizontal accelerations, and how much of the specific force is upwards.
-fn score(grid: &Grid, reading: &Reading, acceleration: &[Vec<f64>; 2]) -> f64 {
+fn score(grid: &Grid, attitude: &[UnitQuaternion<f64>], reading: &Reading, acceleration: &[Vec<f64>; 2]) -> f64 {
     let low = LowPass::new(CORNER_HZ, RATE_HZ);
-    let attitude: Vec<UnitQuaternion<f64>> = grid.attitude.iter().map(reading.attitude).collect();
+    let attitude: Vec<UnitQuaternion<f64>> = attitude.iter().map(reading.attitude).collect();
     let turning = turning(&attitude);
-    let felt: Vec<Vector3<f64>> = attitude.iter().zip(&grid.specific_force).map(|(q, f)| q * f).collect();
-    let good: Vec<usize> = (0..grid.len()).filter(|i| grid.pose[*i] && grid.on_board[*i]).collect();
+    let felt: Vec<Vector3<f64>> =
+        attitude.iter().zip(&grid.specific_force).map(|(q, f)| q * f * reading.force).collect();
+    let gyro: Vec<Vector3<f64>> = grid.gyro.iter().map(|w| reading.gyro(w)).collect();
+    let good = grid.good();
     let mut total = good.iter().map(|i| felt[*i].z / felt[*i].norm().max(1e-9)).sum::<f64>() / good.len().max(1) as f64;
     for (axis, acceleration) in acceleration.iter().enumerate() {
-        let sign = if axis == 1 { reading.gyro_y } else { 1.0 };
-        let own: Vec<f64> = low.both_ways(&channel(&grid.gyro, axis)).into_iter().map(|w| sign * w).collect();
+        let own = low.both_ways(&channel(&gyro, axis));
         total += correlation(&good, &own, &low.both_ways(&channel(&turning, axis)));
         total += correlation(&good, &low.both_ways(&channel(&felt, axis)), acceleration);
     }
     total
 }
 
-/// Body rates that an attitude turns by, rad/s.
-pub(super) fn turning(attitude: &[UnitQuaternion<f64>]) -> Vec<Vector3<f64>> {
-    let n = attitude.len();
-    (0..n)
-        .map(|i| {
-            let (low, high) = (i.saturating_sub(1), (i + 1).min(n - 1));
-            let span_s = (high - low).max(1) as f64 * STEP_S;
-            (attitude[low].inverse() * attitude[high]).scaled_axis() / span_s
-        })
-        .collect()
-}
-
-/// One axis of a series of vectors.
-pub(super) fn channel(vectors: &[Vector3<f64>], axis: usize) -> Vec<f64> {
-    vectors.iter().map(|v| v[axis]).collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use quatrack_design::model::GRAVITY_M_S2;
+
     use super::*;
     use crate::flight::{Flight, prepare};
     use crate::log::{RawLog, Row, cflib_csv, parse_csv};
@@ -319,7 +260,25 @@ mod tests {
         let times = |column: &'static str, factor: f64| {
             move |log: &mut RawLog| log.series.get_mut(column).unwrap().values.iter_mut().for_each(|v| *v *= factor)
         };
-        let cases: [(&str, Flight); 6] = [
+        let exchanged = |log: &mut RawLog| {
+            let [x, y] = ["gyro.x", "gyro.y"].map(|name| log.series.remove(name).unwrap());
+            log.series.insert("gyro.x".to_owned(), y);
+            log.series.insert("gyro.y".to_owned(), x);
+        };
+        let negated = |log: &mut RawLog| {
+            for name in ["acc.x", "acc.y", "acc.z"] {
+                times(name, -1.0)(log);
+            }
+        };
+        let metres = |log: &mut RawLog| {
+            for name in ["stateEstimate.x", "stateEstimate.y", "stateEstimate.z"] {
+                times(name, 1e3)(log);
+            }
+        };
+        let cases: [(&str, Flight); 9] = [
+            ("gyroscope's x and y are exchanged", prepared(&rows, exchanged, MAP)),
+            ("accelerometer has the other sign", prepared(&rows, negated, MAP)),
+            ("its columns are in mm, not in m", prepared(&rows, metres, MAP)),
             ("in deg/s, not in rad/s", prepared(&rows, |_| {}, &MAP.replace("deg/s", "rad/s"))),
             ("in g, not in m/s^2", prepared(&rows, |_| {}, &MAP.replace("\"g\"", "\"m/s^2\""))),
             ("scalar last, not first", prepared(&rows, |_| {}, &MAP.replace("xyzw", "wxyz"))),

@@ -13,6 +13,8 @@ pub(super) struct Stream {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Removed {
     pub(super) missing: usize,
+    /// At the time of the one before, or earlier.
+    pub(super) stamps: usize,
     pub(super) out_of_range: usize,
     pub(super) outliers: usize,
     pub(super) repeats: usize,
@@ -23,6 +25,8 @@ pub(super) struct Removed {
 const CODES: [f64; 6] = [-999.0, -9999.0, 999_999.0, -999_999.0, 4_294_967_295.0, -2_147_483_648.0];
 /// A repeat of more samples than this is a value that rests.
 const LONGEST_REPEAT: usize = 2;
+/// A gyroscope that shows the same for more samples does not measure.
+const LONGEST_REST: usize = 20;
 /// Neighbours of a value out of range were interpolated from it.
 const SPOILT: usize = 2;
 
@@ -36,10 +40,12 @@ impl Stream {
         for i in 0..count {
             let missing = !self.times_s[i].is_finite()
                 || self.channels.iter().any(|channel| !channel[i].is_finite() || CODES.contains(&channel[i]));
-            // A clock that jumps back is no clock.
-            if missing || self.times_s[i] <= latest {
+            if missing {
                 keep[i] = false;
                 removed.missing += 1;
+            } else if self.times_s[i] <= latest {
+                keep[i] = false;
+                removed.stamps += 1;
             } else {
                 latest = self.times_s[i];
             }
@@ -63,7 +69,7 @@ impl Stream {
         (kept.only(&keep), removed)
     }
 
-    fn only(&self, keep: &[bool]) -> Self {
+    pub(super) fn only(&self, keep: &[bool]) -> Self {
         let of = |values: &[f64]| values.iter().zip(keep).filter(|(_, keep)| **keep).map(|(value, _)| *value).collect();
         Self { times_s: of(&self.times_s), channels: self.channels.iter().map(|channel| of(channel)).collect() }
     }
@@ -85,6 +91,23 @@ impl Stream {
             }
         }
         keep
+    }
+
+    /// Without stretches in which nothing changes for longer than a sensor with noise can be: a logger has stood still there. With how
+    /// many samples those have.
+    pub(super) fn without_frozen(&self) -> (Self, usize) {
+        let count = self.times_s.len();
+        let same = |i: usize| i > 0 && self.channels.iter().all(|channel| channel[i] == channel[i - 1]);
+        let mut keep = vec![true; count];
+        let mut i = 0;
+        while i < count {
+            let end = (i + 1..count).find(|k| !same(*k)).unwrap_or(count);
+            if end - i > LONGEST_REST {
+                keep[i..end].iter_mut().for_each(|keep| *keep = false);
+            }
+            i = end;
+        }
+        (self.only(&keep), keep.iter().filter(|keep| !**keep).count())
     }
 
     fn without_repeats(&self) -> Vec<bool> {

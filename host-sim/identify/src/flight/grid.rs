@@ -2,10 +2,11 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
-use super::clean::{Removed, Stream};
+use super::clean::Stream;
+use super::streams::{Streams, si};
 use super::{Notes, RATE_HZ, STEP_S};
 use crate::IdentifyError;
-use crate::log::{ColumnMap, RawLog, Series};
+use crate::log::{ColumnMap, RawLog};
 
 /// A gap that a line may bridge, s.
 const BRIDGED_S: f64 = 0.055;
@@ -19,6 +20,8 @@ pub(super) struct Grid {
     pub(super) position: Vec<Vector3<f64>>,
     pub(super) velocity: Vec<Vector3<f64>>,
     pub(super) attitude: Vec<UnitQuaternion<f64>>,
+    /// Of angles: what the attitude is where they are in the other unit, which is named.
+    pub(super) other_unit: Option<(&'static str, Vec<UnitQuaternion<f64>>)>,
     pub(super) gyro: Vec<Vector3<f64>>,
     pub(super) specific_force: Vec<Vector3<f64>>,
     pub(super) commands: [Vec<f64>; 4],
@@ -30,143 +33,11 @@ pub(super) struct Grid {
     pub(super) has_velocity: bool,
 }
 
-struct Reader<'a> {
-    log: &'a RawLog,
-    /// Times of the rows of a table, s.
-    times_s: Option<Vec<f64>>,
-    notes: &'a mut Notes,
-}
-
-impl Reader<'_> {
-    fn series(&self, column: &str, quantity: &'static str) -> Result<(Vec<f64>, &Series), IdentifyError> {
-        let series = self.log.series.get(column).ok_or_else(|| {
-            let names: Vec<&str> = self.log.series.keys().take(8).map(String::as_str).collect();
-            let present = if self.log.series.len() > 8 { names.join(", ") + ", .." } else { names.join(", ") };
-            IdentifyError::Column { path: self.log.name.clone(), column: column.to_owned(), quantity, present }
-        })?;
-        let times_s = match &self.times_s {
-            Some(times_s) => times_s.clone(),
-            None => series.times.iter().map(|time_ms| 1e-3 * time_ms).collect(),
-        };
-        Ok((times_s, series))
-    }
-
-    fn stream(&self, columns: &[String], scale: f64, quantity: &'static str) -> Result<Stream, IdentifyError> {
-        let mut stream = Stream::default();
-        for column in columns {
-            let (times_s, series) = self.series(column, quantity)?;
-            if stream.times_s.is_empty() {
-                stream.times_s = times_s;
-            }
-            if series.values.len() != stream.times_s.len() {
-                let reason =
-                    format!("{column} has another number of samples than {}; log them in one event", columns[0]);
-                return Err(IdentifyError::Format { path: self.log.name.clone(), reason });
-            }
-            stream.channels.push(series.values.iter().map(|value| scale * value).collect());
-        }
-        Ok(stream)
-    }
-
-    fn clean(
-        &mut self,
-        stream: Stream,
-        range: [f64; 2],
-        outliers: bool,
-        quantity: &str,
-    ) -> Result<Stream, IdentifyError> {
-        let (clean, Removed { missing, out_of_range, outliers, repeats, of }) = stream.cleaned(range, outliers);
-        let name = &self.log.name;
-        if out_of_range > 0 || outliers > 0 {
-            self.notes.0.push(format!(
-                "{name}: {quantity}: {out_of_range} samples out of range and {outliers} outliers of {of} left out"
-            ));
-        }
-        // Where two blocks share a file, half of the cells of each are empty.
-        if missing * 50 > of && missing * 3 < of {
-            self.notes.0.push(format!("{name}: {quantity}: {missing} of {of} samples missing"));
-        }
-        if repeats * 100 > of {
-            self.notes.0.push(format!(
-                "{name}: {quantity}: {:.0} % of the samples are repeats",
-                100.0 * repeats as f64 / of as f64
-            ));
-        }
-        if out_of_range * 20 > of {
-            let reason = format!(
-                "{quantity}: {out_of_range} of {of} samples are out of range ({} to {}); check the map's columns and units, or leave this log out",
-                range[0], range[1]
-            );
-            return Err(IdentifyError::Format { path: name.clone(), reason });
-        }
-        if clean.times_s.len() < 100 {
-            let reason = format!("{quantity}: {} good samples; 100 are the least", clean.times_s.len());
-            return Err(IdentifyError::Format { path: name.clone(), reason });
-        }
-        Ok(clean)
-    }
-}
-
-/// SI of a unit that the map has checked.
-fn si(unit: &str) -> f64 {
-    crate::log_scale(unit).unwrap_or(1.0)
-}
-
 impl Grid {
     /// The grid of a log by a map.
     pub(super) fn of(log: &RawLog, map: &ColumnMap, notes: &mut Notes) -> Result<Self, IdentifyError> {
-        let times_s = match (&map.time, log.timed) {
-            (_, true) => None,
-            (Some(time), false) => {
-                let missing = |present: String| IdentifyError::Column {
-                    path: log.name.clone(),
-                    column: time.column.clone(),
-                    quantity: "time",
-                    present,
-                };
-                let column = log
-                    .series
-                    .get(&time.column)
-                    .ok_or_else(|| missing(log.series.keys().take(8).cloned().collect::<Vec<_>>().join(", ")))?;
-                Some(column.values.iter().map(|value| si(&time.unit) * value).collect())
-            }
-            (None, false) => {
-                let reason =
-                    "this log is a table and the map has no [time]; only a micro SD deck's log goes without".to_owned();
-                return Err(IdentifyError::Format { path: log.name.clone(), reason });
-            }
-        };
-        let mut reader = Reader { log, times_s, notes };
-        const ANY: [f64; 2] = [-1e9, 1e9];
-        let gyro = reader.stream(&map.gyroscope.columns, si(&map.gyroscope.unit), "the gyroscope")?;
-        let gyro = reader.clean(gyro, ANY, true, "gyroscope")?;
-        let force = reader.stream(&map.accelerometer.columns, si(&map.accelerometer.unit), "the accelerometer")?;
-        let force = reader.clean(force, ANY, false, "accelerometer")?;
-        let motors = reader.stream(&map.motors.columns, 1.0 / map.motors.full, "the motor commands")?;
-        let motors = reader.clean(motors, [0.0, 1.0 + 1e-6], false, "motor commands")?;
-        let attitude = reader.stream(&map.attitude.columns, 1.0, "the attitude")?;
-        let attitude = reader.clean(attitude, ANY, false, "attitude")?;
-        let position = match &map.position {
-            Some(vector) => Some(reader.stream(&vector.columns, si(&vector.unit), "the position")?),
-            None => None,
-        };
-        let position = position.map(|stream| reader.clean(stream, ANY, true, "position")).transpose()?;
-        // A velocity that the map names and the log does not have is had from the position.
-        let velocity = map.velocity.as_ref().and_then(|v| reader.stream(&v.columns, si(&v.unit), "the velocity").ok());
-        let velocity = velocity.map(|stream| reader.clean(stream, ANY, false, "velocity")).transpose()?;
-        if velocity.is_none() && position.is_none() {
-            let reason = "neither velocity nor position: log one of them".to_owned();
-            return Err(IdentifyError::Format { path: log.name.clone(), reason });
-        }
-        let voltage = map
-            .voltage
-            .as_ref()
-            .and_then(|v| reader.stream(std::slice::from_ref(&v.column), si(&v.unit), "the voltage").ok());
-        let voltage =
-            voltage.map(|stream| stream.cleaned([0.5, 100.0], false).0).filter(|stream| stream.times_s.len() > 1);
-        let estimate = map.estimate.as_ref().and_then(|v| reader.stream(&v.columns, si(&v.unit), "the estimate").ok());
-        let estimate = estimate.map(|stream| stream.cleaned(ANY, true).0).filter(|stream| stream.times_s.len() > 100);
-
+        let Streams { gyro, force, motors, attitude, position, velocity, voltage, estimate } =
+            Streams::of(log, map, notes)?;
         let end = |of: fn(&[f64]) -> Option<f64>, all: &[&Stream]| -> Vec<f64> {
             all.iter().filter_map(|s| of(&s.times_s)).collect()
         };
@@ -182,7 +53,13 @@ impl Grid {
         let (g, g_good) = sampled(&gyro, start_s, count, BRIDGED_S);
         let (f, f_good) = sampled(&force, start_s, count, BRIDGED_S);
         let (m, m_good) = sampled(&motors, start_s, count, BRIDGED_S);
-        let (q, q_good) = sampled(&attitude_stream(attitude, map), start_s, count, BRIDGED_S);
+        let unit = map.attitude.unit.as_deref().unwrap_or("deg");
+        let (q, q_good) = sampled(&attitude_stream(&attitude, map, unit), start_s, count, BRIDGED_S);
+        // The same angles, were they in the other unit.
+        let other_unit = (attitude.channels.len() == 3).then(|| {
+            let unit = if unit == "deg" { "rad" } else { "deg" };
+            (unit, attitudes(&sampled(&attitude_stream(&attitude, map, unit), start_s, count, BRIDGED_S).0))
+        });
         let mut on_board: Vec<bool> = (0..count).map(|i| g_good[i] && f_good[i] && m_good[i]).collect();
         let mut pose = q_good;
         let vectors = |channels: &[Vec<f64>]| -> Vec<Vector3<f64>> {
@@ -190,9 +67,8 @@ impl Grid {
         };
         let mut grid = Self {
             start_s,
-            attitude: (0..count)
-                .map(|i| UnitQuaternion::from_quaternion(Quaternion::new(q[3][i], q[0][i], q[1][i], q[2][i])))
-                .collect(),
+            attitude: attitudes(&q),
+            other_unit,
             gyro: vectors(&g),
             specific_force: vectors(&f),
             commands: [0, 1, 2, 3].map(|motor| m[motor].clone()),
@@ -221,20 +97,32 @@ impl Grid {
         Ok(grid)
     }
 
-    /// The number of points.
+    /// Points where nothing is missing.
+    pub(super) fn good(&self) -> Vec<usize> {
+        (0..self.len()).filter(|i| self.pose[*i] && self.on_board[*i]).collect()
+    }
+
+    /// How many points.
     pub(super) fn len(&self) -> usize {
         self.gyro.len()
     }
 }
 
-/// Quaternions `x, y, z, w` without jumps of sign, from any form of the map.
-fn attitude_stream(stream: Stream, map: &ColumnMap) -> Stream {
+/// From `x, y, z, w` as channels.
+fn attitudes(q: &[Vec<f64>]) -> Vec<UnitQuaternion<f64>> {
+    (0..q[3].len())
+        .map(|i| UnitQuaternion::from_quaternion(Quaternion::new(q[3][i], q[0][i], q[1][i], q[2][i])))
+        .collect()
+}
+
+/// Quaternions `x, y, z, w` without jumps of sign, whatever the map's form; angles in a unit.
+fn attitude_stream(stream: &Stream, map: &ColumnMap, unit: &str) -> Stream {
     let Stream { times_s, channels } = stream;
-    let angle = map.attitude.unit.as_deref().map_or(1_f64.to_radians(), si);
+    let angle = si(unit);
     let mut out = vec![Vec::new(); 4];
     let mut before = Quaternion::identity();
     let mut rows: Vec<_> = channels.iter().map(|channel| channel.iter().copied()).collect();
-    for _ in &times_s {
+    for _ in times_s {
         let row: Vec<f64> = rows.iter_mut().filter_map(Iterator::next).collect();
         let value = |k: usize| row[k];
         let mut q = match map.attitude.form.as_str() {
@@ -253,7 +141,7 @@ fn attitude_stream(stream: Stream, map: &ColumnMap) -> Stream {
             out.push(value);
         }
     }
-    Stream { times_s, channels: out }
+    Stream { times_s: times_s.clone(), channels: out }
 }
 
 /// A stream on the grid, by a line between samples; where samples are denser than the grid, by the mean of a step. With where it

@@ -1,11 +1,17 @@
 //! A flight on one even grid: a log's series in; checked, cleaned and aligned signals in SI, cut where the craft flies, out.
 //!
 //! ```text
-//! sections   the parts in which it flies and nothing is missing
-//!   align    the shift between the on-board streams and the pose
-//!     check  units and signs against each other
+//! sections   stretches in the air without a gap
+//!   motors   whether their columns are in order
+//!   tilt     errors of an estimator, mended
+//!     inertial  attitude and velocity by gyroscope, accelerometer and position together
+//!     align  the shift between the on-board streams and the pose
+//!     check  which reading of the attitude agrees with the other signals
+//!       units  units and signs of the others
+//!         signals  correlation and gain of two signals
 //!       grid   one grid of 100 Hz
-//!         clean  codes, outliers, repeats
+//!         streams  which column holds what, in which unit
+//!           clean  codes, outliers, repeats
 //! copies     files that hold the same flight
 //! ```
 
@@ -14,7 +20,13 @@ mod check;
 mod clean;
 mod copies;
 mod grid;
+mod inertial;
+mod motors;
 mod sections;
+mod signals;
+mod streams;
+mod tilt;
+mod units;
 
 use nalgebra::{UnitQuaternion, Vector3};
 

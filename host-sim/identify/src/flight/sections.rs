@@ -1,11 +1,13 @@
 //! Where a craft flies: a log and a map in; a flight cut into parts without a gap out.
 
-use nalgebra::{UnitQuaternion, Vector3};
-use quatrack_design::model::GRAVITY_M_S2;
+use nalgebra::Vector3;
 
 use super::align::{moved, pose_shift_s, turned};
-use super::check::{channel, check};
+use super::check::check;
 use super::grid::Grid;
+use super::motors::order;
+use super::signals::channel;
+use super::tilt::mend;
 use super::{Flight, Notes, RATE_HZ, STEP_S, Section};
 use crate::IdentifyError;
 use crate::filter::{LowPass, derivative, median};
@@ -24,10 +26,6 @@ const SHORTEST_S: f64 = 4.0;
 const VELOCITY_HZ: f64 = 8.0;
 /// The same where the log has a velocity of its own.
 const CORRECTED_HZ: f64 = 3.0;
-/// Below this, Hz, the accelerometer and the position know the tilt better than an estimator does.
-const TILT_HZ: f64 = 1.5;
-/// A tilt that is off by more, rad, is not the estimator's.
-const TILT_MOST: f64 = 0.35;
 
 /// A flight out of a log.
 ///
@@ -42,12 +40,12 @@ pub fn prepare(log: &RawLog, map: &ColumnMap) -> Result<Flight, IdentifyError> {
     let shift_s = pose_shift_s(&grid, &flying);
     grid.attitude = turned(&grid.attitude, shift_s);
     grid.velocity = moved(&grid.velocity, shift_s);
+    grid.position = moved(&grid.position, shift_s);
+    mend(&mut grid, &flying);
     if grid.position.is_empty() {
         grid.position = summed(&grid.velocity);
-    } else {
-        grid.position = moved(&grid.position, shift_s);
     }
-    tilt(&mut grid);
+    order(&mut grid, &flying, &log.name, &mut notes);
     let sections = cut(&grid, &flying);
     if sections.is_empty() {
         let reason = format!(
@@ -81,28 +79,6 @@ fn velocity(grid: &mut Grid) {
         let off: Vec<f64> = slope.iter().zip(&grid.velocity).map(|(slope, v)| slope - v[axis]).collect();
         for (v, off) in grid.velocity.iter_mut().zip(low.both_ways(&off)) {
             v[axis] += off;
-        }
-    }
-}
-
-/// Turns the attitude so that the accelerometer, low-passed, shows in the world frame the velocity's rate of change, and
-/// gravity. An estimator that does not know of drag is off by as much as the drag is of g: 7 degrees at 2 m/s.
-fn tilt(grid: &mut Grid) {
-    let low = LowPass::new(TILT_HZ, RATE_HZ);
-    let felt: Vec<Vector3<f64>> = grid.attitude.iter().zip(&grid.specific_force).map(|(q, f)| q * f).collect();
-    let [felt, due] = [0, 1].map(|k| {
-        [0, 1, 2].map(|axis| {
-            let signal = if k == 0 { channel(&felt, axis) } else { derivative(&channel(&grid.velocity, axis), STEP_S) };
-            low.both_ways(&signal)
-        })
-    });
-    for i in 0..grid.len() {
-        let felt = Vector3::new(felt[0][i], felt[1][i], felt[2][i]);
-        let due = Vector3::new(due[0][i], due[1][i], due[2][i] + GRAVITY_M_S2);
-        let turn = felt.cross(&due) / (felt.norm() * due.norm()).max(1e-6);
-        // At rest on the floor or in a fall there is nothing to turn by.
-        if turn.norm() < TILT_MOST {
-            grid.attitude[i] = UnitQuaternion::from_scaled_axis(turn) * grid.attitude[i];
         }
     }
 }

@@ -140,6 +140,10 @@ impl ColumnMap {
                 return Err(error(format!("attitude: form = \"{other}\"; xyzw, wxyz and roll-pitch-yaw are known")));
             }
         };
+        let angle = map.attitude.unit.as_deref();
+        if angle.is_some_and(|unit| !["deg", "rad"].contains(&unit)) {
+            return Err(error(format!("attitude: unit = \"{}\"; deg and rad are known", angle.unwrap_or_default())));
+        }
         if map.attitude.columns.len() != count {
             let is = map.attitude.columns.len();
             return Err(error(format!("attitude: {is} columns; the form {} has {count}", map.attitude.form)));

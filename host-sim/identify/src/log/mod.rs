@@ -1,7 +1,8 @@
 //! A log as it was recorded: named series of times and values out of a file; by a map of columns, the quantities of a flight in SI.
 //!
 //! ```text
-//! map         columns to quantities and their units; three that are built in
+//! takes       flights that share a file
+//! map         which columns hold what, in which unit; three that are built in
 //! record      a log out of rows
 //! table       CSV, plain or compressed      deck   the micro SD deck's binary log
 //!   series    times and values by name
@@ -12,9 +13,10 @@ mod map;
 mod record;
 mod series;
 mod table;
+mod takes;
 
 pub use map::ColumnMap;
-pub(crate) use map::scale;
+pub(crate) use map::{Scalar, Vector, scale};
 pub use record::{Row, cflib_csv};
 pub use series::{RawLog, Series};
 

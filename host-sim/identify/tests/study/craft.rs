@@ -1,6 +1,7 @@
 //! A random craft with its flight: a seed in; scenario, truth and log out.
 
 use nalgebra::Vector3;
+use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_identify::log::Row;
 use quatrack_plan::trajectory::fifth_order::{FifthOrder, FlatTrajectory};
 use quatrack_simulation::scenario::course::Flown;
@@ -92,16 +93,23 @@ impl Craft {
                 (Some(force), true) => force.full_n,
                 _ => motors.thrust_max_n,
             };
+        // Without a battery the plant's force is in proportion to its command.
+        let command_power =
+            vehicle.flown().force.as_ref().filter(|_| on_battery).map_or(1.0, |force| force.command_power);
+        let hover = (0.25 * mass_kg * GRAVITY_M_S2 / full_n).powf(1.0 / command_power);
         let truth = vec![
             ("lag_ms", lag_ms),
             ("delay_ms", delay_ms + 1e3 * (late_s[1] - late_s[0])),
             ("inertia_x_kg_m2", inertia[0]),
             ("inertia_y_kg_m2", inertia[1]),
+            ("inertia_z_kg_m2", inertia_factor * vehicle.inertia_kg_m2()[(2, 2)]),
             ("drag_x_per_s", drag[0] * over),
             ("drag_y_per_s", drag[1] * over),
             ("moment_x_n_m_per_m_s", moment[0]),
             ("moment_y_n_m_per_m_s", moment[1]),
             ("thrust_full_n", full_n),
+            ("command_power", command_power),
+            ("hover_command", hover),
         ];
         let mut corners = Vec::new();
         for _ in 0..20 {

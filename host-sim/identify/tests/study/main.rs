@@ -3,6 +3,7 @@
 //! ```sh
 //! cargo test --release -p quatrack-identify --test study -- --nocapture                        # 12 crafts
 //! cargo test --release -p quatrack-identify --test study -- --nocapture --ignored two_hundred  # others
+//! cargo test --release -p quatrack-identify --test study -- --nocapture --ignored fresh        # 30 others
 //! cargo test --release -p quatrack-identify --test study -- --nocapture --ignored stage        # stage by stage
 //! ```
 //!
@@ -151,12 +152,21 @@ fn hold(tallies: &BTreeMap<&'static str, Tally>) {
         let most = match *figure {
             "delay_ms" => 0.02,
             "thrust_full_n" => 0.03,
+            // The thrust that carries the craft, by its command.
+            "hover_command" => 0.01,
+            // No flight of the study turns the heading on purpose.
+            "inertia_z_kg_m2" => 0.1,
             _ => 0.05,
         };
         assert!(error < most, "{figure}: median error {error}");
         let flown = tally.errors.len() + tally.refused;
         assert!(tally.inside * 10 >= 9 * tally.errors.len(), "{figure}: {} of {flown} inside", tally.inside);
-        assert!(tally.errors.len() * 10 >= 9 * flown, "{figure}: {} of {flown} told", tally.errors.len());
+        let must_be_told = *figure != "inertia_z_kg_m2";
+        assert!(
+            !must_be_told || tally.errors.len() * 10 >= 9 * flown,
+            "{figure}: {} of {flown} told",
+            tally.errors.len()
+        );
     }
 }
 
@@ -170,9 +180,15 @@ fn a_dozen_random_crafts_are_known_again() {
 }
 
 #[test]
+#[ignore = "30 flights of a minute"]
+fn a_fresh_sample_is_known_again() {
+    hold(&study("fresh", 100..100 + count(30), &ALL));
+}
+
+#[test]
 #[ignore = "200 flights of a minute"]
 fn two_hundred_random_crafts_are_known_again() {
-    hold(&study("study", 100..100 + count(200), &ALL));
+    hold(&study("study", 1000..1000 + count(200), &ALL));
 }
 
 #[test]

@@ -64,16 +64,22 @@ pub(super) struct AirEntry {
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RegionEntry {
-    pub(super) motor_lag_ms: [f64; 2],
-    #[serde(default)]
-    pub(super) mass_percent: f64,
-    #[serde(default)]
-    pub(super) inertia_percent: f64,
-    #[serde(default)]
-    pub(super) delay_ms: f64,
+    pub(super) from: Option<RegionSource>,
+    pub(super) motor_lag_ms: Option<[f64; 2]>,
+    pub(super) mass_percent: Option<f64>,
+    pub(super) inertia_percent: Option<f64>,
+    pub(super) delay_ms: Option<f64>,
     pub(super) force_percent: Option<[f64; 2]>,
     pub(super) drag_per_s: Option<f64>,
     pub(super) moment_n_m_per_m_s: Option<[f64; 2]>,
+}
+
+/// Where a region is taken from as far as its own keys do not say it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum RegionSource {
+    /// The intervals of the vehicle's file.
+    Identified,
 }
 
 /// Diagonal weights of errors and inputs, by group.

@@ -47,7 +47,7 @@ pub(crate) use check::Comparison;
 pub use check::{Checked, Failed, check_design, check_folder, designs};
 pub use course::OnBoardTrajectory;
 pub use curves::{CutLoop, LoopCurves, StepResponse};
-pub use design::{Design, Method, Problem};
+pub use design::{Design, IdentifiedBound, Method, Problem};
 pub use designed::{Designed, Poles};
 pub use error::GainsError;
 pub use export::{Export, Matrix};

@@ -22,6 +22,9 @@ pub struct CascadeRegion {
     /// Inertias over those told; of roll, pitch and yaw over the motors' learned share, which is inertia
     /// over mass.
     pub inertia_factors: Vec<f64>,
+    /// The same about yaw, where others are looked at there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yaw_inertia_factors: Option<Vec<f64>>,
     /// Forces over commands, of the thrust.
     pub command_factors: Vec<f64>,
     /// Forces over commands of roll, pitch and yaw, over the motors' learned share: 1 after some seconds of
@@ -75,7 +78,12 @@ impl CascadeRegion {
     /// The same before the craft has learned its motors' share: torques are 70 to 105 % of their command, the inertia
     /// is as told.
     pub fn before_its_motors_are_seen(&self) -> Self {
-        Self { inertia_factors: vec![1.0], torque_factors: vec![0.7, 0.85, 1.05], ..self.clone() }
+        Self {
+            inertia_factors: vec![1.0],
+            yaw_inertia_factors: None,
+            torque_factors: vec![0.7, 0.85, 1.05],
+            ..self.clone()
+        }
     }
 
     /// Motors between two lags, and nothing else.
@@ -87,6 +95,7 @@ impl CascadeRegion {
             lags_s: (0..=STEPS).map(|k| shortest_s * ratio.powf(f64::from(k) / f64::from(STEPS))).collect(),
             mass_factors: one.clone(),
             inertia_factors: one.clone(),
+            yaw_inertia_factors: None,
             command_factors: one.clone(),
             torque_factors: one.clone(),
             delays_s: vec![0.0],
@@ -104,7 +113,11 @@ impl CascadeRegion {
         let tilt = matches!(chain, CascadeChain::X | CascadeChain::Y);
         let height = chain == CascadeChain::Z;
         let masses = if height { &self.mass_factors[..] } else { &one };
-        let inertias = if height { &one } else { &self.inertia_factors[..] };
+        let inertias = match (chain, &self.yaw_inertia_factors) {
+            (CascadeChain::Z, _) => &one,
+            (CascadeChain::Yaw, Some(factors)) => &factors[..],
+            _ => &self.inertia_factors[..],
+        };
         let (drags, believed) = if tilt || height {
             (&self.drags_per_s[..], &self.believed_drags_per_s[..])
         } else {

@@ -29,6 +29,9 @@ pub struct CascadeBounds {
     pub mass_share: f64,
     /// The same of its inertia.
     pub inertia_share: f64,
+    /// The same about yaw, where another is known of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub yaw_inertia_share: Option<f64>,
     /// Least and most force of a motor over its command.
     pub force_share: [f64; 2],
     /// Longest delay of commands, s.
@@ -76,6 +79,7 @@ impl CascadeBounds {
         CascadeRegion {
             mass_factors: around(self.mass_share),
             inertia_factors: around(self.inertia_share),
+            yaw_inertia_factors: self.yaw_inertia_share.map(around),
             command_factors: self.force_share.to_vec(),
             delays_s: up_to(self.delay_s),
             drags_per_s: up_to(self.drag_per_s),

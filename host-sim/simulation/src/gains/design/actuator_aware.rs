@@ -33,22 +33,23 @@ pub(super) fn actuator_aware(file: &DesignFile, weights: &Weights) -> Result<Pro
     lag("motor_lag_ms", lag_ms)?;
     let example = "[region] with motor_lag_ms = [50.0, 126.0]";
     let region = file.region.ok_or_else(|| missing("[region]", here, example))?;
-    let [shortest, longest] = region.motor_lag_ms;
+    if region.from.is_some() {
+        return Err(misplaced("region.from", &"\"identified\"", here));
+    }
+    let lags_ms = region.motor_lag_ms.ok_or_else(|| missing("region.motor_lag_ms", here, example))?;
+    let [shortest, longest] = lags_ms;
     lag("region.motor_lag_ms", shortest)?;
     lag("region.motor_lag_ms", longest)?;
     check(shortest <= longest, "region.motor_lag_ms", longest, format!("at least the first, {shortest}"))?;
     let percent = |key: &str, value: f64| {
         check((0.0..=MOST_PERCENT).contains(&value), key, value, format!("from 0 to {MOST_PERCENT}"))
     };
-    percent("region.mass_percent", region.mass_percent)?;
-    percent("region.inertia_percent", region.inertia_percent)?;
-    let delays = 0.0..=LONGEST_DELAY_MS;
-    check(
-        delays.contains(&region.delay_ms),
-        "region.delay_ms",
-        region.delay_ms,
-        format!("from 0 to {LONGEST_DELAY_MS}"),
-    )?;
+    let [mass_percent, inertia_percent, delay_ms] =
+        [region.mass_percent, region.inertia_percent, region.delay_ms].map(Option::unwrap_or_default);
+    percent("region.mass_percent", mass_percent)?;
+    percent("region.inertia_percent", inertia_percent)?;
+    let must = format!("from 0 to {LONGEST_DELAY_MS}");
+    check((0.0..=LONGEST_DELAY_MS).contains(&delay_ms), "region.delay_ms", delay_ms, must)?;
     if let Some(key) = weights.of_the_paper_alone() {
         return Err(misplaced(&format!("weights.{key}"), &"...", here));
     }
@@ -70,10 +71,10 @@ pub(super) fn actuator_aware(file: &DesignFile, weights: &Weights) -> Result<Pro
             command,
         },
         region: RegionBounds {
-            lag_s: region.motor_lag_ms.map(|lag_ms| 1e-3 * lag_ms),
-            mass_share: 1e-2 * region.mass_percent,
-            inertia_share: 1e-2 * region.inertia_percent,
-            delay_s: 1e-3 * region.delay_ms,
+            lag_s: lags_ms.map(|lag_ms| 1e-3 * lag_ms),
+            mass_share: 1e-2 * mass_percent,
+            inertia_share: 1e-2 * inertia_percent,
+            delay_s: 1e-3 * delay_ms,
         },
     })
 }

@@ -1,30 +1,23 @@
-//! A design of the cascade: its entries in; lag, weights, air and region out.
+//! A design of the cascade: its entries in; lag, weights and air out, with the [`region`].
 
 use quatrack::cascade::Air;
-use quatrack_design::certify::cascade::{CascadeAir, CascadeBounds};
+use quatrack_design::certify::cascade::CascadeAir;
 use quatrack_design::design::cascade::CascadeWeights;
 use quatrack_design::vehicle::Vehicle;
 
 use super::entry::{check, misplaced, missing};
 use super::problem::Problem;
+use super::region::{self, Region};
 use super::weights::weight;
 use crate::gains::GainsError;
-use crate::gains::file::{AirEntry, DesignFile, Linearisation, RegionEntry, Weights};
+use crate::gains::file::{AirEntry, DesignFile, Linearisation, RegionSource, Weights};
 
 /// Longest lag of motors, ms.
 const LONGEST_LAG_MS: f64 = 1e3;
-/// Delays in a region, ms: each period of it is a state.
-const LONGEST_DELAY_MS: f64 = 50.0;
-/// Most that mass or inertia may be off, percent.
-const MOST_PERCENT: f64 = 90.0;
 /// Of the identified air, as much as is told where a design states none.
 const TOLD_SHARE: f64 = 0.8;
 /// Share of the wind's moment that is fed forward where a design states none.
 const GUST: f64 = 0.55;
-/// Most drag of the region where a design states none, 1/s.
-const MOST_DRAG_PER_S: f64 = 0.6;
-/// Most moment of the region over the identified one where a design states none.
-const MOST_MOMENT: f64 = 1.2;
 /// Off-diagonal inertia over the least moment that is taken for none.
 const PRINCIPAL: f64 = 1e-6;
 
@@ -42,11 +35,14 @@ pub(super) fn cascade(file: &DesignFile, vehicle: &Vehicle) -> Result<Problem, G
     let lag = |key: &str, value: f64| {
         check((least..=LONGEST_LAG_MS).contains(&value), key, value, format!("from {least} to {LONGEST_LAG_MS} ms"))
     };
-    let lag_ms = file.motor_lag_ms.ok_or_else(|| missing("motor_lag_ms", here, "motor_lag_ms = 100.0"))?;
+    let region = file.region.ok_or_else(|| missing("[region]", here, "[region] with motor_lag_ms = [50.0, 126.0]"))?;
+    let identified = region.from == Some(RegionSource::Identified);
+    let own_lag_ms = identified.then(|| 1e3 * vehicle.motors().lag_s);
+    let lag_ms = file.motor_lag_ms.or(own_lag_ms);
+    let lag_ms = lag_ms.ok_or_else(|| missing("motor_lag_ms", here, "motor_lag_ms = 100.0"))?;
     lag("motor_lag_ms", lag_ms)?;
     let air = air(file.air.as_ref(), vehicle)?;
-    let region = file.region.ok_or_else(|| missing("[region]", here, "[region] with motor_lag_ms = [50.0, 126.0]"))?;
-    let [shortest, longest] = region.motor_lag_ms;
+    let Region { lags_ms: [shortest, longest], bounds, from } = region::resolved(&region, vehicle, &air, here)?;
     let holds = shortest > 0.0 && shortest <= lag_ms;
     check(holds, "region.motor_lag_ms", shortest, format!("above 0, up to motor_lag_ms = {lag_ms}"))?;
     let holds = (lag_ms..=LONGEST_LAG_MS).contains(&longest);
@@ -55,7 +51,8 @@ pub(super) fn cascade(file: &DesignFile, vehicle: &Vehicle) -> Result<Problem, G
         motor_lag_s: 1e-3 * lag_ms,
         weights: weights(file.weights.as_ref(), 1e-3 * lag_ms, here)?,
         air,
-        region: bounds(&region, &air)?,
+        region: bounds,
+        region_from: from,
     })
 }
 
@@ -96,38 +93,6 @@ fn air(entry: Option<&AirEntry>, vehicle: &Vehicle) -> Result<CascadeAir, GainsE
     let gust = entry.gust.unwrap_or(GUST);
     check((0.0..=1.0).contains(&gust), "air.gust", gust, "from 0 to 1")?;
     Ok(CascadeAir { drag_per_s, moment_n_s, share_of_identified, gust, learn: entry.learn.unwrap_or(true) })
-}
-
-fn bounds(region: &RegionEntry, air: &CascadeAir) -> Result<CascadeBounds, GainsError> {
-    let percent = |key: &str, value: f64| {
-        check((0.0..=MOST_PERCENT).contains(&value), key, value, format!("from 0 to {MOST_PERCENT}"))
-    };
-    percent("region.mass_percent", region.mass_percent)?;
-    percent("region.inertia_percent", region.inertia_percent)?;
-    let must = format!("from 0 to {LONGEST_DELAY_MS}");
-    check((0.0..=LONGEST_DELAY_MS).contains(&region.delay_ms), "region.delay_ms", region.delay_ms, must)?;
-    let [least, most] = region.force_percent.unwrap_or([100.0; 2]);
-    check((10.0..=100.0).contains(&least), "region.force_percent", least, "from 10 to 100 percent")?;
-    check((100.0..=1000.0).contains(&most), "region.force_percent", most, "from 100 to 1000 percent")?;
-    let told = [air.drag_per_s, air.moment_n_s[0], air.moment_n_s[1]];
-    let identified = told.map(|told| told / air.share_of_identified);
-    let drag_per_s = region.drag_per_s.unwrap_or_else(|| MOST_DRAG_PER_S.max(identified[0]));
-    let moments = [identified[1], identified[2]];
-    let moment_n_s = region.moment_n_m_per_m_s.unwrap_or_else(|| moments.map(|moment| MOST_MOMENT * moment));
-    let must = |told: f64| format!("from {told}, which is told, to 10");
-    check((told[0]..=10.0).contains(&drag_per_s), "region.drag_per_s", drag_per_s, must(told[0]))?;
-    for (moment, told) in moment_n_s.into_iter().zip(air.moment_n_s) {
-        check((told..=10.0).contains(&moment), "region.moment_n_m_per_m_s", moment, must(told))?;
-    }
-    Ok(CascadeBounds {
-        lag_s: region.motor_lag_ms.map(|lag_ms| 1e-3 * lag_ms),
-        mass_share: 1e-2 * region.mass_percent,
-        inertia_share: 1e-2 * region.inertia_percent,
-        force_share: [1e-2 * least, 1e-2 * most],
-        delay_s: 1e-3 * region.delay_ms,
-        drag_per_s,
-        moment_n_s,
-    })
 }
 
 /// The standard ones for a lag with those that are written.

@@ -6,6 +6,7 @@ mod cascade;
 mod entry;
 mod method;
 mod problem;
+mod region;
 mod weights;
 
 use std::path::Path;
@@ -14,7 +15,7 @@ use quatrack::gains::table::Name;
 use quatrack::nalgebra::Vector3;
 use quatrack::{Limits, Rate};
 
-pub use problem::{Method, Problem};
+pub use problem::{IdentifiedBound, Method, Problem};
 
 use entry::{check, positive};
 use quatrack_design::certify::Minimum;

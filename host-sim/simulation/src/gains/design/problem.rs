@@ -42,6 +42,9 @@ pub enum Problem {
         air: CascadeAir,
         /// Where the loop must be stable, too.
         region: CascadeBounds,
+        /// Which bounds of the region are intervals of the vehicle's file.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        region_from: Vec<IdentifiedBound>,
     },
     /// The error of the hover model about each point of a trajectory, under held commands: gains over time.
     Along {
@@ -52,6 +55,21 @@ pub enum Problem {
         /// Control steps from one knot to the next.
         steps_per_knot: u16,
     },
+}
+
+/// A bound of a region that is an interval of the vehicle's file, and no statement of the design.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct IdentifiedBound {
+    /// The region's key.
+    pub key: &'static str,
+    /// The figure, under the name that `quatrack identify` gives it, in the unit of its name.
+    pub figure: &'static str,
+    /// Lower end of its interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Where the interval is from.
+    pub source: String,
 }
 
 /// The method by which the gain is computed.

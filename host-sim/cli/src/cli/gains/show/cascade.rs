@@ -40,6 +40,8 @@ struct Certified {
     lag_ms: [f64; 2],
     mass_percent: f64,
     inertia_percent: f64,
+    /// About yaw, where it is another.
+    yaw_inertia_percent: Option<f64>,
     force_percent: [f64; 2],
     delay_ms: f64,
     drag_per_s: f64,
@@ -52,6 +54,7 @@ fn lines(told: &Told, certified: &Certified) -> String {
     let c = certified;
     let [shortest, longest] = c.lag_ms;
     let ([least, most], [most_x, most_y]) = (c.force_percent, c.moment_n_s);
+    let yaw = c.yaw_inertia_percent.map_or_else(String::new, |yaw| format!(", about yaw {yaw:.0} %"));
     format!(
         "  designed for {lag_ms:.1} ms of motor lag\n\
          \x20 told of the air, where its owner states nothing, {learned}: drag {drag_per_s:.3} 1/s, moment {x:.2e} and {y:.2e} N m \
@@ -59,7 +62,7 @@ fn lines(told: &Told, certified: &Certified) -> String {
          \x20 certified, all at once, for\n\
          \x20   motor lag            {shortest:.1} to {longest:.1} ms\n\
          \x20   mass                 {:.0} % more or less than told\n\
-         \x20   inertia              {:.0} % more or less than told\n\
+         \x20   inertia              {:.0} % more or less than told{yaw}\n\
          \x20   force over command   {least:.0} to {most:.0} %\n\
          \x20   delay                up to {:.1} ms\n\
          \x20   drag                 up to {:.2} 1/s\n\
@@ -86,12 +89,35 @@ pub(super) fn of_table(table: &CascadeTable) -> String {
         lag_ms: wide(c.motor_lag_s, 1e3),
         mass_percent: 100.0 * f64::from(c.mass_share),
         inertia_percent: 100.0 * f64::from(c.inertia_share),
+        yaw_inertia_percent: None,
         force_percent: wide(c.force_share, 100.0),
         delay_ms: 1e3 * f64::from(c.delay_s),
         drag_per_s: c.drag_per_s.into(),
         moment_n_s: wide(c.moment_n_s, 1.0),
     };
     format!("\n{}", lines(&told, &certified))
+}
+
+/// Which bounds of a region are intervals of the vehicle's file: a line for each.
+fn identified(taken: &Value) -> String {
+    let mut out = String::new();
+    for bound in taken.as_array().into_iter().flatten() {
+        let text = |key: &str| bound[key].as_str().unwrap_or_default();
+        let number = |key: &str| bound[key].as_f64().unwrap_or(f64::NAN);
+        if out.is_empty() {
+            out.push_str("  of these, by the 95 % intervals in the vehicle's file\n");
+        }
+        let _ = writeln!(
+            out,
+            "    {:<20} {} {:.5} to {:.5} ({})",
+            text("key"),
+            text("figure"),
+            number("low"),
+            number("high"),
+            text("source")
+        );
+    }
+    out
 }
 
 /// The same of a document of the cascade, with the spectral radius of each chain over the region; nothing of another.
@@ -114,12 +140,13 @@ pub(super) fn of_document(document: &Value) -> String {
         lag_ms: pair(&region["lag_s"], 1e3),
         mass_percent: 100.0 * number(&region["mass_share"]),
         inertia_percent: 100.0 * number(&region["inertia_share"]),
+        yaw_inertia_percent: region["yaw_inertia_share"].as_f64().map(|share| 100.0 * share),
         force_percent: pair(&region["force_share"], 100.0),
         delay_ms: 1e3 * number(&region["delay_s"]),
         drag_per_s: number(&region["drag_per_s"]),
         moment_n_s: pair(&region["moment_n_s"], 1.0),
     };
-    let mut out = lines(&told, &certified);
+    let mut out = lines(&told, &certified) + &identified(&parameters["region_from"]);
     for (found, when) in [("seen", "its motors seen"), ("unseen", "before, inertia as told")] {
         let radii: Vec<String> = (0..4)
             .map(|i| {
