@@ -228,9 +228,6 @@ fn notes(certified: &Certified) -> String {
         let taken: Vec<&str> = region_from.iter().map(|bound| bound.figure).collect();
         let _ = writeln!(text, "  its region is that of the vehicle's identified intervals: {}", taken.join(", "));
     }
-    if certified.design.problem.named().1 == "actuator-aware" {
-        text += "  this is the law before the cascade: for a table of that write method = \"cascade\" and leave [weights] out\n";
-    }
     text
 }
 
