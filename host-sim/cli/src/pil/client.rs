@@ -131,13 +131,16 @@ impl Client {
         })
     }
 
-    /// Sends a request and waits for its answer, of any kind but an acknowledgement of something else.
+    /// Sends a request and waits for its answer, of any kind. A late answer to an earlier request that was sent twice is none.
     ///
     /// # Errors
     /// [`PilError`].
     pub fn ask(&mut self, message: &ToBoard) -> Result<FromBoard, PilError> {
-        self.exchange(message, "the board does not answer", |answer, _| match answer {
+        let uploads = matches!(message, ToBoard::UploadBegin(_) | ToBoard::UploadChunk(_) | ToBoard::UploadQuery);
+        self.exchange(message, "the board does not answer", |answer, first| match answer {
             FromBoard::Fault(_) | FromBoard::Telemetry(_) => None,
+            FromBoard::Ack { sequence } | FromBoard::Nack { sequence, .. } if *sequence < first => None,
+            FromBoard::Upload(_) if !uploads => None,
             answer => Some(*answer),
         })
     }
