@@ -47,5 +47,5 @@ def test_a_known_craft_is_known_again(log):
 def test_what_is_wrong_is_said_in_a_line(log):
     with pytest.raises(q.QuatrackError, match="27 g are 0.027"):
         q.identify([log], mass_kg=27.0)
-    with pytest.raises(q.QuatrackError, match='no column "px"'):
+    with pytest.raises(q.QuatrackError, match='no column "t" for the time'):
         q.identify([log], columns="nanobench")

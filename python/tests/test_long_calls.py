@@ -31,9 +31,10 @@ CALLS = {
 @pytest.mark.skipif(os.name != "posix", reason="signals as POSIX has them")
 @pytest.mark.parametrize("made, call", CALLS.values(), ids=CALLS.keys())
 def test_ctrl_c_ends_it(made, call):
-    # The process says when it begins: nothing is sent before.
+    # The process says when it begins: nothing is sent before. A shell's background job would ignore the signal.
     script = f"""
-    import numpy as np, quatrack as q
+    import signal, numpy as np, quatrack as q
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     {made}
     try:
         print("begins", flush=True)

@@ -17,7 +17,7 @@ use super::layout::{
 use super::posterior::{EXPLAINED_LEAST, Posterior};
 use super::prior::Base;
 use super::problem::{Drive, Prepared, prepared};
-use super::yaw::yaw;
+use super::yaw::Yaw;
 use crate::IdentifyError;
 use crate::filter::{mean, quantile};
 use crate::flight::{Flight, STEP_S};
@@ -116,7 +116,7 @@ pub fn fit(flights: &[Flight], base: &Base) -> Result<Fit, IdentifyError> {
     figures.drag(&drags);
     figures.yaw(&yaws);
     figures.biases(&flight_fits);
-    figures.turning([x, y, thrust], yaws.explained);
+    figures.turning([x, y, thrust], yaws.forward.explained);
     let explained = [x, y, thrust, drags[0].explained, drags[1].explained];
     Ok(Fit {
         base: base.clone(),
@@ -170,7 +170,7 @@ fn explained(sections: &[Prepared], base: &Base, model: &Model, full: &[f64]) ->
 /// Figures that follow from the values.
 struct Summary {
     full: Vec<f64>,
-    yaws: Regression,
+    yaws: Yaw,
     model: Model,
     explained: [f64; 3],
 }
@@ -178,8 +178,8 @@ struct Summary {
 fn summary(sections: &[Prepared], base: &Base, values: &DVector<f64>, drags: &[Regression; 2]) -> Summary {
     let full: Vec<f64> = values.iter().skip(SHARED).map(|full| full.exp()).collect();
     let drive = drive_of(values);
-    let yaws = yaw(sections, base, &drive, &full);
-    let model = model(values, drags, &yaws);
+    let yaws = Yaw::of(sections, base, &drive, &full);
+    let model = model(values, drags, &yaws.forward);
     let explained = explained(sections, base, &model, &full);
     Summary { full, yaws, model, explained }
 }
@@ -458,31 +458,37 @@ impl Figures<'_> {
         }
     }
 
-    fn yaw(&mut self, yaws: &Regression) {
-        let draws = yaws.draws();
-        let column = |j: usize| -> Vec<f64> { draws.iter().map(|v| v[j]).collect() };
-        let inertia = yaws.values[0];
-        self.put("inertia_z_kg_m2", inertia, &column(0), 0.25 * inertia.abs(), TURNS);
-        self.put("rate_damping_z_n_m_s", yaws.values[1], &column(1), 0.4 * self.base.damping_scale(), TURNS);
-        self.put(
-            "rotor_lead_ms",
-            1e3 * yaws.values[2],
-            &column(2).iter().map(|l| 1e3 * l).collect::<Vec<_>>(),
-            15.0,
-            TURNS,
-        );
-        let name = "rotor_inertia_kg_m2";
+    fn yaw(&mut self, yaws: &Yaw) {
+        const ROTORS: &str = "rotor_inertia_kg_m2";
+        let Some([least, most]) = yaws.bracket() else {
+            let reason = format!("torque by motion and motion by torque give {} about z: {TURNS}", yaws.told());
+            for name in ["inertia_z_kg_m2", "rate_damping_z_n_m_s", "rotor_lead_ms", ROTORS] {
+                self.all.insert(name, Err(reason.clone()));
+            }
+            return;
+        };
+        let draws = yaws.forward.draws();
+        let values = &yaws.forward.values;
+        let column = |j: usize, factor: f64| -> Vec<f64> { draws.iter().map(|v| factor * v[j]).collect() };
+        // The middle of both by ratio; the interval holds both.
+        let inertia = (least * most).sqrt();
+        let name = "inertia_z_kg_m2";
+        self.put(name, inertia, &column(0, inertia / values[0]), 0.25 * inertia, TURNS);
+        if let Some(Ok(estimate)) = self.all.get_mut(name) {
+            (estimate.low, estimate.high) = (estimate.low.min(least), estimate.high.max(most));
+        }
+        self.put("rate_damping_z_n_m_s", values[1], &column(1, 1.0), 0.4 * self.base.damping_scale(), TURNS);
+        self.put("rotor_lead_ms", 1e3 * values[2], &column(2, 1e3), 15.0, TURNS);
         let Some(thrust_n_s2) = self.base.thrust_n_s2 else {
             let reason =
                 format!("{} has no thrust_n_s2 in [propeller], which turns a lead into an inertia", self.base.name);
-            self.all.insert(name, Err(reason));
+            self.all.insert(ROTORS, Err(reason));
             return;
         };
         // J_r = 2 k W kappa L, with W the speed at hover.
         let speed = (0.25 * self.base.mass_kg * GRAVITY_M_S2 / thrust_n_s2).sqrt();
         let factor = 2.0 * thrust_n_s2 * speed * self.base.torque_per_thrust_m;
-        let all: Vec<f64> = column(2).iter().map(|lead| factor * lead).collect();
-        self.put(name, factor * yaws.values[2], &all, 0.4 * (factor * yaws.values[2]).abs(), TURNS);
+        self.put(ROTORS, factor * values[2], &column(2, factor), 0.4 * (factor * values[2]).abs(), TURNS);
     }
 
     fn biases(&mut self, flights: &[FlightFit]) {

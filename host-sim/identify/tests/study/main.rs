@@ -154,8 +154,8 @@ fn hold(tallies: &BTreeMap<&'static str, Tally>) {
             "thrust_full_n" => 0.03,
             // The thrust that carries the craft, by its command.
             "hover_command" => 0.01,
-            // No flight of the study turns the heading on purpose.
-            "inertia_z_kg_m2" => 0.1,
+            // They have the power's bias of 3 %, as torques over the command's slope.
+            name if name.starts_with("moment_") => 0.06,
             _ => 0.05,
         };
         assert!(error < most, "{figure}: median error {error}");
