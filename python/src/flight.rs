@@ -6,7 +6,6 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 use quatrack::gains::table::{GainTable as CoreTable, TableKind};
-use quatrack_identify::log::{Row, cflib_csv};
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::control_law::ControlLaw;
 use quatrack_simulation::flight::motor_loop::RATE;
@@ -305,19 +304,7 @@ impl Flight {
 
     /// As the text of a log in cflib's columns, which identify reads: what the law knew, and its commands.
     fn to_log(&self) -> String {
-        let rows: Vec<Row> = (self.recording.flight.samples.iter().zip(&self.recording.around))
-            .map(|(sample, around)| Row {
-                time_s: sample.time_s,
-                position: around.estimate.position_m,
-                velocity: around.estimate.velocity_m_s,
-                attitude: around.estimate.attitude,
-                gyro: around.estimate.body_rates_rad_s,
-                specific_force: around.estimate.specific_force_m_s2,
-                commands: [0, 1, 2, 3].map(|motor| sample.commands_n[motor] / self.full_n),
-                voltage: Some(around.voltage_v).filter(|volts| *volts > 0.0),
-            })
-            .collect();
-        cflib_csv(&rows)
+        self.recording.to_log(self.full_n)
     }
 
     fn __len__(&self) -> usize {

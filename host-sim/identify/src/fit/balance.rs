@@ -1,9 +1,9 @@
 //! The balance of torques along a stretch of flight, for pictures: the motors' torque, the part that rotation and air
 //! explain, and the rest.
 
+use super::model::{FlightFit, Model};
 use super::prior::Base;
 use super::problem::Prepared;
-use super::whole::{FlightFit, Model};
 use crate::flight::{Flight, RATE_HZ, STEP_S};
 
 /// A stretch of at most 20 s, low-passed, each section's mean taken off, N m.

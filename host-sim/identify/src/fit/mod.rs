@@ -2,6 +2,9 @@
 //!
 //! ```text
 //! whole            all figures of some flights
+//!   figures        each told with an interval, or refused with a manoeuvre
+//!     estimate     its interval by draws
+//!   model          the model of the most likely figures, and the share that it explains
 //!   posterior      the choice of one of two, and draws of it
 //!   refine         maximum a posteriori by filters: thrust, torque balance, lag, delay and noise together
 //!     innovations  of a Kalman filter that knows the figures
@@ -20,9 +23,12 @@ mod balance;
 mod balanced;
 mod bootstrap;
 mod drag;
+mod estimate;
+mod figures;
 mod innovations;
 mod lag_curve;
 mod layout;
+mod model;
 mod normal_equations;
 mod posterior;
 mod prior;
@@ -33,10 +39,12 @@ mod whole;
 mod yaw;
 
 pub use balance::Balance;
+pub use estimate::Estimate;
 pub use lag_curve::LagPoint;
+pub use model::FlightFit;
+pub(crate) use model::Model;
 pub use prior::Base;
-pub(crate) use whole::Model;
-pub use whole::{Estimate, Fit, FlightFit, fit};
+pub use whole::{Fit, fit};
 
 /// Corner of the low-pass of all balances, Hz: above, logs of 100 Hz are noise and interpolation.
 pub(crate) const CORNER_HZ: f64 = 6.0;

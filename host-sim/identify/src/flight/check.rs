@@ -206,10 +206,11 @@ mod tests {
 
     use super::*;
     use crate::flight::{Flight, prepare};
-    use crate::log::{RawLog, Row, cflib_csv, parse_csv};
+    use crate::log::{RawLog, parse_csv};
+    use quatrack_simulation::scenario::{LogRow, cflib_csv};
 
     /// Thirty seconds of leaning to and fro, with the drag and the specific force that belong to it.
-    fn rows() -> Vec<Row> {
+    fn rows() -> Vec<LogRow> {
         let attitude = |t: f64| {
             let (roll, pitch) = (0.2 * (3.1 * t).sin(), 0.15 * (4.4 * t + 1.0).sin());
             UnitQuaternion::from_euler_angles(roll, pitch, 0.3)
@@ -221,7 +222,7 @@ mod tests {
                 let q = attitude(t);
                 let body: Vector3<f64> = q.inverse_transform_vector(&v);
                 let force = Vector3::new(-0.4 * body.x, -0.4 * body.y, GRAVITY_M_S2 / (q * Vector3::z()).z);
-                let row = Row {
+                let row = LogRow {
                     time_s: t,
                     position: p,
                     velocity: v,
@@ -238,7 +239,7 @@ mod tests {
             .collect()
     }
 
-    fn prepared(rows: &[Row], change: impl Fn(&mut RawLog), map: &str) -> Flight {
+    fn prepared(rows: &[LogRow], change: impl Fn(&mut RawLog), map: &str) -> Flight {
         let mut log = parse_csv(cflib_csv(rows).as_bytes(), "log").unwrap();
         change(&mut log);
         prepare(&log, &ColumnMap::parse(map, "map").unwrap()).unwrap()
@@ -310,8 +311,8 @@ mod tests {
     #[test]
     fn a_late_pose_is_found() {
         let all = rows();
-        let late: Vec<Row> = (7..all.len())
-            .map(|i| Row {
+        let late: Vec<LogRow> = (7..all.len())
+            .map(|i| LogRow {
                 time_s: all[i].time_s,
                 position: all[i - 7].position,
                 velocity: all[i - 7].velocity,

@@ -3,21 +3,18 @@
 //! ```text
 //! takes       flights that share a file
 //! map         which columns hold what, in which unit; three that are built in
-//! record      a log out of rows
 //! table       CSV, plain or compressed      deck   the micro SD deck's binary log
 //!   series    times and values by name
 //! ```
 
 mod deck;
 mod map;
-mod record;
 mod series;
 mod table;
 mod takes;
 
 pub use map::ColumnMap;
 pub(crate) use map::{Scalar, Vector, scale};
-pub use record::{Row, cflib_csv};
 pub use series::{RawLog, Series};
 
 use std::fs::File;

@@ -2,7 +2,6 @@
 
 use nalgebra::Vector3;
 use quatrack_design::model::GRAVITY_M_S2;
-use quatrack_identify::log::Row;
 use quatrack_plan::trajectory::fifth_order::{FifthOrder, FlatTrajectory};
 use quatrack_simulation::scenario::course::Flown;
 use quatrack_simulation::scenario::file::ScenarioFile;
@@ -138,25 +137,14 @@ impl Craft {
         let most_n = self.scenario.vehicle.motors().thrust_max_n;
         let mut text = String::from("t,px,py,pz,vx,vy,vz,qx,qy,qz,qw,gx,gy,gz,ax,ay,az,m1,m2,m3,m4,v\n");
         let mut rows: Vec<(f64, String)> = Vec::new();
-        for (sample, around) in recording.flight.samples.iter().zip(&recording.around) {
-            let e = &around.estimate;
-            let row = Row {
-                time_s: sample.time_s,
-                position: e.position_m,
-                velocity: e.velocity_m_s,
-                attitude: e.attitude,
-                gyro: e.body_rates_rad_s,
-                specific_force: e.specific_force_m_s2,
-                commands: [0, 1, 2, 3].map(|motor| sample.commands_n[motor] / most_n),
-                voltage: Some(around.voltage_v).filter(|volts| *volts > 0.0),
-            };
+        for row in recording.log_rows(most_n) {
             let q = row.attitude.quaternion();
             let join = |values: &[f64]| values.iter().map(|v| format!("{v:.7}")).collect::<Vec<_>>().join(",");
             let pose = [row.position.as_slice(), row.velocity.as_slice(), &[q.i, q.j, q.k, q.w]].concat();
             let inertial = [row.gyro.as_slice(), row.specific_force.as_slice()].concat();
             let motors = row.commands.map(|u| (65535.0 * u.clamp(0.0, 1.0)).round() / 65535.0);
             let volts = row.voltage.map_or(String::new(), |v| format!("{v:.4}"));
-            let [t_motors, t_inertial, t_pose] = self.late_s.map(|late| sample.time_s + late);
+            let [t_motors, t_inertial, t_pose] = self.late_s.map(|late| row.time_s + late);
             rows.push((t_pose, format!("{}{}", join(&pose), ",".repeat(11))));
             rows.push((t_inertial, format!("{}{}{}", ",".repeat(10), join(&inertial), ",".repeat(5))));
             rows.push((t_motors, format!("{}{},{volts}", ",".repeat(16), join(&motors))));

@@ -11,7 +11,8 @@
 //!         filtered   the estimate of a Kalman filter
 //!           sensors  noise and biases
 //!         kept       rows of a flight, or their sums
-//!         recording  a flight with its estimates and surroundings, as CSV
+//!         log        a recording as the log of a craft
+//!           recording  a flight with its estimates and surroundings, as CSV
 //!         track      a course evaluated once
 //!         course     hover, ramp, and the measured part
 //!       prototype    a law designed once for many flights
@@ -37,6 +38,7 @@ pub mod filtered;
 pub mod flight;
 mod kept;
 mod laws;
+mod log;
 pub mod manoeuvres;
 mod object_law;
 mod prototype;
@@ -52,6 +54,7 @@ pub use core_law::{actuation_of, actuator_aware_of};
 pub use error::{ScenarioError, StartError};
 pub use kept::Tally;
 pub use laws::{Law, LawError, start_table};
+pub use log::{LogRow, cflib_csv};
 pub use prototype::Prototype;
 pub use recording::{Around, Recording};
 pub use sensors::SensorNoise;

@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use quatrack_design::vehicle::Vehicle;
-use quatrack_identify::log::{Row, cflib_csv};
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_plan::trajectory::transform::Transform;
@@ -249,7 +248,7 @@ impl Outputs<'_> {
             output::print(&format!("wrote {}\n", path.display()))?;
         }
         if let Some(path) = self.log {
-            output::write(path, log(scenario, recording).as_bytes())?;
+            output::write(path, recording.to_log(scenario.vehicle.motors().thrust_max_n).as_bytes())?;
             output::print(&format!("wrote {}\n", path.display()))?;
         }
         if let Some(path) = self.plot {
@@ -269,22 +268,4 @@ impl Outputs<'_> {
         }
         figures.outcome()
     }
-}
-
-/// The log that the craft would have recorded: its law's estimate, and the commands as shares of the law's largest.
-fn log(scenario: &Scenario, recording: &Recording) -> String {
-    let most_n = scenario.vehicle.motors().thrust_max_n;
-    let rows: Vec<Row> = (recording.flight.samples.iter().zip(&recording.around))
-        .map(|(sample, around)| Row {
-            time_s: sample.time_s,
-            position: around.estimate.position_m,
-            velocity: around.estimate.velocity_m_s,
-            attitude: around.estimate.attitude,
-            gyro: around.estimate.body_rates_rad_s,
-            specific_force: around.estimate.specific_force_m_s2,
-            commands: [0, 1, 2, 3].map(|motor| sample.commands_n[motor] / most_n),
-            voltage: Some(around.voltage_v).filter(|volts| *volts > 0.0),
-        })
-        .collect();
-    cflib_csv(&rows)
 }

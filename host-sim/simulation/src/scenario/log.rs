@@ -1,13 +1,15 @@
-//! A log in the columns of the `cflib` map, out of rows: the form in which a simulated flight enters [`crate::identify`].
+//! The log that a craft would have recorded of a flight: a recording, or rows, in; CSV in cflib's columns out.
 
 use std::fmt::Write as _;
 
 use nalgebra::{UnitQuaternion, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;
 
+use super::recording::Recording;
+
 /// One row of a log.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
+pub struct LogRow {
     /// Since the start, s.
     pub time_s: f64,
     /// World frame, m.
@@ -26,8 +28,31 @@ pub struct Row {
     pub voltage: Option<f64>,
 }
 
+impl Recording {
+    /// As the text of such a log; `full_n`: the force of a full command, N.
+    pub fn to_log(&self, full_n: f64) -> String {
+        cflib_csv(&self.log_rows(full_n))
+    }
+
+    /// The law's estimate, and its commands as shares of a full one of `full_n`, N.
+    pub fn log_rows(&self, full_n: f64) -> Vec<LogRow> {
+        (self.flight.samples.iter().zip(&self.around))
+            .map(|(sample, around)| LogRow {
+                time_s: sample.time_s,
+                position: around.estimate.position_m,
+                velocity: around.estimate.velocity_m_s,
+                attitude: around.estimate.attitude,
+                gyro: around.estimate.body_rates_rad_s,
+                specific_force: around.estimate.specific_force_m_s2,
+                commands: [0, 1, 2, 3].map(|motor| sample.commands_n[motor] / full_n),
+                voltage: Some(around.voltage_v).filter(|volts| *volts > 0.0),
+            })
+            .collect()
+    }
+}
+
 /// CSV with the firmware's names and units: times in ms, rates in degrees a second, specific force in g, commands from 0 to 65535.
-pub fn cflib_csv(rows: &[Row]) -> String {
+pub fn cflib_csv(rows: &[LogRow]) -> String {
     let mut text = String::from(
         "timestamp,stateEstimate.x,stateEstimate.y,stateEstimate.z,stateEstimate.vx,stateEstimate.vy,stateEstimate.vz,\
          stateEstimate.qx,stateEstimate.qy,stateEstimate.qz,stateEstimate.qw,gyro.x,gyro.y,gyro.z,acc.x,acc.y,acc.z,\
