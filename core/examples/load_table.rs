@@ -4,7 +4,7 @@
 
 use quatrack::gains::table::GainTable;
 use quatrack::nalgebra::Vector3;
-use quatrack::{Actuation, Airframe, FeedForward, Limits, Measured, Memory, MotorReference, Settings, State, Target};
+use quatrack::{Actuation, Airframe, FeedForward, Limits, Measured, Memory, Reference, Settings, State, Target};
 
 fn main() -> Result<(), Box<dyn core::error::Error>> {
     let path = std::env::args().nth(1).ok_or("which table? for example gains/generated/sampled-lqr-e.bin")?;
@@ -27,10 +27,10 @@ fn main() -> Result<(), Box<dyn core::error::Error>> {
         ..Settings::new(limits, head.rate)
     })?;
     let mut memory = Memory::hovering(&airframe);
-    let reference = MotorReference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0, actuation.airframe())?;
+    let reference = Reference::hover(Vector3::new(0.0, 0.0, 1.0), 0.0)?;
     let (state, rates) = (State::at_rest(Vector3::new(0.0, 0.0, 0.99)), Vector3::new(0.0, 0.0, 0.0));
     let measured = Measured::new(&state).with_body_rates(&rates);
-    let step = controller.step_to_motors(&mut memory, measured, Target::with_forces(&reference))?;
+    let step = controller.step_to_motors(&mut memory, measured, Target::new(&reference))?;
     println!("1 cm too low: {:.4?} N", step.forces_n);
     Ok(())
 }

@@ -108,6 +108,8 @@ pub enum ReferenceError {
 }
 
 /// Why a step gave no command. The caller must not hold the last one: stop the motors or level.
+///
+/// Boards send it: its variants keep their order, with every feature and without.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -122,7 +124,6 @@ pub enum StepError {
     /// The law gives motor forces, and the target has none.
     NoForces,
     /// The law makes a reference of its own, and the target has no sample for it.
-    #[cfg(feature = "cascade")]
     NoSample,
     /// Nothing is known of the motors that a command is to be carried to.
     NoActuation,
@@ -171,7 +172,6 @@ impl fmt::Display for StepError {
             Self::Singular => f.write_str("law: the asked acceleration has no attitude; stop or level"),
             Self::NoBodyRates => f.write_str("controller: motor forces take body rates; measure them"),
             Self::NoForces => f.write_str("controller: the law gives motor forces; make the target with them"),
-            #[cfg(feature = "cascade")]
             Self::NoSample => {
                 f.write_str("controller: the cascade makes its own reference; make the target with a sample")
             }

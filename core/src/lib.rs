@@ -43,8 +43,8 @@
 //!                   math, checksum  square root, sine and cosine; CRC-32C
 //! ```
 //!
-//! Features, none of them default: `cascade` for the law of nested loops; `actuator-aware` for the law before it, a rival in simulation; `link` for the serial link's frames; `serde`
-//! and `defmt` for plain data to be stored or logged.
+//! Features, none of them default: `cascade` for the law of nested loops; `actuator-aware` for the law before it, a rival in
+//! simulation; `link` for the serial link's frames; `serde` and `defmt` for plain data to be stored or logged.
 //!
 //! Conventions: world frame z up; quaternion scalar first, Hamilton product, body to world; thrust divided by mass, in
 //! m/s^2; body rates in rad/s.

@@ -69,7 +69,7 @@ pub(crate) fn settings(parameters: &Parameters, craft: &Craft, table: &Limits) -
     let yaw = within(&parameters.yaw_rate_rad_s, 0.5, 100.0);
     Settings {
         bounds: Bounds {
-            leash: Leash { length_m: within(&parameters.leash_m, 0.1, 10.0) },
+            leash: Leash { length_m: within(&parameters.leash_m, Leash::SHORTEST_M, Leash::LONGEST_M) },
             speed_m_s: within(&parameters.speed_m_s, 0.1, 5.0),
             acceleration_m_s2: within(&parameters.acceleration_m_s2, 0.5, 10.0),
         },

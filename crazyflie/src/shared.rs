@@ -4,6 +4,8 @@
 
 use core::sync::atomic::{AtomicI16, AtomicU8, AtomicU16, AtomicU32, Ordering::Relaxed};
 
+use quatrack::Leash;
+
 /// An `f32` that tasks may share: a C `float` in memory.
 #[repr(transparent)]
 #[derive(Debug)]
@@ -194,7 +196,7 @@ impl Shared {
             parameters: Parameters {
                 position_scale: AtomicF32::new(1.0),
                 yaw_scale: AtomicF32::new(1.0),
-                leash_m: AtomicF32::new(1.0),
+                leash_m: AtomicF32::new(Leash::STANDARD.length_m),
                 speed_m_s: AtomicF32::new(1.5),
                 acceleration_m_s2: AtomicF32::new(4.0),
                 roll_pitch_rate_rad_s: AtomicF32::new(20.0),

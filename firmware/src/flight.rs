@@ -162,7 +162,7 @@ impl Flight {
         self.decimation
     }
 
-    /// Sets the ticks for one step. Gain tables for another rate are dropped, that for motor forces in the image too.
+    /// Sets the ticks for one step. Gain tables for another rate are dropped, that of the cascade in the image too.
     pub fn set_decimation(&mut self, decimation: u32) {
         self.decimation = decimation;
         self.laws.set_rate(step_rate(decimation));

@@ -5,14 +5,12 @@ use std::str::FromStr;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
-use quatrack::gains::table::{GainTable as CoreTable, TableKind};
+use quatrack::gains::table::GainTable as CoreTable;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::control_law::ControlLaw;
-use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::rigid_loop::RigidSample;
 use quatrack_simulation::scenario::compare::Table;
 use quatrack_simulation::scenario::{Law, Recording, Scenario, start_table};
-use quatrack_simulation::vehicles;
 
 use crate::arrays::array;
 use crate::crazyflie;
@@ -84,27 +82,8 @@ fn record_table(
     cancelled: &Cancelled,
 ) -> Result<Recording, String> {
     let table = CoreTable::from_bytes(bytes).map_err(|error| error.to_string())?;
-    let (kind, head) = (table.kind(), *table.head());
-    let refused = |reason: String| format!("{}: {reason}", head.name);
-    let not_of_cascade =
-        || refused(format!("its kind is {kind}; a scenario takes a table of the cascade, or a law by its name"));
-    if kind != TableKind::Cascade {
-        return Err(not_of_cascade());
-    }
-    if vehicles::id(&scenario.vehicle) != head.vehicle.id {
-        return Err(refused(format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name())));
-    }
-    let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| refused(error.to_string()))?;
-    let cascade = accepted.cascade().ok_or_else(not_of_cascade)?;
-    let (own_kg, told_kg) = (scenario.vehicle.mass_kg() as f32, scenario.told.mass_kg as f32);
-    if !cascade.certified.holds_mass(own_kg, told_kg) {
-        let percent = 100.0 * cascade.certified.mass_share;
-        return Err(refused(format!(
-            "told {told_kg} kg; it is certified for {own_kg} kg and {percent:.0} % more or less"
-        )));
-    }
-    let law = start_table(&scenario.vehicle, &scenario.told, cascade);
-    let mut law = law.map_err(|error| refused(error.to_string()))?;
+    let started = start_table(&scenario.vehicle, &scenario.told, &table);
+    let mut law = started.map_err(|error| format!("{}: {error}", table.head().name))?;
     record(scenario, law.as_mut(), course, cancelled)
 }
 

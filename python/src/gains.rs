@@ -1,11 +1,11 @@
 //! Tables of gains: bytes, files, designs and built-in ones.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyType};
 use quatrack::gains::table::GainTable as CoreTable;
+use quatrack_plan::bounded;
 use quatrack_simulation::gains::Table;
 use quatrack_simulation::gains::{Design, json_document};
 
@@ -95,7 +95,7 @@ impl GainTable {
     /// From a file (.bin).
     #[classmethod]
     fn load(_cls: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
-        let bytes = fs::read(&path).map_err(|error| {
+        let bytes = bounded::read(&path).map_err(|error| {
             refused(format!("{}: cannot be read ({error}); name an existing table", path.display()))
         })?;
         Self::read(&bytes, Some(&path))
@@ -112,7 +112,7 @@ impl GainTable {
         let design = read.map_err(|error| refused(format!("{origin}: {error}")))?;
         let certified =
             long_call(cls.py(), move |_| design.certify())?.map_err(|error| refused(format!("{origin}: {error}")))?;
-        let bytes = certified.to_bytes().ok_or_else(|| refused(format!("{origin}: {}", certified.without_table())))?;
+        let bytes = certified.to_bytes().ok_or_else(|| refused(format!("{origin}: {}", certified.why_no_table())))?;
         Self::read(&bytes, None)
     }
 

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use pyo3::prelude::*;
 use quatrack_identify::log::ColumnMap;
 use quatrack_identify::{Report, vehicle_toml};
+use quatrack_plan::bounded;
 use serde_json::Value;
 
 use crate::error::refused;
@@ -66,7 +67,7 @@ fn map(columns: Option<&Bound<'_, PyAny>>) -> PyResult<ColumnMap> {
         Source::Path(path) => {
             let name = path.display().to_string();
             let text =
-                std::fs::read_to_string(&path).map_err(|error| refused(format!("{name}: cannot be read ({error})")))?;
+                bounded::read_to_string(&path).map_err(|error| refused(format!("{name}: cannot be read ({error})")))?;
             ColumnMap::parse(&text, &name)
         }
         Source::Text(text) => ColumnMap::parse(&text, "columns"),

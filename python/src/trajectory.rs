@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 use quatrack::nalgebra::Vector3;
 use quatrack::{Bookmark, Player as CorePlayer, Progress, Rate, Trajectory as CoreTrajectory};
+use quatrack_plan::bounded;
 use quatrack_plan::plan::Plan;
 use quatrack_plan::trajectory::bspline::BSpline;
 use quatrack_plan::trajectory::fifth_order::{FifthOrder, FlatTrajectory};
@@ -67,7 +68,7 @@ pub(crate) fn plan(py: Python<'_>, problem: &Bound<'_, PyAny>) -> PyResult<Traje
         Source::Text(text) => ("plan".to_owned(), text),
         Source::Path(path) => {
             let name = path.display().to_string();
-            let text = std::fs::read_to_string(&path)
+            let text = bounded::read_to_string(&path)
                 .map_err(|error| refused(format!("{name}: cannot be read ({error}); name an existing plan")))?;
             (name, text)
         }

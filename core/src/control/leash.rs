@@ -20,6 +20,12 @@ impl Leash {
     /// A metre, and a metre a second.
     pub const STANDARD: Self = Self { length_m: 1.0 };
 
+    /// The shortest that an owner may set, m: on a shorter one a flight does not get anywhere.
+    pub const SHORTEST_M: f32 = 0.1;
+
+    /// The longest that has an effect in a room, m.
+    pub const LONGEST_M: f32 = 10.0;
+
     /// None: the laws as they are in the paper.
     pub const NONE: Self = Self { length_m: f32::INFINITY };
 

@@ -14,8 +14,7 @@ use crate::law::{ErrorForm, FeedForward};
 pub struct Settings<'a> {
     /// Limits of the craft; the table's own hold beside.
     pub limits: Limits,
-    /// The actuation that carries commands to the motors; a table for motor forces takes that of its own lag
-    /// ([`crate::gains::table::AcceptedTable::actuation`]).
+    /// The actuation that carries commands to the motors, as [`crate::gains::table::AcceptedTable::actuation`] gives it.
     pub actuation: Option<&'a Actuation>,
     /// The law that was made of a table of the cascade, for that table.
     #[cfg(feature = "cascade")]
@@ -49,8 +48,6 @@ impl Settings<'_> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ControllerError {
-    /// Its law gives motor forces, and there is nothing to carry any.
-    NoActuation,
     /// It is a table of the cascade, and the law that was made of it is not given.
     NoCascade,
     /// The actuation reckons with another motor lag than the table.
@@ -65,7 +62,6 @@ pub enum ControllerError {
 impl fmt::Display for ControllerError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoActuation => f.write_str("controller: the table is for motor forces; give an actuation"),
             Self::NoCascade => {
                 f.write_str("controller: the table is of the cascade; give the law that it makes of the craft")
             }

@@ -49,12 +49,6 @@ pub(crate) struct Turn {
 }
 
 impl Turn {
-    /// From the heading and its derivatives.
-    #[inline(always)]
-    pub(crate) fn new([heading_rad, h1, h2, h3]: [f32; 4]) -> Self {
-        Self::at(Heading::from_angle_inlined(heading_rad), [h1, h2, h3])
-    }
-
     /// From a heading whose sine and cosine are known.
     #[inline(always)]
     pub(crate) fn at(heading: Heading, rates: [f32; 3]) -> Self {

@@ -66,8 +66,8 @@ const QUIET_TICKS: Tick = 30;
 const DRAG_PER_S: f32 = 0.4;
 /// Longest step of the bridge, s.
 const STEP_MAX_S: f32 = 0.05;
-/// A bound below which no sum of squares is.
-const NOTHING_IS: f32 = -1.0;
+/// A bound below every sum of squares.
+const NEVER_CALM: f32 = -1.0;
 /// Share of a new difference of attitudes in the body rates that are made of them.
 const DIFFERENCE_SHARE: f32 = 0.5;
 
@@ -124,8 +124,8 @@ pub struct Monitor {
     at: Tick,
     /// When the body rates were others the last time.
     turned_at: Tick,
-    /// Below which the sum of [`motion_of`] needs no closer look; nothing is, before a sound estimate has come and while something
-    /// is bridged.
+    /// Bound of [`motion_of`] below which a step is sound without a closer look; [`NEVER_CALM`] until a sound estimate has come and
+    /// while something is bridged.
     calm_below: f32,
     /// A sound estimate has come.
     is_known: bool,
@@ -178,7 +178,7 @@ impl Monitor {
             rates: ZERO,
             at: 0,
             turned_at: 0,
-            calm_below: NOTHING_IS,
+            calm_below: NEVER_CALM,
             is_known: false,
             is_bridged: false,
             bridge: None,
@@ -308,7 +308,7 @@ impl Monitor {
             && bridge.still_gyroscope.is_none()
             && is_attitude(self.given.attitude, NORM_SQUARED_NEAR);
         self.bridge = (!is_over).then_some(bridge);
-        self.calm_below = if is_over { motion_max(config) } else { NOTHING_IS };
+        self.calm_below = if is_over { motion_max(config) } else { NEVER_CALM };
         let is_given = soundness == Soundness::Sound && is_attitude(self.given.attitude, NORM_SQUARED_NEAR);
         self.is_bridged = !(is_over || is_given);
         Looked { soundness, velocity_bridged_ticks, ..self.looked() }

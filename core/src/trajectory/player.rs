@@ -3,10 +3,9 @@
 use super::checked::{Summary, Trajectory};
 use super::piece::{Piece, seconds};
 use super::polynomial::derivatives;
-use crate::airframe::Airframe;
 use crate::clock::{Rate, Tick, TickClock};
 use crate::error::ReferenceError;
-use crate::motor_reference::{FifthOrderSample, MotorReference, Turn};
+use crate::motor_reference::FifthOrderSample;
 use crate::reference::{FlatSample, Reference};
 
 /// Walks along a trajectory, one tick at a time.
@@ -120,23 +119,6 @@ impl<'a> Player<'a> {
         };
         // The pieces have been checked: their values are finite.
         Reference::of_finite(&sample)
-    }
-
-    /// The reference that flies the trajectory with a craft `tick` ticks after the start, to the motor forces and their
-    /// rates.
-    ///
-    /// # Errors
-    /// [`ReferenceError`] where the trajectory asks for a motion that cannot be flown.
-    pub fn motor_reference(&mut self, tick: Tick, airframe: &Airframe) -> Result<MotorReference, ReferenceError> {
-        if tick >= self.end_tick {
-            return MotorReference::of_finite(&FifthOrderSample::of_jerk(self.trajectory.summary.end), airframe);
-        }
-        let t = seconds(self.seek(tick));
-        let shape = self.trajectory.summary.shape;
-        // First, while there is little else to be kept.
-        let turn = (!shape.straight).then(|| Turn::new(derivatives(&self.piece.heading, t)));
-        let (position_m, velocity_m_s, motion) = self.piece.motion(t, shape);
-        MotorReference::of_motion(&position_m, &velocity_m_s, &motion, turn.as_ref(), airframe)
     }
 
     /// The flat output and its derivatives to the fifth `tick` ticks after the start.

@@ -1,6 +1,6 @@
 //! The image of the control path down to the motors and nothing else, linked to measure its size:
-//! `quatrack-control-path`, and the code that carries the laws to motor forces, with the actuator-aware law and its
-//! table. It never runs.
+//! `quatrack-control-path`, and the code that carries the laws to motor forces, with the cascade and its table. It
+//! never runs.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

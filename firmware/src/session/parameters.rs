@@ -11,9 +11,6 @@ use crate::rates::TICK_RATE_HZ;
 /// Longest decimation: one step a second.
 const DECIMATION_MAX: u32 = TICK_RATE_HZ;
 
-/// Shortest leash that can be set, m: on a shorter one a flight does not get anywhere.
-const LEASH_MIN_M: f32 = 0.1;
-
 /// Longest age and silence that can be set, ticks: ten seconds.
 const AGE_MAX_TICKS: u32 = 10 * TICK_RATE_HZ;
 
@@ -74,7 +71,7 @@ impl<K: Keep> Session<K> {
                 let set = flight.with(|flight| flight.set_bandwidth(bandwidth_rad_s));
                 set.map_err(|_| Refusal::OutOfRange)?;
             }
-            Parameter::Leash(length_m) if length_m >= LEASH_MIN_M => {
+            Parameter::Leash(length_m) if length_m >= Leash::SHORTEST_M => {
                 flight.with(|flight| flight.leash = Leash { length_m });
             }
             Parameter::Leash(_) => return Err(Refusal::OutOfRange),

@@ -129,7 +129,7 @@ impl Campaign {
         if let CourseChoice::Trajectory(_) = &scenario.course {
             // As it was written, where it lies now.
             let name = file.course.clone().unwrap_or_default();
-            let path = if ["mild", "aggressive"].contains(&name.as_str()) {
+            let path = if CourseChoice::NAMES.contains(&name.as_str()) {
                 name.clone()
             } else {
                 self.folder.join(&name).display().to_string()
@@ -246,8 +246,7 @@ fn gather(whole: &mut Table, folder: &Path, origin: &str) -> Result<Vec<(String,
     if whole.get("vehicle").and_then(Value::as_str).is_some_and(|name| name.ends_with(".toml")) {
         take(whole, "vehicle", "vehicle")?;
     }
-    let built_in = ["eight", "hover", "step", "mild", "aggressive"];
-    if whole.get("course").and_then(Value::as_str).is_some_and(|name| !built_in.contains(&name)) {
+    if whole.get("course").and_then(Value::as_str).is_some_and(|name| !CourseChoice::NAMES.contains(&name)) {
         take(whole, "course", "course")?;
     }
     Ok(files)

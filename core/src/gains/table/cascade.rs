@@ -82,10 +82,10 @@ impl CascadeRange {
         motor_lag_s >= shortest && motor_lag_s <= longest
     }
 
-    /// Whether a craft is that was told to weigh `told_kg` and weighs `mass_kg`.
-    pub fn holds_mass(&self, told_kg: f32, mass_kg: f32) -> bool {
-        let difference = mass_kg - told_kg;
-        let most = self.mass_share * told_kg;
+    /// Whether a craft of the design's mass `own_kg` may be stated to weigh `stated_kg`.
+    pub fn holds_mass(&self, own_kg: f32, stated_kg: f32) -> bool {
+        let difference = stated_kg - own_kg;
+        let most = self.mass_share * own_kg;
         difference >= -most && difference <= most
     }
 

@@ -28,7 +28,7 @@ pub(crate) struct Args {
     /// Which laws, by their names; by default --law, or else all.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',', conflicts_with = "law")]
     laws: Vec<Law>,
-    /// Fly a gain table for motor forces (.bin), or a design (.toml) whose table is made first, beside them; on its vehicle where
+    /// Fly a gain table of the cascade (.bin), or a design (.toml) whose table is made first, beside them; on its vehicle where
     /// none is named.
     #[arg(long, value_name = "FILE")]
     gains: Option<PathBuf>,

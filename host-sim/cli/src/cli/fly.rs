@@ -40,7 +40,7 @@ use super::{Failure, output};
 /// air where it has some. Every key of the file has a flag, which goes before the file.
 ///
 /// With --controller the paper's model flies, in vacuum, its state known exactly; so it does
-/// with --gains, but for tables for motor forces, which fly on a rigid craft.
+/// with --gains, but for tables of the cascade, which are the law of a scenario.
 ///
 /// Exit code 0: flown to the end. 2: an input that cannot be used. 3: the craft was lost; the samples
 /// until then are printed and written.
@@ -60,8 +60,8 @@ pub(crate) struct Args {
     #[arg(long, value_enum, ignore_case = true, conflicts_with_all = ["gains", "scenario"])]
     controller: Option<Controller>,
     /// A gain table (.bin), or a design (.toml) whose table is made first. It is flown by the f32 core, at its own rate
-    /// and within its own limits; a table for motor forces on the vehicle that its design names, or --vehicle. With
-    /// --scenario such a table is the scenario's law.
+    /// and within its own limits; a table of the cascade is the law of a scenario, on the vehicle
+    /// that its design names, or --vehicle.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["mu", "law"])]
     gains: Option<PathBuf>,
     /// mild, aggressive, or a file: polynomial pieces (uav_trajectories CSV), control points (JSON or TOML), a plan (TOML,

@@ -141,15 +141,15 @@ fn certified(path: &Path) -> Result<Certified, Failure> {
 
 /// What an owner of another craft has to know of a design's weights; nothing for those of the paper's model, which has no mass.
 fn unscaled(design: &Design) -> Option<String> {
-    let (method, mass_kg) = (design.problem.named().1, design.vehicle.mass_kg());
-    let scaled = match method {
-        "cascade" => {
+    let mass_kg = design.vehicle.mass_kg();
+    let scaled = match &design.problem {
+        Problem::Cascade { .. } => {
             let force_input = standard_force_input(mass_kg);
             // Three digits, as somebody writes them.
             let written = format!("{force_input:.2e}").parse().unwrap_or(force_input);
             format!(", as `quatrack gains craft` takes it: force_input = {written} for this mass")
         }
-        "actuator-aware" => String::new(),
+        Problem::ActuatorAware { .. } => String::new(),
         _ => return None,
     };
     Some(format!(
@@ -182,7 +182,7 @@ fn design(paths: &[PathBuf], out: Option<&Path>, json: Option<&Path>) -> Result<
             wrote(&mut text, &file.path);
         }
         if certified.table.is_none() {
-            text += &format!("  no table: {}\n", certified.without_table());
+            text += &format!("  no table: {}\n", certified.why_no_table());
         }
         output::print(&text)?;
         summaries.push(json!({ "design": path, "name": document["name"], "figures": document["figures"] }));

@@ -9,7 +9,7 @@ use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::quote::quoted;
 use quatrack_simulation::scenario::file::{Air, Estimator, OwnAir, ScenarioFile};
 use quatrack_simulation::scenario::flight::Setpoints;
-use quatrack_simulation::scenario::{Law, Scenario};
+use quatrack_simulation::scenario::{CourseChoice, Law, Scenario};
 use quatrack_simulation::vehicles;
 
 use super::Failure;
@@ -142,19 +142,16 @@ pub(crate) struct ScenarioArgs {
     filter_latency_ms: Option<f64>,
 }
 
-/// The courses that are no file.
-const COURSES: [&str; 5] = ["eight", "hover", "step", "mild", "aggressive"];
-
 /// Refuses the name of a course that is none and no file either, as a slip of the keyboard is.
 pub(super) fn existing_course(origin: &str, written: &str, path: &Path) -> Result<(), Failure> {
-    if COURSES.contains(&written) || path.exists() {
+    if CourseChoice::NAMES.contains(&written) || path.exists() {
         return Ok(());
     }
     Err(Failure::input(format!(
         "{origin}: course = \"{}\": there is no such course and no such file; the courses are {}, others are trajectory files{}",
         quoted(written),
-        COURSES.join(", "),
-        did_you_mean(written, COURSES)
+        CourseChoice::NAMES.join(", "),
+        did_you_mean(written, CourseChoice::NAMES)
     )))
 }
 
@@ -247,7 +244,7 @@ impl ScenarioArgs {
             file.vehicle = if vehicle.ends_with(".toml") { from_here(vehicle) } else { vehicle.clone() };
         }
         if let Some(course) = &self.course {
-            let named = COURSES.contains(&course.as_str());
+            let named = CourseChoice::NAMES.contains(&course.as_str());
             if file.course.as_deref().unwrap_or("eight") != course {
                 // They belong to the file's course.
                 (file.speed_m_s, file.step_m) = (None, None);

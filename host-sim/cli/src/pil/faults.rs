@@ -8,7 +8,7 @@ use quatrack::link::{FromBoard, LawChoice, NoCommand, Parameter, StateIn, Table,
 use quatrack::nalgebra::Vector3;
 use quatrack::supervisor::Mode;
 use quatrack::{FlatSample, RigidState, State, Tick};
-use quatrack_simulation::faults::{Crafts, Fault, Flown, HEIGHT_M, Row, Signals, fly_by};
+use quatrack_simulation::faults::{Crafts, Fault, HEIGHT_M, Row, Signals, UnderTest, fly_by};
 
 use super::PilError;
 use super::client::Client;
@@ -57,7 +57,7 @@ pub fn fly(client: &mut Client, fault: &Fault) -> Result<Row, PilError> {
     board.failed.map_or(row, Err)
 }
 
-/// In lock-step, armed, with a hover to follow, under the law that it flies where nobody chooses.
+/// In lock-step, armed, with a hover to follow, under the cascade.
 fn take_off(client: &mut Client) -> Result<(), PilError> {
     client.request(&ToBoard::Disarm)?;
     client.set(Parameter::Decimation(0))?;
@@ -94,7 +94,7 @@ impl Board<'_> {
     }
 }
 
-impl Flown for Board<'_> {
+impl UnderTest for Board<'_> {
     fn step(&mut self, now: Tick, signals: &Signals<'_>) -> Option<Vector4<f64>> {
         if self.failed.is_some() {
             return None;

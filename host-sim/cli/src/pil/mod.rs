@@ -15,6 +15,7 @@
 //!     client       a board behind its line
 //!       emulator   the process that runs an image
 //!       line       pipes or a serial port, with deadlines
+//!       interrupt  Ctrl-C ends a wait
 //!         image    built here, or given; its size in flash and RAM
 //! ```
 

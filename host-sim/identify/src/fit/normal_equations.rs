@@ -34,8 +34,7 @@ impl Believed<'_> {
         DVector::from_fn(step.len(), |j, _| step[j] * self.units[j])
     }
 
-    /// By how many units the estimate moves with blocks that are drawn and priors whose centres are: one a draw. As many parameters as
-    /// the blocks have.
+    /// Change of the estimate, in units, for one draw of the blocks and of the priors' centres; as many parameters as the blocks have.
     pub(super) fn drawn(&self, blocks: &[Block], weights: &[f64], dice: &mut Dice) -> DVector<f64> {
         let count = blocks.first().map_or(0, |block| block.score.len());
         let (mut matrix, mut slope) = (DMatrix::zeros(count, count), DVector::zeros(count));

@@ -6,7 +6,7 @@ use super::problem::{Drive, Prepared};
 use crate::filter::derivative;
 use crate::flight::STEP_S;
 
-/// Ratio of the two inertias beyond which none is told: the wider one is as far from the narrower as a vehicle's from another's.
+/// Largest ratio of the two inertias; beyond it none is told.
 const MOST_APART: f64 = 1.35;
 
 /// The yaw balance `M = J w' + d w - L M'`, in which the torque of speeding up comes with `M'`, solved both ways.
@@ -36,8 +36,10 @@ impl Yaw {
     /// The two inertias, kg m^2, between which the true one lies; nothing where they are too far apart to tell it.
     pub(super) fn bracket(&self) -> Option<[f64; 2]> {
         let ends = [self.forward.values[0], self.backward_kg_m2];
+        // A NaN is neither.
+        let told = ends.iter().all(|inertia| *inertia > 0.0);
         let [least, most] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-        (least > 0.0 && most <= MOST_APART * least).then_some([least, most])
+        (told && most <= MOST_APART * least).then_some([least, most])
     }
 
     /// Both inertias for a message.

@@ -3,12 +3,12 @@
 //!
 //! A filter that does not know of drag leans by as much as the drag is of g, 7 degrees at 2 m/s, and one that is told no heading turns away
 //! with the gyroscope's bias, by 0.3 rad in a minute. Both would go into drag and airflow moment, which are across the body. Neither is
-//! needed here: gravity tells the tilt, and what the craft accelerates by tells the heading, once a log is looked at from both ends.
+//! needed here: gravity tells the tilt, and the direction of the acceleration tells the heading, once a log is looked at from both ends.
 //!
 //! Kalman's filter and the smoother of Rauch, Tung and Striebel over `[t b v p s k]`, about a reference attitude R_0: `R = exp(t) R_0`,
-//! `R' = R (w - b)x`, `v' = R f - g`, `p' = v`, with the gyroscope w, its bias b and the accelerometer f. What is seen is
+//! `R' = R (w - b)x`, `v' = R f - g`, `p' = v`, with the gyroscope w, its bias b and the accelerometer f. The log's position is
 //! `p + s v + k v'`: a filter of bandwidth w that does not know of a drag d is off by `d v / (w^2 + 1.4 w D + D^2)`, D for the
-//! derivative, so that s is `d / w^2` and k is `-1.4 d / w^3`. It is done again about what came out, since R is not linear.
+//! derivative, so that s is `d / w^2` and k is `-1.4 d / w^3`. It is done again about the result, since R is not linear.
 
 use nalgebra::{Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;
@@ -16,32 +16,32 @@ use quatrack_design::model::GRAVITY_M_S2;
 use super::STEP_S;
 use super::grid::Grid;
 
-/// Errors of attitude and gyroscope, velocity, position, by how much the position that is seen goes with velocity and acceleration.
+/// Errors of attitude, gyroscope, velocity and position; the lag s and the second-order lag k of the estimator's position.
 const STATES: usize = 14;
 const TURN: usize = 0;
 const BIAS: usize = 3;
 const VELOCITY: usize = 6;
 const POSITION: usize = 9;
-const AHEAD: usize = 12;
-const BENT: usize = 13;
+const FIRST_LAG: usize = 12;
+const SECOND_LAG: usize = 13;
 
 /// Rounds about a better reference each.
 const ROUNDS: usize = 2;
 
 /// Deviations at the start: attitude, rad, gyroscope's bias, rad/s, velocity, m/s, position, m.
 const AT_START: [f64; 4] = [0.1, 0.05, 0.5, 0.1];
-/// Of what the position goes with, s and s^2: of a filter of 5 rad/s and a drag of 0.5 1/s it is 20 ms and 6 ms^2 x 1000.
-const GOES_WITH: [f64; 2] = [0.03, 0.006];
-/// In a step of the grid: what gyroscope and accelerometer do not say of the time between their samples, rad/s and m/s^2.
+/// Deviations of the lags at the start, s and s^2: a filter of 5 rad/s that does not know of a drag of 0.5 1/s has 0.02 s and 0.006 s^2.
+const LAGS_AT_START: [f64; 2] = [0.03, 0.006];
+/// Errors of gyroscope and accelerometer over a step of the grid, between their samples, rad/s and m/s^2.
 const GYRO: f64 = 0.03;
 const FORCE: f64 = 0.5;
 /// The same where a sample is missing.
 const MISSING: [f64; 2] = [3.0, 20.0];
-/// In a step: the gyroscope's bias changes by this, rad/s, and the position by what no velocity has, m.
+/// Random steps of the gyroscope's bias, rad/s, and of the position, m, in a step of the grid.
 const BIAS_WALKS: f64 = 1e-5;
 const POSITION_WALKS: f64 = 1e-5;
-/// What the position goes with is constant but for this, s and s^2: without it, ten minutes of rounding leave no covariance.
-const GOES_WALKS: [f64; 2] = [3e-6, 3e-7];
+/// Random steps of the lags, s and s^2: without them, ten minutes of rounding leave no covariance.
+const LAG_WALKS: [f64; 2] = [3e-6, 3e-7];
 /// Of a sample. An estimated position is off by 5 mm for a tenth of a second or more: by so much that all of its samples in that time
 /// tell as much as one of them. So for a velocity where there is no position, m/s.
 const SEEN_POSITION_M: f64 = 0.02;
@@ -121,7 +121,7 @@ fn at_start(grid: &Grid) -> Filtered {
     if let Some(position) = grid.position.first() {
         state.fixed_rows_mut::<3>(POSITION).copy_from(position);
     }
-    let deviation = Vector::from_fn(|j, _| if j < AHEAD { AT_START[j / 3] } else { GOES_WITH[j - AHEAD] });
+    let deviation = Vector::from_fn(|j, _| if j < FIRST_LAG { AT_START[j / 3] } else { LAGS_AT_START[j - FIRST_LAG] });
     Filtered { state, covariance: Matrix::from_diagonal(&deviation.component_mul(&deviation)) }
 }
 
@@ -145,7 +145,7 @@ fn step(grid: &Grid, i: usize) -> Step {
     push.fixed_rows_mut::<3>(POSITION).copy_from(&(fall * (0.5 * h * h)));
     let [gyro, force] = if grid.on_board[i] && grid.on_board[i + 1] { [GYRO, FORCE] } else { MISSING };
     let deviations = [gyro * h, BIAS_WALKS, force * h, POSITION_WALKS];
-    let deviation = |j: usize| if j < AHEAD { deviations[j / 3] } else { GOES_WALKS[j - AHEAD] };
+    let deviation = |j: usize| if j < FIRST_LAG { deviations[j / 3] } else { LAG_WALKS[j - FIRST_LAG] };
     Step { carry, push, noise: Vector::from_fn(|j, _| deviation(j).powi(2)) }
 }
 
@@ -194,11 +194,11 @@ impl Filtered {
         }
     }
 
-    /// A position that goes with velocity and acceleration.
+    /// A position with the lags of an estimator's.
     fn see_position(&mut self, seen: &Vector3<f64>, velocity: &Vector3<f64>, acceleration: &Vector3<f64>) {
         for axis in 0..3 {
             let mut row = Vector::zeros();
-            (row[POSITION + axis], row[AHEAD], row[BENT]) = (1.0, velocity[axis], acceleration[axis]);
+            (row[POSITION + axis], row[FIRST_LAG], row[SECOND_LAG]) = (1.0, velocity[axis], acceleration[axis]);
             let column = self.covariance * row;
             let gain = column / (row.dot(&column) + SEEN_POSITION_M * SEEN_POSITION_M);
             self.state += gain * (seen[axis] - row.dot(&self.state));

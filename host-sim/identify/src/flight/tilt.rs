@@ -15,7 +15,7 @@ use crate::filter::{LowPass, derivative};
 
 /// Below this, Hz, the accelerometer and the position know the tilt better than an estimator does.
 const TILT_HZ: f64 = 1.5;
-/// A tilt that is off by more, rad, is not the estimator's.
+/// Larger corrections of the tilt, rad, are ignored: they are no error of an estimator.
 const TILT_MOST: f64 = 0.35;
 /// Corner of what is compared, Hz.
 const CORNER_HZ: f64 = 4.0;

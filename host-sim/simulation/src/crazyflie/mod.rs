@@ -8,6 +8,8 @@
 //!       course  the course that the high-level commander evaluates
 //!       standard   the standard cascade of a vehicle, certified once
 //!         own_craft  a craft that the controller does not know, with its table
+//!     recording  calls of the controller as they lie in the target's memory
+//! paper_limits  limits of the paper's laws as a source of the controller
 //! ```
 
 mod course;

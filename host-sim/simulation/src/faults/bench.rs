@@ -12,7 +12,7 @@ use quatrack::{Airframe, Quaternion, State};
 use quatrack_design::vehicle::Vehicle;
 use serde::Serialize;
 
-use super::kinds::{Fault, Flown, Signals};
+use super::kinds::{Fault, Signals, UnderTest};
 use super::object::Object;
 use super::under_guard::UnderGuard;
 use crate::flight::motor_loop::{PERIOD_S, RATE};
@@ -133,7 +133,7 @@ pub fn fly_object(fault: &Fault, craft: &Crafts) -> Result<Row, PlantError> {
 ///
 /// # Errors
 /// [`PlantError`] for what no plant can be.
-pub fn fly_by(fault: &Fault, craft: &Crafts, flight: &mut impl Flown) -> Result<Row, PlantError> {
+pub fn fly_by(fault: &Fault, craft: &Crafts, flight: &mut impl UnderTest) -> Result<Row, PlantError> {
     let vehicle = &craft.vehicle;
     let off = &fault.craft;
     let mut truth = Truth::as_designed(vehicle);

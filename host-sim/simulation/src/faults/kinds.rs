@@ -43,7 +43,7 @@ impl Signals<'_> {
 }
 
 /// A controller that flies a craft through a fault.
-pub trait Flown {
+pub trait UnderTest {
     /// Motor forces of a step at a tick, N; nothing where the motors are off.
     fn step(&mut self, now: Tick, signals: &Signals<'_>) -> Option<Vector4<f64>>;
 

@@ -15,7 +15,7 @@ mod object;
 mod under_guard;
 
 pub use self::bench::{Crafts, EndState, HEIGHT_M, Row, fly, fly_by, fly_object};
-pub use self::kinds::{Craft, Fault, Flown, Signals, kinds};
+pub use self::kinds::{Craft, Fault, Signals, UnderTest, kinds};
 
 /// The crafts that are flown.
 pub const VEHICLES: [&str; 3] = ["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"];

@@ -10,7 +10,7 @@ use quatrack_crazyflie::ffi;
 use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
 
-use super::kinds::{Flown, Signals};
+use super::kinds::{Signals, UnderTest};
 use crate::crazyflie::{Firmware, Sensors, Tune};
 
 /// Steps of 2 ms between two setpoints.
@@ -55,7 +55,7 @@ impl Object {
     }
 }
 
-impl Flown for Object {
+impl UnderTest for Object {
     fn step(&mut self, now: Tick, signals: &Signals<'_>) -> Option<Vector4<f64>> {
         if let Some(asked) = signals.asked.filter(|_| (now / 2).is_multiple_of(SETPOINT_STEPS)) {
             self.command(asked, signals.heading);

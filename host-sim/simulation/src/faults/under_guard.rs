@@ -9,7 +9,7 @@ use quatrack::{
     Controller, FifthOrderSample, FlatSample, Heading, Limits, Measured, Memory, MotorForces, Reference, Target, Tick,
 };
 
-use super::kinds::{Flown, Signals};
+use super::kinds::{Signals, UnderTest};
 
 /// The cascade of the core under its supervisor.
 pub(super) struct UnderGuard<'a> {
@@ -98,7 +98,7 @@ impl<'a> UnderGuard<'a> {
     }
 }
 
-impl Flown for UnderGuard<'_> {
+impl UnderTest for UnderGuard<'_> {
     fn step(&mut self, now: Tick, signals: &Signals<'_>) -> Option<Vector4<f64>> {
         self.forces_n(now, signals).map(|forces| Vector4::from(forces.map(f64::from)))
     }

@@ -7,10 +7,7 @@ use quatrack::cascade::{AirError, CascadeGainError};
 use quatrack::gain::GainError;
 use quatrack::law::ActuatorAwareGain;
 use quatrack::motor_lag::MotorLagError;
-use quatrack::{
-    Actuation, ActuatorAware, Airframe, Controller as CoreController, ControllerError, Equilibrium, Limits,
-    ReferenceError,
-};
+use quatrack::{Actuation, ActuatorAware, Airframe, Controller as CoreController, Equilibrium, Limits, ReferenceError};
 use quatrack_design::certify::{
     CertifyError, Controller, Plant, Region, RegionCertificate, Timing, certify, certify_region,
 };
@@ -46,9 +43,6 @@ pub enum FlightError {
     /// The core takes no such lag.
     #[error("the core refuses the lag: {0}")]
     Lag(#[from] MotorLagError),
-    /// The table becomes no controller.
-    #[error(transparent)]
-    Controller(#[from] ControllerError),
     /// The core takes no such gain.
     #[error("the core refuses the gain: {0}")]
     Gain(#[from] GainError),
@@ -155,16 +149,16 @@ impl<'a> CraftLaw<'a> {
 
     /// The law in the loop, its motors at the given thrusts, N; nothing where one of them is not finite.
     pub fn started(&self, thrusts_n: &Vector4<f64>) -> Option<MotorLoop<'_>> {
-        MotorLoop::new(self.controller().ok()?, self.airframe(), thrusts_n)
+        MotorLoop::new(self.controller(), self.airframe(), thrusts_n)
     }
 
-    fn controller(&self) -> Result<CoreController<'_>, ControllerError> {
+    fn controller(&self) -> CoreController<'_> {
         match &self.flown {
             ControllerSource::Gain(gain) => {
-                Ok(CoreController::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE))
+                CoreController::new(ActuatorAware::new(gain, &self.actuation), Limits::NONE)
             }
             ControllerSource::ByBodyRates(law, limits) => {
-                Ok(CoreController::new(*law, *limits).with_actuation(&self.actuation))
+                CoreController::new(*law, *limits).with_actuation(&self.actuation)
             }
         }
     }

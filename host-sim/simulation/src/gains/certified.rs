@@ -194,7 +194,7 @@ impl Design {
 
 impl Certified {
     /// Why there is no table, where there is none.
-    pub fn without_table(&self) -> &'static str {
+    pub fn why_no_table(&self) -> &'static str {
         match self.design.problem {
             Problem::ActuatorAware { .. } => {
                 "no board flies the actuator-aware law any more, so it has gains and a certificate alone; for a table write \

@@ -60,7 +60,7 @@ pub(super) struct AirEntry {
     pub(super) learn: Option<bool>,
 }
 
-/// Crafts, links and air that gains for motor forces must be stable on, besides their own.
+/// Crafts, links and air that gains down to the motors must be stable on, besides their own.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RegionEntry {

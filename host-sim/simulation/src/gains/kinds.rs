@@ -6,7 +6,7 @@ use quatrack_design::design::along::GainsAlong;
 use quatrack_design::design::cascade::GAINS;
 use quatrack_design::design::codegen::{rounded, rounded_along};
 
-/// Gains by the law that flies them; each kind is one of the table format's.
+/// Gains by the law that flies them.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Gains {
     /// 4 x 9.
@@ -37,7 +37,7 @@ pub enum TableRows {
 }
 
 impl Gains {
-    /// The kind of its table.
+    /// The kind of its table, or of its rows and columns where no table is made of it.
     pub fn kind(&self) -> TableKind {
         match self {
             Self::Equilibrium(_) => TableKind::Equilibrium,

@@ -12,10 +12,11 @@ use quatrack_design::design::cascade::{CascadeWeights, cascade};
 use quatrack_design::vehicle::Vehicle;
 
 use super::core_law::rigid_state;
-use super::told::{ToldError, ToldFigures};
+use super::not_flown::NotFlown;
+use super::told::ToldFigures;
 use super::track::Track;
 use crate::control_law::{ControlLaw, Input, Setpoint};
-use crate::crazyflie::{StandardError, standard_cascade};
+use crate::crazyflie::standard_cascade;
 use crate::flight::motor_laws::FlightError;
 use crate::flight::motor_loop::{self, PERIOD_S, RATE};
 use crate::vehicles;
@@ -42,7 +43,7 @@ struct Following {
 
 impl CascadeLaw {
     /// The law of [`flown_cascade`], at a hover.
-    pub(super) fn new(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, CascadeError> {
+    pub(super) fn new(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, NotFlown> {
         flown_cascade(vehicle, told).map(Self::hovering)
     }
 
@@ -90,24 +91,10 @@ impl Following {
     }
 }
 
-/// Why a vehicle is not flown by the cascade.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub(super) enum CascadeError {
-    /// A built-in vehicle has no design, or the core refuses a figure.
-    #[error(transparent)]
-    Flight(#[from] FlightError),
-    /// Another vehicle has no certified table.
-    #[error(transparent)]
-    Standard(#[from] StandardError),
-    /// The table is not certified for a figure that is told.
-    #[error(transparent)]
-    Told(#[from] ToldError),
-}
-
 /// The cascade that a scenario flies a vehicle with. A built-in one has that of [`cascade_of`]. Another vehicle has the certified table
 /// that `quatrack gains craft` makes, with the lag of its design, and its air where none is told; a lag that is told has to be in the
 /// table's region.
-fn flown_cascade(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, CascadeError> {
+fn flown_cascade(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, NotFlown> {
     if vehicles::is_built_in(vehicle) {
         return Ok(cascade_of(vehicle, told)?);
     }

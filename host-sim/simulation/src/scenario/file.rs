@@ -16,10 +16,10 @@ use quatrack_plan::quote::{one_line, quoted};
 use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor, value::MapAccessDeserializer};
 
-use super::endless::endless;
 use super::error::ScenarioError;
 use super::flight::Setpoints;
 use super::laws::Law;
+use super::non_finite::non_finite;
 
 /// The whole file. A key that is absent has its default.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq)]
@@ -250,7 +250,7 @@ impl ScenarioFile {
             let text = quoted(written.split(" #").next().unwrap_or("").trim());
             ScenarioError::Syntax { origin: origin.to_owned(), line, text, reason }
         };
-        if let Some(start) = endless(text) {
+        if let Some(start) = non_finite(text) {
             return Err(at(start, "must be a finite number".to_owned()));
         }
         toml::from_str(text).map_err(|error| at(error.span().map_or(0, |span| span.start), one_line(error.message())))

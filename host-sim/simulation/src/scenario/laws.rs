@@ -3,13 +3,13 @@
 use std::str::FromStr;
 
 use quatrack::gains::paper as gains;
-use quatrack::gains::table::CascadeTable;
 use quatrack_design::vehicle::Vehicle;
 use serde::{Deserialize, Serialize};
 
-use super::cascade_law::{CascadeError, CascadeLaw};
+use super::cascade_law::CascadeLaw;
 use super::core_law::{CoreLaw, Gain};
-use super::object_law::{ObjectError, ObjectLaw};
+use super::not_flown::NotFlown;
+use super::object_law::ObjectLaw;
 use super::told::{ToldError, ToldFigures};
 use crate::control_law::ControlLaw;
 use crate::crazyflie::StandardError;
@@ -145,64 +145,71 @@ impl Law {
     /// [`LawError`] but for [`LawError::Unknown`].
     pub fn start(self, vehicle: &Vehicle, told: &ToldFigures) -> Result<Box<dyn ControlLaw>, LawError> {
         let actuation = Actuation::of(vehicle);
-        let refused = |error| LawError::Core { law: self.name(), vehicle: vehicle.name().to_owned(), error };
-        let core = |law: Result<CoreLaw, FlightError>| -> Result<Box<dyn ControlLaw>, LawError> {
-            law.map(|law| Box::new(law) as Box<dyn ControlLaw>).map_err(refused)
-        };
-        let paper = |gain: Gain| core(CoreLaw::paper(vehicle, told, gain));
-        Ok(match self {
-            Self::Quatrack => {
-                Box::new(CascadeLaw::new(vehicle, told).map_err(|error| LawError::of_cascade(vehicle, error))?)
+        Ok(match self.designed(vehicle, told)? {
+            Designed::Cascade(law) => law,
+            Designed::Core(law) => law,
+            Designed::Nothing(Undesigned::Crazyflie) => {
+                Box::new(ObjectLaw::start(vehicle, told).map_err(|error| self.refused(vehicle, error))?)
             }
-            Self::Crazyflie => {
-                Box::new(ObjectLaw::start(vehicle, told).map_err(|error| LawError::of_object(vehicle, error))?)
+            Designed::Nothing(Undesigned::Mellinger) => {
+                Box::new(Mellinger::new(MellingerConfig::firmware(told.mass_kg, &actuation), actuation))
             }
-            Self::ActuatorAware => core(CoreLaw::actuator_aware(vehicle, told))?,
-            Self::LyapE => paper(Gain::Equilibrium(&gains::LYAP_E))?,
-            Self::LqrE => paper(Gain::Equilibrium(&gains::LQR_E))?,
-            Self::LyapF => paper(Gain::FlatOutput(&gains::LYAP_F))?,
-            Self::LqrF => paper(Gain::FlatOutput(&gains::LQR_F))?,
-            Self::Mellinger => Box::new(Mellinger::new(MellingerConfig::firmware(told.mass_kg, &actuation), actuation)),
-            Self::Lee => Box::new(Lee::new(LeeConfig::firmware(told.mass_kg), actuation)),
-            Self::Pid => Box::new(CascadedPid::new(CascadedPidConfig::firmware(vehicle, told.mass_kg), actuation)),
+            Designed::Nothing(Undesigned::Lee) => Box::new(Lee::new(LeeConfig::firmware(told.mass_kg), actuation)),
+            Designed::Nothing(Undesigned::Pid) => {
+                Box::new(CascadedPid::new(CascadedPidConfig::firmware(vehicle, told.mass_kg), actuation))
+            }
         })
     }
-}
 
-impl LawError {
-    /// Why [`Law::Quatrack`] does not fly a vehicle.
-    pub(super) fn of_cascade(vehicle: &Vehicle, error: CascadeError) -> Self {
-        let (law, vehicle) = (Law::Quatrack.name(), vehicle.name().to_owned());
-        match error {
-            CascadeError::Flight(error) => Self::Core { law, vehicle, error },
-            CascadeError::Standard(error) => Self::NoTable { law, vehicle, error: error.into() },
-            CascadeError::Told(error) => Self::Told { law, vehicle, error },
-        }
+    /// The law with all that is designed for a vehicle, before it flies.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub(super) fn designed(self, vehicle: &Vehicle, told: &ToldFigures) -> Result<Designed, LawError> {
+        let core = |law: CoreLaw| Designed::Core(law.into());
+        let paper = |gain| CoreLaw::paper(vehicle, told, gain).map(core).map_err(NotFlown::from);
+        let designed = match self {
+            Self::Quatrack => CascadeLaw::new(vehicle, told).map(|law| Designed::Cascade(law.into())),
+            Self::ActuatorAware => CoreLaw::actuator_aware(vehicle, told).map(core).map_err(NotFlown::from),
+            Self::LyapE => paper(Gain::Equilibrium(&gains::LYAP_E)),
+            Self::LqrE => paper(Gain::Equilibrium(&gains::LQR_E)),
+            Self::LyapF => paper(Gain::FlatOutput(&gains::LYAP_F)),
+            Self::LqrF => paper(Gain::FlatOutput(&gains::LQR_F)),
+            Self::Crazyflie => Ok(Designed::Nothing(Undesigned::Crazyflie)),
+            Self::Mellinger => Ok(Designed::Nothing(Undesigned::Mellinger)),
+            Self::Lee => Ok(Designed::Nothing(Undesigned::Lee)),
+            Self::Pid => Ok(Designed::Nothing(Undesigned::Pid)),
+        };
+        designed.map_err(|error| self.refused(vehicle, error))
     }
 
-    /// Why [`Law::Crazyflie`] does not.
-    fn of_object(vehicle: &Vehicle, error: ObjectError) -> Self {
-        let (law, vehicle) = (Law::Crazyflie.name(), vehicle.name().to_owned());
+    fn refused(self, vehicle: &Vehicle, error: NotFlown) -> LawError {
+        let (law, vehicle) = (self.name(), vehicle.name().to_owned());
         match error {
-            ObjectError::Standard(error) => Self::NoTable { law, vehicle, error: error.into() },
-            ObjectError::Told(error) => Self::Told { law, vehicle, error },
-            ObjectError::Refused(reason) => Self::Object { law, vehicle, reason },
+            NotFlown::Core(error) => LawError::Core { law, vehicle, error },
+            NotFlown::Standard(error) => LawError::NoTable { law, vehicle, error: error.into() },
+            NotFlown::Told(error) => LawError::Told { law, vehicle, error },
+            NotFlown::Object(reason) => LawError::Object { law, vehicle, reason },
         }
     }
 }
 
-/// The cascade of a table at the start of a flight of a vehicle of which it is told something.
-///
-/// # Errors
-/// [`LawError::Core`].
-pub fn start_table(
-    vehicle: &Vehicle,
-    told: &ToldFigures,
-    table: &CascadeTable,
-) -> Result<Box<dyn ControlLaw>, LawError> {
-    CascadeLaw::of_table(vehicle, told, table)
-        .map(|law| Box::new(law) as Box<dyn ControlLaw>)
-        .map_err(|error| LawError::Core { law: Law::Quatrack.name(), vehicle: vehicle.name().to_owned(), error })
+/// A law before a flight.
+#[derive(Clone)]
+pub(super) enum Designed {
+    Cascade(Box<CascadeLaw>),
+    Core(Box<CoreLaw>),
+    /// Made anew for each flight.
+    Nothing(Undesigned),
+}
+
+/// Laws whose gains are figures of a firmware, not the result of a design.
+#[derive(Clone, Copy)]
+pub(super) enum Undesigned {
+    Crazyflie,
+    Mellinger,
+    Lee,
+    Pid,
 }
 
 impl FromStr for Law {

@@ -18,11 +18,13 @@
 //!       prototype    a law designed once for many flights
 //!       laws         laws by name
 //!         object_law the Crazyflie controller as a law
-//!       table_law    the controller of a table of gains as a law
-//!         core_law   the core's controller as a law
+//!       table_law    a table of gains as a law
+//!         cascade_law  the core's cascade as a law
+//!         core_law   the core's other laws
+//!           not_flown  why a law does not fly a vehicle
 //!   told             what a law is told, and the ranges in which it is taken
 //!   file             the keys in TOML
-//!     endless        numbers that are none, or have no end
+//!     non_finite   the first number that is not finite
 //! ```
 
 mod cascade_law;
@@ -31,7 +33,6 @@ mod checks;
 pub mod compare;
 mod core_law;
 pub mod course;
-mod endless;
 mod error;
 pub mod file;
 pub mod filtered;
@@ -40,10 +41,13 @@ mod kept;
 mod laws;
 mod log;
 pub mod manoeuvres;
+mod non_finite;
+mod not_flown;
 mod object_law;
 mod prototype;
 mod recording;
 pub mod sensors;
+mod table_law;
 mod told;
 mod track;
 mod varied;
@@ -53,11 +57,12 @@ pub use cascade_law::{cascade_of, cascade_of_table};
 pub use core_law::{actuation_of, actuator_aware_of};
 pub use error::{ScenarioError, StartError};
 pub use kept::Tally;
-pub use laws::{Law, LawError, start_table};
+pub use laws::{Law, LawError};
 pub use log::{LogRow, cflib_csv};
 pub use prototype::Prototype;
 pub use recording::{Around, Recording};
 pub use sensors::SensorNoise;
+pub use table_law::{TableLawError, start_table};
 pub use told::{ToldError, ToldFigures};
 pub use track::Track;
 pub use whole::{CourseChoice, FilterFigures, Scenario, Side, StartOffset};

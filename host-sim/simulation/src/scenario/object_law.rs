@@ -4,9 +4,10 @@ use nalgebra::Vector4;
 use quatrack_crazyflie::abi::{self, Mode};
 use quatrack_design::vehicle::Vehicle;
 
+use super::not_flown::NotFlown;
 use super::told::{ToldError, ToldFigures, lag_range_ms};
 use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ, Setpoint};
-use crate::crazyflie::{Firmware, Sensors, StandardError, Tune, knows, platform, standard_cascade};
+use crate::crazyflie::{Firmware, Sensors, Tune, knows, platform, standard_cascade};
 use crate::plant::RigidState;
 
 /// The firmware's stabilizer around the controller. There is one controller in a process: another flight of it waits until
@@ -17,24 +18,13 @@ pub(super) struct ObjectLaw {
     sent_s: Option<f64>,
 }
 
-/// Why the object does not fly a vehicle.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum ObjectError {
-    /// There is no certified table for it.
-    Standard(StandardError),
-    /// A figure that it is told is not one that it takes.
-    Told(ToldError),
-    /// In its own words.
-    Refused(String),
-}
-
 impl ObjectLaw {
     /// Switched on for a vehicle: with its default table for a craft that it knows, otherwise with the one that `quatrack gains craft`
     /// makes for the vehicle. What it is told and does not take is refused, where the firmware would fly on with what it had.
     ///
     /// # Errors
-    /// [`ObjectError`].
-    pub(super) fn start(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, ObjectError> {
+    /// [`NotFlown`].
+    pub(super) fn start(vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, NotFlown> {
         let tune = Tune {
             drag_per_s: told.drag_per_s,
             moment_n_s: told.moment_n_m_per_m_s,
@@ -46,17 +36,20 @@ impl ObjectLaw {
             None => with_its_own(vehicle, told, &tune, sensors)?,
         };
         if firmware.refused_table() {
+            let Some(lag_s) = told.lag_s else {
+                return Err(NotFlown::Object("the controller refuses its own default table".to_owned()));
+            };
             let [least, most] = lag_range_ms(vehicle);
-            let (key, value) = ("lag_ms", 1e3 * told.lag_s.unwrap_or_default());
+            let (key, value) = ("lag_ms", 1e3 * lag_s);
             let must = format!("from {least} to {most} ms, for which the Crazyflie controller has tables");
-            return Err(ObjectError::Told(ToldError { key, value, must }));
+            return Err(NotFlown::Told(ToldError { key, value, must }));
         }
         Ok(Self { firmware, setpoint: abi::Setpoint::default(), sent_s: None })
     }
 }
 
 /// A vehicle that the object does not know, with the table that `quatrack gains craft` makes for it.
-fn with_its_own(vehicle: &Vehicle, told: &ToldFigures, tune: &Tune, sensors: Sensors) -> Result<Firmware, ObjectError> {
+fn with_its_own(vehicle: &Vehicle, told: &ToldFigures, tune: &Tune, sensors: Sensors) -> Result<Firmware, NotFlown> {
     let own_kg = vehicle.mass_kg();
     if told.mass_kg != own_kg {
         let must = if knows(vehicle) {
@@ -64,11 +57,11 @@ fn with_its_own(vehicle: &Vehicle, told: &ToldFigures, tune: &Tune, sensors: Sen
         } else {
             format!("{own_kg}, the vehicle's own in kg: the Crazyflie controller's table is made for that")
         };
-        return Err(ObjectError::Told(ToldError { key: "mass_kg", value: told.mass_kg, must }));
+        return Err(NotFlown::Told(ToldError { key: "mass_kg", value: told.mass_kg, must }));
     }
-    let standard = standard_cascade(vehicle).map_err(ObjectError::Standard)?;
-    told.lag_certified_by(&standard.table.certified).map_err(ObjectError::Told)?;
-    Firmware::start_own(vehicle, &platform(vehicle), &standard.craft, tune, sensors).map_err(ObjectError::Refused)
+    let standard = standard_cascade(vehicle).map_err(NotFlown::Standard)?;
+    told.lag_certified_by(&standard.table.certified).map_err(NotFlown::Told)?;
+    Firmware::start_own(vehicle, &platform(vehicle), &standard.craft, tune, sensors).map_err(NotFlown::Object)
 }
 
 impl ControlLaw for ObjectLaw {

@@ -2,14 +2,10 @@
 
 use quatrack_design::vehicle::Vehicle;
 
-use super::cascade_law::CascadeLaw;
-use super::core_law::{CoreLaw, Gain};
-use super::laws::{Law, LawError};
+use super::laws::{Designed, Law, LawError};
 use super::told::ToldFigures;
 use super::track::Track;
 use crate::control_law::ControlLaw;
-use crate::flight::motor_laws::FlightError;
-use quatrack::gains::paper as gains;
 
 /// A law at the start of a flight, and the parts that it shares with others.
 #[derive(Clone)]
@@ -17,15 +13,7 @@ pub struct Prototype {
     law: Law,
     vehicle: Vehicle,
     told: ToldFigures,
-    made: Made,
-}
-
-#[derive(Clone)]
-enum Made {
-    Cascade(Box<CascadeLaw>),
-    Core(Box<CoreLaw>),
-    /// Made anew each time: there is nothing to design.
-    Anew,
+    designed: Designed,
 }
 
 impl Prototype {
@@ -34,30 +22,16 @@ impl Prototype {
     /// # Errors
     /// As [`Law::start`].
     pub fn new(law: Law, vehicle: &Vehicle, told: &ToldFigures) -> Result<Self, LawError> {
-        let refused = |error| LawError::Core { law: law.name(), vehicle: vehicle.name().to_owned(), error };
-        let core = |made: Result<CoreLaw, FlightError>| made.map(|law| Made::Core(law.into())).map_err(refused);
-        let paper = |gain| core(CoreLaw::paper(vehicle, told, gain));
-        let made = match law {
-            Law::Quatrack => CascadeLaw::new(vehicle, told)
-                .map(|law| Made::Cascade(law.into()))
-                .map_err(|error| LawError::of_cascade(vehicle, error)),
-            Law::ActuatorAware => core(CoreLaw::actuator_aware(vehicle, told)),
-            Law::LyapE => paper(Gain::Equilibrium(&gains::LYAP_E)),
-            Law::LqrE => paper(Gain::Equilibrium(&gains::LQR_E)),
-            Law::LyapF => paper(Gain::FlatOutput(&gains::LYAP_F)),
-            Law::LqrF => paper(Gain::FlatOutput(&gains::LQR_F)),
-            Law::Crazyflie | Law::Mellinger | Law::Lee | Law::Pid => Ok(Made::Anew),
-        }?;
-        let (vehicle, told) = (vehicle.clone(), *told);
-        Ok(Self { law, made, vehicle, told })
+        let designed = law.designed(vehicle, told)?;
+        Ok(Self { law, designed, vehicle: vehicle.clone(), told: *told })
     }
 
     /// With the setpoints of a track, evaluated once for all flights along it.
     pub fn along(mut self, track: &Track) -> Self {
-        match &mut self.made {
-            Made::Cascade(law) => law.share(track),
-            Made::Core(law) => law.share(track),
-            Made::Anew => {}
+        match &mut self.designed {
+            Designed::Cascade(law) => law.share(track),
+            Designed::Core(law) => law.share(track),
+            Designed::Nothing(_) => {}
         }
         self
     }
@@ -77,10 +51,10 @@ impl Prototype {
     /// # Errors
     /// As [`Law::start`].
     pub fn start(&self) -> Result<Box<dyn ControlLaw>, LawError> {
-        Ok(match &self.made {
-            Made::Cascade(law) => law.clone(),
-            Made::Core(law) => law.clone(),
-            Made::Anew => self.law.start(&self.vehicle, &self.told)?,
+        Ok(match &self.designed {
+            Designed::Cascade(law) => law.clone(),
+            Designed::Core(law) => law.clone(),
+            Designed::Nothing(_) => self.law.start(&self.vehicle, &self.told)?,
         })
     }
 }

@@ -116,6 +116,7 @@ fn thousandths(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flight::motor_loop::RATE;
     use quatrack::Air;
 
     #[test]
@@ -125,6 +126,17 @@ mod tests {
         assert!(Air { drag_per_s: DRAG_PER_S[1] as f32, ..Air::NONE }.checked().is_ok());
         let moment_n_s = [MOMENT_N_M_PER_M_S[1] as f32; 2];
         assert!(Air { moment_n_s, ..Air::NONE }.checked().is_ok());
+    }
+
+    #[test]
+    fn the_lags_of_built_in_vehicles_are_those_of_their_tables() {
+        use quatrack::gains::cascade::{BRUSHLESS, CRAZYFLIE_2_1, UPGRADE_KIT};
+        for tables in [BRUSHLESS, CRAZYFLIE_2_1, UPGRADE_KIT] {
+            let longest_s =
+                tables.map(|built_in| built_in.table.certified.motor_lag_s[1]).into_iter().fold(0.0, f32::max);
+            assert_eq!(thousandths(1e3 * f64::from(longest_s)), BUILT_IN_LAG_MS[1]);
+        }
+        assert_eq!(BUILT_IN_LAG_MS[0], 2e3 / f64::from(RATE.hz()));
     }
 
     #[test]

@@ -41,6 +41,11 @@ pub enum CourseChoice {
     Trajectory(String),
 }
 
+impl CourseChoice {
+    /// The courses that are no file: an eight, a hover, a step, and the paper's trajectories.
+    pub const NAMES: [&str; 5] = ["eight", "hover", "step", "mild", "aggressive"];
+}
+
 /// A Kalman filter's figures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilterFigures {

@@ -84,7 +84,7 @@ fn no_table_is_made_and_it_is_said_why() {
     let certified =
         Design::from_toml("aware", TEXT, Path::new("")).and_then(|design| design.certify()).expect("certified");
     assert_eq!((certified.to_bytes(), artifacts(&certified, Path::new("")).len()), (None, 1));
-    assert!(certified.without_table().contains("method = \"cascade\""));
+    assert!(certified.why_no_table().contains("method = \"cascade\""));
 }
 
 #[test]

@@ -11,7 +11,6 @@ use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_plan::trajectory::transform::Transform;
 use quatrack_simulation::control_law::ControlLaw;
-use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::flight::reference::{Exact, Reference};
 use quatrack_simulation::flight::reference_check::ReferenceCheck;
 use quatrack_simulation::gains::{Design, OnBoardTrajectory};
@@ -109,32 +108,9 @@ pub(in crate::cli) fn in_scenario<T>(
     fly: &dyn Fn(&mut dyn ControlLaw, &str) -> Result<T, Failure>,
 ) -> Result<T, Failure> {
     let table = GainTable::from_bytes(&source.bytes).map_err(|error| no_table(path, &source.bytes, &error))?;
-    let (kind, head) = (table.kind(), *table.head());
-    let not_of_cascade =
-        || refused(path, &format!("its kind is {kind}; a scenario takes a table of the cascade, or --law"));
-    if kind != TableKind::Cascade {
-        return Err(not_of_cascade());
-    }
-    if vehicles::id(&scenario.vehicle) != head.vehicle.id {
-        let reason = format!("made for {}, not for the scenario's {}", head.vehicle, scenario.vehicle.name());
-        return Err(refused(path, &reason));
-    }
-    let accepted = table.accept_for(&head.vehicle, RATE).map_err(|error| match error {
-        // No command that flies scenarios takes another rate.
-        AcceptError::Rate { table_hz, loop_hz } => {
-            refused(path, &format!("certified at {table_hz} Hz; a scenario is flown at {loop_hz}"))
-        }
-        other => refused(path, &other),
-    })?;
-    let cascade = accepted.cascade().ok_or_else(not_of_cascade)?;
-    let (own_kg, told_kg) = (scenario.vehicle.mass_kg() as f32, scenario.told.mass_kg as f32);
-    if !cascade.certified.holds_mass(own_kg, told_kg) {
-        let percent = 100.0 * cascade.certified.mass_share;
-        let reason = format!("told {told_kg} kg; it is certified for {own_kg} kg and {percent:.0} % more or less");
-        return Err(refused(path, &reason));
-    }
-    let mut law = start_table(&scenario.vehicle, &scenario.told, cascade).map_err(|error| refused(path, &error))?;
-    fly(law.as_mut(), head.name.as_str())
+    let started = start_table(&scenario.vehicle, &scenario.told, &table);
+    let mut law = started.map_err(|error| refused(path, &error))?;
+    fly(law.as_mut(), table.head().name.as_str())
 }
 
 /// A file that is no table: text is named as such, with the table beside it.
@@ -182,7 +158,7 @@ pub(in crate::cli) fn source(path: &Path) -> Result<Source, Failure> {
     if path.extension().is_some_and(|extension| extension == "toml") {
         let design = Design::from_file(path).map_err(|error| gains::failed(path, &error))?;
         let certified = design.certify().map_err(|error| gains::failed(path, &error))?;
-        let bytes = certified.to_bytes().ok_or_else(|| refused(path, &certified.without_table()))?;
+        let bytes = certified.to_bytes().ok_or_else(|| refused(path, &certified.why_no_table()))?;
         return Ok(Source { bytes, vehicle: Some(design.vehicle) });
     }
     let bytes = bounded::read(path).map_err(|error| refused(path, &format!("cannot be read ({error})")))?;

@@ -163,7 +163,7 @@ fn a_table_of_the_cascade_states_its_certified_region_and_flies_its_vehicle() {
     assert_eq!((&own["iae_m_s"], &own["law"]), (&default["iae_m_s"], &"cascade-brushless-50ms".into()));
     assert_refused(&quatrack(&["fly", "--gains", &table, "--vehicle", "crazyflie-2.1"]), 2, &[&table, "made for"]);
     let heavy = ["fly", "--gains", &table, "--vehicle", "crazyflie-2.1-brushless", "--told-mass-kg", "0.05"];
-    assert_refused(&quatrack(&heavy), 2, &[&table, "certified for 0.0393 kg"]);
+    assert_refused(&quatrack(&heavy), 2, &[&table, "within 20 % of the vehicle's 0.0393 kg"]);
     let on_trajectory = ["fly", "--gains", &table, "--trajectory", "mild"];
     assert_refused(&quatrack(&on_trajectory), 2, &[&table, "--course instead of --trajectory"]);
 

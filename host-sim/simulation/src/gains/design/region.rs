@@ -27,7 +27,8 @@ pub(super) struct Region {
     pub(super) from: Vec<IdentifiedBound>,
 }
 
-/// Bounds as they are stated; what is not stated is identified, where the design asks for that, else nothing is off but the air.
+/// The stated bounds. Missing ones come from the vehicle's intervals where the design says `from = "identified"`; else they are
+/// zero, but for the air's.
 pub(super) fn resolved(
     entry: &RegionEntry,
     vehicle: &Vehicle,

@@ -1,10 +1,10 @@
-//! Numbers that are none, or have no end: the text of a file in; where the first of them is written out.
+//! The first number of a TOML text that is not finite: the text in; its byte offset out.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The first byte of it; nothing of a text that is no TOML.
-pub(super) fn endless(text: &str) -> Option<usize> {
+/// Its first byte; nothing where all are finite, or the text is no TOML.
+pub(super) fn non_finite(text: &str) -> Option<usize> {
     first(DeTable::parse(text).ok()?.get_ref().values())
 }
 
@@ -29,9 +29,9 @@ mod tests {
     #[test]
     fn the_first_place_of_all_tables_and_lists_is_found() {
         let text = "b = 1.5e3\na = 7\n[z]\ny = [1.0, -nan]\n[c]\nd = { e = inf }\n";
-        assert_eq!(endless(text), text.find("-nan"));
-        assert_eq!(endless(&text.replace("-nan", "1_000.0")), text.replace("-nan", "1_000.0").find("inf"));
-        assert_eq!(endless("a = 1e999"), Some(4));
-        assert_eq!((endless("a = 1.0\nb = \"nan\"\n"), endless("a = nan nan")), (None, None));
+        assert_eq!(non_finite(text), text.find("-nan"));
+        assert_eq!(non_finite(&text.replace("-nan", "1_000.0")), text.replace("-nan", "1_000.0").find("inf"));
+        assert_eq!(non_finite("a = 1e999"), Some(4));
+        assert_eq!((non_finite("a = 1.0\nb = \"nan\"\n"), non_finite("a = nan nan")), (None, None));
     }
 }
