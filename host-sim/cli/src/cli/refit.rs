@@ -1,6 +1,7 @@
 //! `quatrack refit`: a trajectory in; one that the Crazyflie's trajectory memory holds, and how far off it is, out.
 
-use std::fmt::Write as _;
+mod report;
+
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -10,7 +11,7 @@ use quatrack::{Equilibrium, ErrorForm, FeedForward, Limits, Rate};
 use quatrack_design::design::codegen::rounded;
 use quatrack_design::design::synthesis::{self, EquilibriumWeights};
 use quatrack_plan::trajectory::Trajectory;
-use quatrack_plan::trajectory::compressed;
+use quatrack_plan::trajectory::compressed::{self, CompressedError};
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::poly4d::{MEMORY_BYTES, PIECES_MAX, StoredTrajectory};
 use quatrack_plan::trajectory::polynomial::{PiecewisePolynomial, csv};
@@ -21,8 +22,8 @@ use quatrack_simulation::flight::deviation::Deviation;
 use quatrack_simulation::flight::metrics::Metrics;
 use quatrack_simulation::flight::reference::Exact;
 use quatrack_simulation::flight::reference_check::ReferenceCheck;
-use serde::Serialize;
 
+use self::report::{Comparison, RefitReport, text};
 use super::limits::LimitsChoice;
 use super::transform::TransformArgs;
 use super::{Failure, output};
@@ -37,8 +38,8 @@ const RATE_HZ: u32 = 500;
 ///
 /// The pieces have degree 7 and meet up to jerk. A trajectory that already has few enough pieces keeps them.
 ///
-/// Exit code 1, and nothing is written, where the fit is further off than --tolerance-m or LQR-E is lost on either
-/// trajectory. 2: an input that cannot be used.
+/// Exit code 1, and nothing is written, where the fit or its compressed form is further off than --tolerance-m, or LQR-E
+/// is lost on either trajectory. 2: an input that cannot be used.
 ///
 /// Examples:
 ///   quatrack refit aggressive --csv w.csv
@@ -54,7 +55,7 @@ pub(crate) struct Args {
     /// Most pieces, 1 to 31, the most that the memory holds.
     #[arg(long, value_name = "N", default_value_t = PIECES_MAX, value_parser = pieces_parser())]
     pieces: usize,
-    /// Write nothing and exit with 1 if the position is further off than this.
+    /// Write nothing and exit with 1 if the position is further off than this; with --compressed, of that form, too.
     #[arg(long, value_name = "X", value_parser = tolerance)]
     tolerance_m: Option<f64>,
     /// Write the pieces as they are stored, in the uav_trajectories form that Bitcraze's tools read.
@@ -72,36 +73,6 @@ pub(crate) struct Args {
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
-}
-
-/// The figures that are printed, and written as JSON.
-#[derive(Serialize)]
-struct RefitReport {
-    original_pieces: usize,
-    pieces: usize,
-    memory_bytes: usize,
-    duration_s: f64,
-    /// Of the pieces as they are stored and as the firmware evaluates them.
-    largest_difference: Deviation,
-    lqr_e: Comparison,
-    lqr_e_feed_forward: Comparison,
-}
-
-/// IAE (23) times the sampling period of one controller, m s; nothing where the flight was lost.
-#[derive(Serialize)]
-struct Comparison {
-    original_iae_m_s: Option<f64>,
-    refit_iae_m_s: Option<f64>,
-    /// The refit flown, its distance taken from the original.
-    refit_from_original_iae_m_s: Option<f64>,
-}
-
-impl RefitReport {
-    fn lost(&self) -> bool {
-        [&self.lqr_e, &self.lqr_e_feed_forward]
-            .iter()
-            .any(|law| law.original_iae_m_s.is_none() || law.refit_iae_m_s.is_none())
-    }
 }
 
 fn pieces_parser() -> RangedU64ValueParser<usize> {
@@ -160,15 +131,19 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             remedy(args.pieces)
         )));
     }
+    let packed = match &args.compressed {
+        Some(path) => Some((path, Packed::of(&fitted, &original).map_err(|error| failed(&error))?)),
+        None => None,
+    };
+    if let Some((_, packed)) = &packed {
+        packed.check(name, args.tolerance_m)?;
+    }
     if let Some(path) = &args.csv {
         output::write(path, csv::write(stored.polynomials()).as_bytes())?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
-    if let Some(path) = &args.compressed {
-        let bytes = compressed::to_bytes(&fitted).map_err(|error| failed(&error))?;
-        let off = compressed::from_bytes(&bytes).map_err(|error| failed(&error))?;
-        let off = Deviation::between(&Exact(&original), &Exact(&off));
-        output::write(path, &bytes)?;
+    if let Some((path, Packed { bytes, off })) = &packed {
+        output::write(path, bytes)?;
         output::print(&format!(
             "wrote {}: {} of {MEMORY_BYTES} bytes, at most {:.2e} m, {:.2e} m/s and {:.2e} m/s^2 off\n",
             path.display(),
@@ -183,6 +158,41 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())
+}
+
+/// A fit in the compressed form.
+struct Packed {
+    bytes: Vec<u8>,
+    /// Of the bytes as they are read again, from the trajectory that was fitted.
+    off: Deviation,
+}
+
+impl Packed {
+    fn of(fitted: &PiecewisePolynomial, original: &PiecewisePolynomial) -> Result<Self, CompressedError> {
+        let bytes = compressed::to_bytes(fitted)?;
+        let off = Deviation::between(&Exact(original), &Exact(&compressed::from_bytes(&bytes)?));
+        Ok(Self { bytes, off })
+    }
+
+    /// Numbers of 1 mm and durations of 1 ms put a fit off that is near enough before.
+    fn check(&self, name: &str, tolerance_m: Option<f64>) -> Result<(), Failure> {
+        let off_m = self.off.position_m;
+        match tolerance_m {
+            Some(tolerance_m) if off_m.is_nan() || off_m > tolerance_m => Err(Failure::verdict(format!(
+                "{name}: the compressed form is {off_m:.2e} m off, more than --tolerance-m {tolerance_m}, since it has \
+                 whole millimetres and milliseconds; write the pieces as they are (--csv in place of --compressed), fly it \
+                 slower (--time-scale 2) or allow {:.1e}",
+                rounded_up(off_m)
+            ))),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The next figure of two digits.
+fn rounded_up(x: f64) -> f64 {
+    let digit = 10.0_f64.powf(x.log10().floor() - 1.0);
+    (x / digit).ceil() * digit
 }
 
 /// How a fit comes closer for which some pieces were allowed.
@@ -214,43 +224,4 @@ fn compare(
         refit_iae_m_s: iae(refit, refit)?,
         refit_from_original_iae_m_s: iae(refit, original)?,
     })
-}
-
-fn text(name: &str, report: &RefitReport) -> String {
-    let RefitReport { original_pieces, pieces, memory_bytes, duration_s, .. } = report;
-    let how = if original_pieces == pieces { "kept" } else { "of degree 7, meeting up to jerk" };
-    let off = &report.largest_difference;
-    let mut text = format!(
-        "{name}: {original_pieces} pieces, {duration_s:.2} s\n\
-         stored: {pieces} pieces, {how}, {memory_bytes} of {MEMORY_BYTES} bytes\n\n\
-         largest difference, as stored in f32 and evaluated on board\n\
-         \x20 position       {:.2e} m\n\
-         \x20 velocity       {:.2e} m/s\n\
-         \x20 acceleration   {:.2e} m/s^2\n\
-         \x20 jerk           {:.2e} m/s^3\n\
-         \x20 heading        {:.2e} rad\n\
-         \x20 heading rate   {:.2e} rad/s\n\
-         \x20 attitude       {:.2e} rad\n\
-         \x20 thrust         {:.2e} m/s^2\n\
-         \x20 body rates     {:.2e} rad/s\n\n\
-         flown by the f32 core at {RATE_HZ} Hz, IAE in m s\n\
-         \x20                           original      refit   refit from the original\n",
-        off.position_m,
-        off.velocity_m_s,
-        off.acceleration_m_s2,
-        off.jerk_m_s3,
-        off.heading_rad,
-        off.heading_rate_rad_s,
-        off.attitude_rad,
-        off.thrust_m_s2,
-        off.body_rates_rad_s,
-    );
-    let cell = |iae: Option<f64>| iae.map_or_else(|| "lost".to_owned(), |iae| format!("{iae:.6}"));
-    for (law, iae) in [("LQR-E", &report.lqr_e), ("LQR-E, feed-forward", &report.lqr_e_feed_forward)] {
-        let [original, refit, across] =
-            [iae.original_iae_m_s, iae.refit_iae_m_s, iae.refit_from_original_iae_m_s].map(cell);
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "  {law:<24} {original:>10} {refit:>10} {across:>25}");
-    }
-    text
 }

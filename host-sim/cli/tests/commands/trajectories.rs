@@ -117,6 +117,27 @@ fn the_compressed_form_is_written_and_read() {
 }
 
 #[test]
+fn a_tolerance_holds_for_the_compressed_form_too() {
+    let dir = folder("compressed-tolerance");
+    let [packed, pieces] = ["w.ctraj", "w.csv"].map(|name| dir.join(name));
+    let refit = |tolerance_m: &str| {
+        let files = ["--compressed", packed.to_str().unwrap(), "--csv", pieces.to_str().unwrap()];
+        texts(&quatrack(&[&["refit", "aggressive", "--tolerance-m", tolerance_m], &files[..]].concat()))
+    };
+    // The fit is 8 um off, its compressed form 1.1 mm: half a millimetre an axis, and half a millisecond at 2.2 m/s.
+    let (code, _, stderr) = refit("0.001");
+    assert_eq!(code, Some(1), "{stderr}");
+    assert!(!packed.exists() && !pieces.exists(), "something was written");
+    for named in ["the compressed form is", "--tolerance-m 0.001", "--csv in place of --compressed", "--time-scale 2"] {
+        assert!(stderr.contains(named), "{stderr}");
+    }
+    let allowed = stderr.trim().rsplit(' ').next().unwrap();
+    let (code, stdout, stderr) = refit(allowed);
+    assert_eq!(code, Some(0), "{allowed}: {stderr}");
+    assert!(packed.exists() && pieces.exists(), "{stdout}");
+}
+
+#[test]
 fn waypoints_become_a_trajectory_that_flies() {
     let dir = folder("waypoints");
     let rows = file(&dir, "places.csv", b"t,x,y,z\n0,0,0,1\n1,0.2,0,1\n2,0.5,0.3,1\n3,0.5,0.6,1.2\n");

@@ -5,9 +5,9 @@
 //! coordinate (constant, linear, cubic, degree 7), the duration in ms, and the control points behind the first, which is
 //! the last of the piece before. A piece of no duration ends it. All little endian.
 //!
-//! A number is 1 mm or 0.1 degrees, so that a curve is off by half of that, at most: by the convex hull of its control
-//! points. Velocity is off by `14 * 0.5 mm / duration`. Durations are cut to a millisecond each, from the start of the
-//! trajectory, so that they do not add up.
+//! A number is 1 mm or 0.1 degrees, so that a coordinate is off by half of that, at most: by the convex hull of its control
+//! points. Its velocity is off by `14 * 0.5 mm / duration`. Durations are cut to a millisecond each, from the start of the
+//! trajectory, so that they do not add up; they put a curve off by half a millisecond of its speed besides.
 
 use super::polynomial::{COEFFICIENTS, Coordinate, Piece, PiecewisePolynomial, PolynomialError};
 
