@@ -19,7 +19,7 @@ use crate::state::State;
 /// vehicle: a Vehicle, a name, a path or the keys of a vehicle file; laws of motor forces need it, the paper's end with thrust and
 ///     body rates without it
 /// mass_kg, lag_s: figures that the law is told where they differ from its file, kg and s
-/// drag_per_s, moment_n_m_per_m_s: the air that the cascade is told, 1/s and N m a m/s
+/// drag_per_s, moment_n_m_per_m_s: the air that the cascade is told, 1/s and N m per m/s
 /// feed_forward: whether the paper's laws add the reference's own input
 /// error_form: "heading" or "paper", how the E laws form their error
 /// standing: whether the flight begins on the ground with the motors off; in the air at hover otherwise

@@ -15,7 +15,12 @@ const PARTS: usize = 8;
 /// Panels side by side, and their size.
 const ACROSS: usize = 3;
 const WIDTH: f64 = 380.0;
-const HEIGHT: f64 = 240.0;
+const HEIGHT: f64 = 256.0;
+
+/// Width of a law's line: the first are the widest, so that lines that coincide can all be seen.
+fn width(number: usize) -> f64 {
+    (4.6 - 0.38 * number as f64).max(1.0)
+}
 
 /// The picture of a folder's rows.
 ///
@@ -46,13 +51,15 @@ pub fn svg(folder: &Folder, view: &View) -> Result<String, CampaignError> {
         panel(&mut text, place, name, figure, &card.laws, &rows, view);
     }
     for (number, law) in card.laws.iter().enumerate() {
-        let (x, y) = (60.0 + 210.0 * (number % 5) as f64, high - 14.0 - 24.0 * (number / 5) as f64);
+        let row = card.laws.len().div_ceil(5) - 1 - number / 5;
+        let (x, y) = (60.0 + 210.0 * (number % 5) as f64, high - 14.0 - 24.0 * row as f64);
         let colour = COLOURS[number % COLOURS.len()];
         let _ = write!(
             text,
-            "<line x1=\"{x}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{colour}\" stroke-width=\"3\"/><text x=\"{}\" \
-             y=\"{}\">{law}</text>",
+            "<line x1=\"{x}\" y1=\"{y}\" x2=\"{}\" y2=\"{y}\" stroke=\"{colour}\" stroke-width=\"{:.1}\"/><text \
+             x=\"{}\" y=\"{}\">{law}</text>",
             x + 24.0,
+            width(number),
             x + 30.0,
             y + 4.0
         );
@@ -62,7 +69,7 @@ pub fn svg(folder: &Folder, view: &View) -> Result<String, CampaignError> {
 }
 
 fn panel(text: &mut String, [x0, y0]: [f64; 2], name: &str, figure: usize, laws: &[String], rows: &[Row], view: &View) {
-    let (left, right, top, bottom) = (x0 + 48.0, x0 + WIDTH - 16.0, y0 + 8.0, y0 + HEIGHT - 44.0);
+    let (left, right, top, bottom) = (x0 + 48.0, x0 + WIDTH - 16.0, y0 + 8.0, y0 + HEIGHT - 60.0);
     let mut values: Vec<f64> = rows.iter().filter_map(|row| row.drawn.get(figure).copied()).collect();
     values.sort_by(f64::total_cmp);
     let (Some(least), Some(most)) = (values.first().copied(), values.last().copied()) else { return };
@@ -83,7 +90,7 @@ fn panel(text: &mut String, [x0, y0]: [f64; 2], name: &str, figure: usize, laws:
             text,
             "<text x=\"{:.1}\" y=\"{}\" text-anchor=\"{anchor}\" fill=\"#59636e\">{}</text>",
             at(value),
-            bottom + 16.0,
+            bottom + 22.0,
             short(value)
         );
     }
@@ -91,7 +98,7 @@ fn panel(text: &mut String, [x0, y0]: [f64; 2], name: &str, figure: usize, laws:
         text,
         "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">success in % over {name}</text>",
         0.5 * (left + right),
-        bottom + 32.0
+        bottom + 40.0
     );
     let ends: Vec<f64> = (0..=PARTS).map(|part| values[(values.len() - 1) * part / PARTS]).collect();
     for (number, law) in laws.iter().enumerate() {
@@ -116,8 +123,9 @@ fn panel(text: &mut String, [x0, y0]: [f64; 2], name: &str, figure: usize, laws:
         let colour = COLOURS[number % COLOURS.len()];
         let _ = write!(
             text,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\"/>",
-            points.trim_end()
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{:.1}\"/>",
+            points.trim_end(),
+            width(number)
         );
     }
 }

@@ -15,11 +15,11 @@ use super::{Failure, output};
 /// without feed-forward, nothing limited and everything, either sign of the quaternion; and with a gain without a zero.
 /// Every command is compared with the host's. The estimator is counted by an image of its own, prediction and update.
 ///
-/// Builds its five images inside a checkout. An instruction is not a cycle: the counts compare programs, not clocks.
+/// Builds its six images inside a checkout. An instruction is not a cycle: the counts compare programs, not clocks.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Folder with the five images (quatrack-measure, quatrack-control-path, quatrack-motor-path,
-    /// quatrack-measure-estimator, quatrack-firmware-pipes), or one of them in it, instead of building them.
+    /// Folder with the six images (quatrack-measure, quatrack-control-path, quatrack-motor-path, quatrack-measure-estimator,
+    /// quatrack-measure-link, quatrack-firmware-pipes), or one of them in it, instead of building them.
     #[arg(long, value_name = "FILE")]
     image: Option<PathBuf>,
     /// Write the figures as JSON.

@@ -56,7 +56,7 @@ pub(crate) struct ScenarioArgs {
     /// Drag over mass along body x, y and z, 1/s.
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     drag_per_s: Option<List<3>>,
-    /// Moment of the airflow about body x and y, N m a m/s.
+    /// Moment of the airflow about body x and y, N m per m/s.
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     moment_n_m_per_m_s: Option<List<2>>,
     /// Steady wind, world frame, m/s.
@@ -110,7 +110,7 @@ pub(crate) struct ScenarioArgs {
     /// Drag over mass that the law is told, 1/s.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     told_drag_per_s: Option<f64>,
-    /// Moment of the airflow that the law is told, N m a m/s.
+    /// Moment of the airflow that the law is told, N m per m/s.
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
     told_moment_n_m_per_m_s: Option<List<2>>,
     /// Noise of the gyroscope, deviation of a sample, rad/s.

@@ -30,9 +30,9 @@ impl Range {
         self.widened(0.5 * (least - self.extent()).max(0.0))
     }
 
-    /// The part of `self` within `limit`; they overlap wherever this is used.
-    pub(super) fn within(self, limit: Self) -> Self {
-        Self { low: self.low.max(limit.low), high: self.high.min(limit.high) }
+    /// Grown to hold `other`.
+    pub(super) fn with(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
     /// 0 at the low end, 1 at the high end.

@@ -7,7 +7,7 @@ use super::render::width_em;
 use super::space::Frame;
 use super::style::{CAP_HEIGHT, Colour, LEGEND, Line, NOTE, Stroke, TITLE};
 use super::svg::{Anchor, Sheet};
-use super::{Curve, FigureError, TrackingFigure, panels, space};
+use super::{Curve, FigureError, LARGEST, TrackingFigure, panels, space};
 
 pub(super) const WIDTH: f64 = 1200.0;
 const HEIGHT: f64 = 560.0;
@@ -73,7 +73,7 @@ pub(super) fn lines<'a>(figure: &TrackingFigure<'a>) -> Vec<Line<'a>> {
 /// How far from a reference that rests the axes reach at most, m.
 const STRAY_FROM_REST_M: f64 = 1.0;
 
-/// One range per coordinate, m: the reference and the parts of the flights near it.
+/// One range per coordinate, m: the reference, flights that come back to it, and the parts of the others near it.
 pub(super) fn axes(figure: &TrackingFigure<'_>) -> [Range; 3] {
     let range = |curve: &Curve<'_>, i: usize| Range::of(curve.position_m.iter().map(|p: &Vector3<f64>| p[i]));
     let reference: [Range; 3] =
@@ -83,12 +83,26 @@ pub(super) fn axes(figure: &TrackingFigure<'_>) -> [Range; 3] {
     let stray_m = if longest > SHORTEST_M { STRAY_SHARE * longest } else { STRAY_FROM_REST_M };
     std::array::from_fn(|i| {
         let limit = reference[i].widened(stray_m);
-        let union = figure.flights.iter().filter_map(|flight| range(flight, i)).fold(reference[i], |union, flight| {
-            Range { low: union.low.min(flight.low), high: union.high.max(flight.high) }
+        let axis = figure.flights.iter().fold(reference[i], |union, flight| {
+            let Some(flown) = range(flight, i) else { return union };
+            if comes_back(flight, &figure.reference, stray_m) {
+                union.with(flown)
+            } else {
+                union.with(Range { low: flown.low.max(limit.low), high: flown.high.min(limit.high) })
+            }
         });
-        let axis = union.within(limit);
         axis.widened(PADDING * axis.extent()).at_least(SHORTEST_M)
     })
+}
+
+/// Whether a flight is in reach all the way and near the reference at its end.
+fn comes_back(flight: &Curve<'_>, reference: &Curve<'_>, near_m: f64) -> bool {
+    let in_reach = |p: &Vector3<f64>| p.amax() <= LARGEST;
+    let near = match (flight.position_m.last(), reference.position_m.last()) {
+        (Some(end), Some(goal)) => (end - goal).amax() <= near_m,
+        _ => false,
+    };
+    near && flight.time_s.last() >= reference.time_s.last() && flight.position_m.iter().all(in_reach)
 }
 
 /// Notes on a flight that the axes do not show.

@@ -16,6 +16,8 @@ const GAP: f64 = 36.0;
 /// Free at either end of an axis, as a share of its extent.
 const PADDING: f64 = 0.06;
 
+const LIMIT: Stroke = Stroke { colour: Colour::REFERENCE, width: 1.1, dash: Some([4.5, 5.5]) };
+
 /// A line of a panel.
 #[derive(Clone, Debug)]
 pub struct Trace<'a> {
@@ -23,7 +25,7 @@ pub struct Trace<'a> {
     pub label: &'a str,
     /// One value for each time of the flight.
     pub values: Vec<f64>,
-    /// Drawn dashed and black: a limit.
+    /// Drawn dashed and black: a limit, or what the others are held against.
     pub limit: bool,
 }
 
@@ -75,7 +77,7 @@ impl FlightFigure<'_> {
     }
 
     fn draw_panels(&self, sheet: &mut Sheet) -> Result<(), FigureError> {
-        draw_quantities(sheet, PANELS, "time (s)", self.tracking.reference.time_s, &self.quantities)
+        draw_quantities(sheet, PANELS, "time (s)", self.tracking.reference.time_s, &[], &self.quantities)
     }
 }
 
@@ -85,6 +87,7 @@ pub(super) fn draw_quantities(
     frame: Frame,
     axis_name: &str,
     places: &[f64],
+    marks: &[f64],
     quantities: &[Quantity<'_>],
 ) -> Result<(), FigureError> {
     let range = Range { low: places[0], high: places[places.len() - 1] };
@@ -102,6 +105,9 @@ pub(super) fn draw_quantities(
         for (trace, stroke) in quantity.strokes() {
             panel.draw_samples(sheet, places.iter().zip(&trace.values).map(|(t, v)| [*t, *v]), stroke);
         }
+        for mark in marks {
+            panel.draw_samples(sheet, [value.range.low, value.range.high].map(|v| [*mark, v]).into_iter(), LIMIT);
+        }
         panel.draw_outline(sheet);
         quantity.legend(sheet, frame.right, top - 9.0)?;
         sheet.text_upwards(quantity.name, [frame.left - 50.0, top + 0.5 * height], LABEL);
@@ -114,8 +120,7 @@ pub(super) fn draw_quantities(
 impl Quantity<'_> {
     /// Limits lowest.
     pub(super) fn strokes(&self) -> Vec<(&Trace<'_>, Stroke)> {
-        let limit = Stroke { colour: Colour::REFERENCE, width: 1.1, dash: Some([4.5, 5.5]) };
-        let limits = self.traces.iter().filter(|trace| trace.limit).map(|trace| (trace, limit));
+        let limits = self.traces.iter().filter(|trace| trace.limit).map(|trace| (trace, LIMIT));
         let others = self.traces.iter().filter(|trace| !trace.limit).zip(Colour::FLIGHTS);
         limits.chain(others.map(|(trace, colour)| (trace, Stroke::solid(colour, 1.5)))).collect()
     }

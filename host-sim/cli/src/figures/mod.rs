@@ -41,10 +41,10 @@ pub struct Curve<'a> {
 pub struct TrackingFigure<'a> {
     /// Printed above the figure.
     pub title: &'a str,
-    /// Drawn dashed; the axes are fitted to it, and to flights as far as they stay near it.
+    /// Drawn dashed; the axes are fitted to it, to flights that end near it, and to others as far as they stay near it.
     pub reference: Curve<'a>,
-    /// From 1 to 4. A sample that is not finite breaks a flight's line; a flight that strays far from the reference is
-    /// drawn up to the edge of the axes, and a note below the figure says so.
+    /// From 1 to 4. A sample that is not finite breaks a flight's line; a flight that strays far from the reference and does
+    /// not come back is drawn up to the edge of the axes, and a note below the figure says so.
     pub flights: Vec<Curve<'a>>,
 }
 

@@ -162,7 +162,10 @@ fn draw_scales(sheet: &mut Sheet, view: &View, axes: &[Range; 3], ticks: &[Vec<(
         let name = ["x (m)", "y (m)", "z (m)"][i];
         let middle = 0.5 * (start + end);
         if i == 2 {
-            sheet.text_upwards(name, (middle + Vector2::new(-46.0, 0.0)).into(), LABEL);
+            // Labels of z run along the direction of the name: a figure is 0.6 em wide.
+            let longest = ticks[i].iter().map(|(_, label)| label.chars().count()).max().unwrap_or(0);
+            let distance = (15.0 + 0.6 * TICK * longest as f64).max(46.0);
+            sheet.text_upwards(name, (middle - distance * Vector2::x()).into(), LABEL);
         } else {
             // Clear of the longest tick labels: those of y run away from the box, in the direction of the name.
             let distance = if i == 0 { 40.0 } else { 50.0 };

@@ -206,6 +206,19 @@ fn a_flight_that_diverges_leaves_the_figure_readable() {
 }
 
 #[test]
+fn a_flight_that_comes_back_is_in_the_axes_whole() {
+    let rest = Data::new(|_| Vector3::new(0.0, 0.0, 15.0));
+    // 1.6 m below where it begins and ends, as a start upside down; and one that falls on, 5 m.
+    let returns = Data::new(|t| Vector3::new(0.0, 0.0, 15.0 - 1.6 * (2.0 * t * (-t).exp()).min(1.0)));
+    let falls = Data::new(|t| Vector3::new(0.0, 0.0, 15.0 - 0.5 * t));
+    let svg = svg_of(&rest, &[&returns, &falls]);
+    let notes: Vec<&str> = texts(&svg).into_iter().filter(|text| text.contains("leaves the axes")).collect();
+    assert!(notes.len() == 1 && notes[0].starts_with("second"), "{notes:?}");
+    // In space, x, y and z: one stretch each.
+    assert_eq!(polylines(&svg, BLUE).len(), 4);
+}
+
+#[test]
 fn points_that_are_not_finite_break_the_line() {
     let mut flight = Data::wave(0.1);
     flight.position_m[400].x = f64::NAN;

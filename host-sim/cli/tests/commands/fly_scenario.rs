@@ -162,6 +162,11 @@ fn a_picture_has_path_errors_tilt_motors_with_their_limits_and_wind() {
     assert_eq!(lines, 3 + 3 + 1 + 4 + 2 + 3);
     // Of these the course and the two limits are dashed.
     assert_eq!(svg.lines().filter(|line| line.starts_with("<polyline")).filter(dashed).count(), 3);
+    // Without wind there is no panel for it.
+    let still = folder.join("still.svg");
+    let flown = quatrack(&["fly", "--vehicle", "crazyflie-2.1", "--law", "lee", "--plot", still.to_str().unwrap()]);
+    assert!(flown.status.success(), "{}", String::from_utf8_lossy(&flown.stderr));
+    assert!(!fs::read_to_string(still).unwrap().contains("wind"));
 }
 
 #[test]

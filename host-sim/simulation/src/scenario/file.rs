@@ -97,7 +97,7 @@ pub struct OwnAir {
     pub of: Option<AirOf>,
     /// Linear drag over mass along body x, y, z, 1/s.
     pub drag_per_s: Option<[f64; 3]>,
-    /// Airflow moment `c_x, c_y`: `tau_x = c_x v_y`, `tau_y = -c_y v_x`, N m a m/s.
+    /// Airflow moment `c_x, c_y`: `tau_x = c_x v_y`, `tau_y = -c_y v_x`, N m per m/s.
     pub moment_n_m_per_m_s: Option<[f64; 2]>,
     /// Steady wind, world frame, m/s.
     pub wind_m_s: Option<[f64; 3]>,
@@ -155,7 +155,7 @@ pub struct Told {
     pub lag_ms: Option<f64>,
     /// Linear drag over mass, 1/s.
     pub drag_per_s: Option<f64>,
-    /// Airflow moment, N m a m/s.
+    /// Airflow moment, N m per m/s.
     pub moment_n_m_per_m_s: Option<[f64; 2]>,
 }
 

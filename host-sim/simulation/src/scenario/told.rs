@@ -15,7 +15,7 @@ use crate::vehicles;
 const BUILT_IN_LAG_MS: [f64; 2] = [4.0, 126.0];
 /// Drag over mass that the core takes, 1/s.
 const DRAG_PER_S: [f64; 2] = [0.0, 1.0];
-/// Airflow moment that the core takes, N m a m/s.
+/// Airflow moment that the core takes, N m per m/s.
 const MOMENT_N_M_PER_M_S: [f64; 2] = [0.0, 2e-3];
 
 /// The figures of the craft that a law is told.
@@ -27,7 +27,7 @@ pub struct ToldFigures {
     pub lag_s: Option<f64>,
     /// Linear drag over mass, 1/s, where it is said.
     pub drag_per_s: Option<f64>,
-    /// Airflow moment, N m a m/s, where it is said.
+    /// Airflow moment, N m per m/s, where it is said.
     pub moment_n_m_per_m_s: Option<[f64; 2]>,
 }
 
@@ -55,7 +55,7 @@ impl ToldFigures {
         };
         let drag_meaning = "drag over mass in 1/s that the core takes; leave it out for the vehicle's own";
         let drag = |value| checks.one("told.drag_per_s", Some(value), 0.0, DRAG_PER_S, drag_meaning);
-        let moment_meaning = "in N m a m/s, as far as the core takes it; leave it out for the vehicle's own";
+        let moment_meaning = "in N m per m/s, as far as the core takes it; leave it out for the vehicle's own";
         let moment = |value| checks.each("told.moment_n_m_per_m_s", Some(value), MOMENT_N_M_PER_M_S, moment_meaning);
         Ok(Self {
             mass_kg: checks.one("told.mass_kg", told.mass_kg, own_kg, bounds, "in kg, half to twice the vehicle's")?,

@@ -282,7 +282,7 @@ impl fmt::Display for InConditions<'_> {
             f.write_str("in vacuum")?;
         } else {
             let ([x, y, z], [c_x, c_y]) = (air.drag_per_s, air.moment_n_m_per_m_s);
-            write!(f, "drag {x:.3}, {y:.3}, {z:.3} 1/s, moment {:.2}, {:.2} mN m a m/s", 1e3 * c_x, 1e3 * c_y)?;
+            write!(f, "drag {x:.3}, {y:.3}, {z:.3} 1/s, moment {:.2}, {:.2} mN m per m/s", 1e3 * c_x, 1e3 * c_y)?;
         }
         if wind.mean_m_s != Vector3::zeros() {
             write!(f, ", wind {} m/s", wind.mean_m_s.norm())?;

@@ -1,4 +1,4 @@
-//! A recorded flight in; its path, errors, tilt, motor forces with their limits, and wind, as a picture out.
+//! A recorded flight in; its path, errors, tilt, motor forces with their limits, and wind where some blows, as a picture out.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub(super) fn write(path: &Path, title: &str, law: &str, recording: &Recording) 
     let limits = [around(&|around| around.thrust_limits_n[0].min()), around(&|around| around.thrust_limits_n[1].max())]
         .map(|values| Trace { label: "limits", values, limit: true });
     let tilt_deg = of(&|sample| (sample.state.attitude * Vector3::z()).angle(&Vector3::z()).to_degrees());
-    let quantities = vec![
+    let mut quantities = vec![
         Quantity {
             name: "error (m)",
             shortest: 1e-3,
@@ -32,12 +32,15 @@ pub(super) fn write(path: &Path, title: &str, law: &str, recording: &Recording) 
             shortest: 1e-3,
             traces: (0..4).map(|i| line(motors[i], of(&|sample| sample.state.thrusts_n[i]))).chain(limits).collect(),
         },
-        Quantity {
+    ];
+    // Still air needs no panel.
+    if recording.around.iter().any(|around| around.wind_m_s != Vector3::zeros()) {
+        quantities.push(Quantity {
             name: "wind (m/s)",
             shortest: 0.1,
             traces: (0..3).map(|i| line(axes[i], around(&|around| around.wind_m_s[i]))).collect(),
-        },
-    ];
+        });
+    }
     let time_s = of(&|sample| sample.time_s);
     let [places, targets]: [Vec<Vector3<f64>>; 2] = [
         samples.iter().map(|sample| sample.state.position_m).collect(),

@@ -47,6 +47,11 @@ fn line<'a>(label: &'a str, values: Vec<f64>) -> Trace<'a> {
     Trace { label, values, limit: false }
 }
 
+/// What a prediction is held against, in the stroke that it has in space.
+fn flight(values: Vec<f64>) -> Trace<'static> {
+    Trace { label: "flown", values, limit: true }
+}
+
 /// A file's name without its folders.
 fn short(path: &str) -> &str {
     Path::new(path).file_name().and_then(|name| name.to_str()).unwrap_or(path)
@@ -74,14 +79,14 @@ fn prediction_figure<T>(example: &Example, draw: impl Fn(&FlightFigure<'_>) -> D
             name: ["x (m)", "y (m)", "z (m)"][k],
             shortest: 0.05,
             traces: vec![
-                line("flown", axis(&example.position_m, k)),
+                flight(axis(&example.position_m, k)),
                 line("predicted", broken(axis(&example.predicted_m, k))),
             ],
         })
         .chain((0..2).map(|k| Quantity {
             name: ["p (rad/s)", "q (rad/s)"][k],
             shortest: 0.1,
-            traces: vec![line("flown", axis(flown, k)), line("predicted", broken(axis(ours, k)))],
+            traces: vec![flight(axis(flown, k)), line("predicted", broken(axis(ours, k)))],
         }))
         .collect();
     draw(&FlightFigure {
@@ -109,6 +114,7 @@ fn ahead<T>(prediction: &Prediction, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>
         title: "Mean error on the quarter held out",
         axis_name: "ahead (s)",
         places: &places,
+        marks: Vec::new(),
         quantities: vec![
             quantity("position (m)", |e| e.position_m),
             quantity("velocity (m/s)", |e| e.velocity_m_s),
@@ -135,25 +141,30 @@ fn residuals<T>(balance: &Balance, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) 
             ],
         })
         .collect();
-    draw(&ChartFigure { title: &title, axis_name: "time (s)", places: &balance.times_s, quantities })
+    draw(&ChartFigure { title: &title, axis_name: "time (s)", places: &balance.times_s, marks: Vec::new(), quantities })
 }
 
 fn lag<T>(report: &Report, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) -> Drawn<T> {
     let curve = &report.fit.lag_curve;
     let places: Vec<f64> = curve.iter().map(|point| 1e3 * point.lag_s).collect();
-    let title = match report.fit.figures.get("lag_ms") {
-        Some(Ok(lag)) => format!("Lag of the motors: {:.1} ms, 95 % {:.1} to {:.1} ms", lag.value, lag.low, lag.high),
-        _ => "Lag of the motors: not told by these flights".to_owned(),
-    };
     let of = |axis: usize| -> Vec<f64> { curve.iter().map(|point| point.explained[axis]).collect() };
+    let (title, marks) = match report.fit.figures.get("lag_ms") {
+        Some(Ok(lag)) => (
+            format!("Lag of the motors: {:.1} ms, 95 % {:.1} to {:.1} ms", lag.value, lag.low, lag.high),
+            vec![lag.low, lag.value, lag.high],
+        ),
+        _ => ("Lag of the motors: not told by these flights".to_owned(), Vec::new()),
+    };
+    let mut traces = vec![line("about x", of(0)), line("about y", of(1))];
+    if !marks.is_empty() {
+        // No values of its own: it names the marks in the legend.
+        traces.push(Trace { label: "identified, and its interval", values: vec![f64::NAN; places.len()], limit: true });
+    }
     draw(&ChartFigure {
         title: &title,
         axis_name: "lag (ms)",
         places: &places,
-        quantities: vec![Quantity {
-            name: "explained share of the motors' torque",
-            shortest: 0.05,
-            traces: vec![line("about x", of(0)), line("about y", of(1))],
-        }],
+        marks,
+        quantities: vec![Quantity { name: "explained share of the motors' torque", shortest: 0.05, traces }],
     })
 }
