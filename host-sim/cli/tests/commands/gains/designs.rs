@@ -97,7 +97,8 @@ fn the_page_on_own_designs_prints_the_commands_output() {
     let printed = stdout(&quatrack(&["gains", "design", path.to_str().unwrap()]));
     let shown = block("## 2.", "```text\n");
     let figures: Vec<&str> = shown.lines().filter(|line| line.starts_with("  ")).collect();
-    assert_eq!(figures.len(), 4);
+    // Four figures of the certificate, and how the weights are taken.
+    assert_eq!(figures.len(), 5);
     for line in figures {
         assert!(printed.contains(line), "{line} is not in\n{printed}");
     }
