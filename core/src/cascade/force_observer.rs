@@ -47,6 +47,8 @@ pub(super) struct ForceObserver {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Disturbance {
     velocity: Vector3<f32>,
+    /// Its slope over the last step by all forces, m/s^2.
+    pub(super) acceleration: Vector3<f32>,
     /// Across in the world frame, m/s^2, and its slope, m/s^3.
     pub(super) across: [f32; 2],
     pub(super) slope: [f32; 2],
@@ -82,13 +84,14 @@ impl ForceObserver {
     #[inline(always)]
     pub(super) fn step(&self, memory: &mut Disturbance, pushed: &Pushed) -> bool {
         let (h, n, v, mean) = (self.period_s, &pushed.axis, &pushed.velocity, &pushed.mean_velocity);
-        let Disturbance { velocity: known, across: [dx, dy], slope: [sx, sy], along } = *memory;
+        let Disturbance { velocity: known, across: [dx, dy], slope: [sx, sy], along, .. } = *memory;
         let (thrust, d) = (pushed.thrust + along, pushed.drag);
-        let expected = Vector3::new(
-            known.x + h * (n.x * thrust - d * mean.x + dx),
-            known.y + h * (n.y * thrust - d * mean.y + dy),
-            known.z + h * (n.z * thrust - d * mean.z - GRAVITY_M_S2),
+        let a = Vector3::new(
+            n.x * thrust - d * mean.x + dx,
+            n.y * thrust - d * mean.y + dy,
+            n.z * thrust - d * mean.z - GRAVITY_M_S2,
         );
+        let expected = Vector3::new(known.x + h * a.x, known.y + h * a.y, known.z + h * a.z);
         let (ex, ey, ez) = (v.x - expected.x, v.y - expected.y, v.z - expected.z);
         if is_beyond(ex, JUMP_M_S) || is_beyond(ey, JUMP_M_S) || is_beyond(ez, JUMP_M_S) {
             memory.velocity = *v;
@@ -104,6 +107,8 @@ impl ForceObserver {
         memory.across = [x, y];
         memory.slope = [slope_x, slope_y];
         memory.along = within(along + m2 * (n.z * ez), ALONG_MAX_M_S2);
+        // Not of a first step, whose forces are not known.
+        memory.acceleration = a;
         false
     }
 }
@@ -118,8 +123,13 @@ fn bounded(disturbance: f32, slope: f32) -> (f32, f32) {
 
 impl Disturbance {
     /// None, at a velocity not seen yet: the first is taken as it is.
-    pub(super) const NONE: Self =
-        Self { velocity: Vector3::new(f32::INFINITY, 0.0, 0.0), across: [0.0; 2], slope: [0.0; 2], along: 0.0 };
+    pub(super) const NONE: Self = Self {
+        velocity: Vector3::new(f32::INFINITY, 0.0, 0.0),
+        acceleration: Vector3::new(0.0, 0.0, 0.0),
+        across: [0.0; 2],
+        slope: [0.0; 2],
+        along: 0.0,
+    };
 
     /// Forgotten, at a velocity: as for a craft on the ground.
     pub(super) fn rest(&mut self, velocity: &Vector3<f32>) {

@@ -30,7 +30,9 @@ impl MotorYield {
     /// Moves on by a period with a thrust over mass as it was sent and its observed error, m/s^2.
     #[inline(always)]
     pub(super) fn step(&mut self, thrust: f32, error: f32, period_s: f32) {
-        if thrust.is_nan() || thrust < THRUST_LEAST_M_S2 {
+        // Of a NaN nothing is learned.
+        let flies = thrust >= THRUST_LEAST_M_S2;
+        if !flies {
             return;
         }
         let seen = (thrust + error) / thrust;

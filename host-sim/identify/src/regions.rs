@@ -110,7 +110,7 @@ fn standing(table: &'static str, region: &RegionEntry, vehicle: &Vehicle, fit: &
     let inertia = vehicle.inertia_kg_m2();
     for (name, axis) in [("inertia_x_kg_m2", 0), ("inertia_y_kg_m2", 1), ("inertia_z_kg_m2", 2)] {
         let nominal = inertia[(axis, axis)];
-        against(name, factors(region.inertia_percent).map(|factor| factor * nominal), "kg mm^2", 1e9);
+        against(name, factors(region.inertia_percent).map(|factor| factor * nominal), "kg mm^2", 1e6);
     }
     match region.drag_per_s {
         Some(most) => {
@@ -122,7 +122,7 @@ fn standing(table: &'static str, region: &RegionEntry, vehicle: &Vehicle, fit: &
     if let Some([x, y]) = region.moment_n_m_per_m_s {
         let mut against = |name: &'static str, most: f64| match fit.figures.get(name) {
             Some(Ok(Estimate { value, high, .. })) if *high > most => standing.outside.push(format!(
-                "{name} {:.3} (up to {:.3}) mN m a m/s, the region ends at {:.3}",
+                "{name} {:.3} (up to {:.3}) mN m per m/s, the region ends at {:.3}",
                 1e3 * value,
                 1e3 * high,
                 1e3 * most

@@ -140,6 +140,9 @@ pub(crate) struct ScenarioArgs {
     /// Age of a position as the filter is given it, ms.
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     filter_latency_ms: Option<f64>,
+    /// How much later than the flight's samples the filter predicts, 0 to 9 ms.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    filter_phase_ms: Option<f64>,
 }
 
 /// Refuses the name of a course that is none and no file either, as a slip of the keyboard is.
@@ -273,6 +276,7 @@ impl ScenarioArgs {
         over(&mut file.filter.position_hz, &self.filter_position_hz);
         over(&mut file.filter.drag_per_s, &self.filter_drag_per_s);
         over(&mut file.filter.latency_ms, &self.filter_latency_ms);
+        over(&mut file.filter.phase_ms, &self.filter_phase_ms);
     }
 
     fn put_over_air(&self, air: &mut Option<Air>) {

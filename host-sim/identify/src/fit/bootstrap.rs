@@ -63,6 +63,13 @@ impl Dice {
     }
 }
 
+/// How many blocks tell of a parameter, each weighed by how much it tells (Kish's effective sample size): drawing blocks shows nothing
+/// of a parameter that one of them tells alone.
+pub(super) fn telling(blocks: &[Block], j: usize) -> f64 {
+    let all = || blocks.iter().map(|block| block.matrix[(j, j)]);
+    all().sum::<f64>().powi(2) / all().map(|share| share * share).sum::<f64>().max(1e-300)
+}
+
 /// By how much intervals of few units are too narrow: Student's 97.5 % point over Gauss's, and the unit that the mean takes.
 pub(super) fn few_units(flights: &[usize]) -> f64 {
     let mut names = flights.to_vec();
@@ -76,4 +83,20 @@ pub(super) fn few_units(flights: &[usize]) -> f64 {
         + (z.powi(3) + z) / (4.0 * freedom)
         + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * freedom * freedom);
     student / z * (units / freedom).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_count_by_how_much_they_tell() {
+        let blocks = |shares: &[f64]| -> Vec<Block> {
+            let of = |share: &f64| DMatrix::from_diagonal(&DVector::from_vec(vec![*share, 1.0]));
+            shares.iter().map(|share| Block { flight: 0, matrix: of(share), score: DVector::zeros(2) }).collect()
+        };
+        // Equal ones count as they are; one among many that hardly tell is little more than one.
+        assert!((telling(&blocks(&[2.0; 5]), 0) - 5.0).abs() < 1e-12);
+        assert!((telling(&blocks(&[1.0, 0.01, 0.01, 0.01]), 0) - 1.06).abs() < 0.01);
+    }
 }

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use nalgebra::DVector;
 use quatrack_design::model::GRAVITY_M_S2;
 
+use super::BLOCK_S;
 use super::bootstrap::Dice;
 use super::drag::Regression;
 use super::estimate::{Estimate, interval, told};
@@ -31,6 +32,9 @@ pub(super) struct Figures<'a> {
 /// columns are not what the map says.
 const TORQUES_LEAST: f64 = 0.5;
 
+/// So many blocks have to tell of a figure: one alone shows no spread.
+const BLOCKS_LEAST: f64 = 1.5;
+
 const STEPS: &str = "fly 20 s of steps between corners, which turn the craft fast";
 const SPEED: &str = "fly 30 s at 1 m/s and more in both directions";
 const CLIMBS: &str = "fly climbs and drops of 0.5 m and more, as fast as they go";
@@ -47,8 +51,18 @@ impl<'a> Figures<'a> {
         self.all.insert(name, told(name, value, draws, self.spread, most, manoeuvre));
     }
 
-    /// Refuses a figure that the prior tells, and not the flight.
+    /// Refuses a figure that one moment of the flight tells.
+    fn repeated(&mut self, posterior: &Posterior, name: &'static str, j: usize, manoeuvre: &str) {
+        let blocks = posterior.telling(j);
+        if blocks < BLOCKS_LEAST {
+            let reason = format!("one stretch of {BLOCK_S} s alone tells it, which shows no spread: {manoeuvre}");
+            self.all.insert(name, Err(reason));
+        }
+    }
+
+    /// Refuses a figure that the prior tells, or one moment, and not the flight.
     fn excited(&mut self, posterior: &Posterior, name: &'static str, j: usize, most: f64, manoeuvre: &str) {
+        self.repeated(posterior, name, j, manoeuvre);
         let by_data = 1.96 * posterior.by_data(j);
         if by_data > most {
             let reason = format!("this flight does not tell it, at most +-{most:.2e} at 95 % would: {manoeuvre}");
@@ -141,6 +155,7 @@ impl<'a> Figures<'a> {
             let (value, all) = of(&|v| v[MOMENT[axis]]);
             let most = (0.25 * value.abs()).max(2e-3 * self.base.half_arm_m * self.base.mass_kg);
             self.put(moment, value, &all, most, SPEED);
+            self.repeated(posterior, moment, MOMENT[axis], SPEED);
             let (value, all) = of(&|v| v[DAMPING[axis]]);
             self.put(damping, value, &all, 0.4 * self.base.damping_scale(), STEPS);
         }

@@ -7,7 +7,7 @@
 use nalgebra::DVector;
 
 use super::balanced;
-use super::bootstrap::{DRAWS, Dice};
+use super::bootstrap::{DRAWS, Dice, telling};
 use super::layout::{DAMPING, SHARED};
 use super::prior::{Base, Prior};
 use super::problem::Prepared;
@@ -103,6 +103,17 @@ impl Posterior {
         let variance = mean(&all.iter().map(|value| (value - middle).powi(2)).collect::<Vec<_>>());
         let precision = 1.0 / variance.max(1e-300) - priors[j].precision(self.values[j]);
         if precision > 0.0 { precision.sqrt().recip() } else { f64::INFINITY }
+    }
+
+    /// How many blocks tell of a parameter.
+    pub(super) fn telling(&self, j: usize) -> f64 {
+        telling(
+            match &self.way {
+                Way::Balances { refined, .. } => &refined.blocks,
+                Way::Filters(refined) => &refined.blocks,
+            },
+            j,
+        )
     }
 
     /// The same way once more with other parameters kept.

@@ -34,8 +34,10 @@ pub(super) fn order(grid: &mut Grid, flying: &[bool], name: &str, notes: &mut No
         grid.attitude.iter().zip(&grid.velocity).map(|(q, v)| q.inverse_transform_vector(v)).collect();
     let balances = [0, 1].map(|axis| {
         let angular = picked(&low.both_ways(&derivative(&channel(&grid.gyro, axis), STEP_S)));
+        // The motors hold against the moment of the airflow, `+c v_y` about x and `-c v_x` about y.
+        let against = if axis == 0 { -1.0 } else { 1.0 };
         let across = picked(&low.both_ways(&channel(&body, 1 - axis)));
-        [angular, across]
+        [angular, across.into_iter().map(|v| against * v).collect()]
     });
     let commands =
         grid.commands.each_ref().map(|command| picked(&low.both_ways(&lagged(command, LAG_S, LAG_S, STEP_S))));
@@ -60,7 +62,8 @@ pub(super) fn order(grid: &mut Grid, flying: &[bool], name: &str, notes: &mut No
     grid.commands = order.map(|column| grid.commands[column].clone());
 }
 
-/// Share of a torque's variance that goes with angular acceleration and velocity across; none where the inertia would be negative.
+/// Share of a torque's variance that an inertia and a moment of the airflow explain, neither below 0: else a smooth flight, whose torque
+/// is nearly all moment, would be explained as well by motors that push the other way.
 fn explained(torque: &[f64], [angular, across]: &[Vec<f64>; 2]) -> f64 {
     let (mut matrix, mut right, mut whole) = (Matrix2::zeros(), Vector2::zeros(), 0.0);
     for ((torque, angular), across) in torque.iter().zip(angular).zip(across) {
@@ -69,8 +72,10 @@ fn explained(torque: &[f64], [angular, across]: &[Vec<f64>; 2]) -> f64 {
         right += row * *torque;
         whole += torque * torque;
     }
-    let solution = matrix.lu().solve(&right).unwrap_or_default();
-    if solution.x > 0.0 { solution.dot(&right) / whole.max(1e-300) } else { 0.0 }
+    let both = matrix.lu().solve(&right).unwrap_or_default();
+    let of_one = |j: usize| right[j].max(0.0).powi(2) / matrix[(j, j)].max(1e-300);
+    let explained = if both.x >= 0.0 && both.y >= 0.0 { both.dot(&right) } else { of_one(0).max(of_one(1)) };
+    explained / whole.max(1e-300)
 }
 
 /// All orders of four.
@@ -78,4 +83,48 @@ fn orders() -> impl Iterator<Item = [usize; 4]> {
     (0..256_usize)
         .map(|code| [code & 3, code >> 2 & 3, code >> 4 & 3, code >> 6 & 3])
         .filter(|order| (0..4).all(|k| order.contains(&k)))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use quatrack_simulation::scenario::Scenario;
+    use quatrack_simulation::scenario::course::Flown;
+    use quatrack_simulation::scenario::file::ScenarioFile;
+    use quatrack_simulation::scenario::{LogRow, cflib_csv};
+
+    use super::PLACES;
+    use crate::flight::prepare;
+    use crate::log::{ColumnMap, parse_csv};
+
+    /// A smooth eight in air, whose torques are nearly all moment of the airflow.
+    fn rows() -> Vec<LogRow> {
+        let text = "vehicle = \"crazyflie-2.1\"\ncourse = \"eight\"\nair = \"vehicle\"\n";
+        let file = ScenarioFile::parse(text, "motors").unwrap();
+        let scenario = Scenario::checked(&file, "motors", Path::new("")).unwrap();
+        let mut law = scenario.law.start(&scenario.vehicle, &scenario.told).unwrap();
+        let recording = scenario.record(law.as_mut(), &Flown::eight(1.5, 12.0)).unwrap();
+        recording.log_rows(scenario.vehicle.motors().thrust_max_n)
+    }
+
+    fn named(rows: &[LogRow]) -> Vec<String> {
+        let log = parse_csv(cflib_csv(rows).as_bytes(), "log").unwrap();
+        let map = ColumnMap::parse(include_str!("../log/maps/cflib.toml"), "map").unwrap();
+        let notes = prepare(&log, &map).unwrap().notes.0;
+        notes.into_iter().filter(|note| note.contains("motors:")).collect()
+    }
+
+    #[test]
+    fn motors_in_order_stay_and_others_are_named_on_a_smooth_flight() {
+        let rows = rows();
+        assert_eq!(named(&rows), Vec::<String>::new());
+        for order in [[2, 3, 0, 1], [1, 2, 3, 0]] {
+            let other: Vec<LogRow> =
+                rows.iter().map(|row| LogRow { commands: order.map(|motor| row.commands[motor]), ..*row }).collect();
+            let said = named(&other);
+            let places: Vec<&str> = order.iter().map(|motor| PLACES[*motor]).collect();
+            assert!(said.len() == 1 && said[0].contains(&places.join(", ")), "{order:?}: {said:?}");
+        }
+    }
 }

@@ -21,6 +21,7 @@ pub(super) struct Craft {
     pub(super) mass_kg: f64,
     /// By how much commands, inertial sensors and pose are logged late, s.
     pub(super) late_s: [f64; 3],
+    pub(super) phase: f64,
 }
 
 struct Dice(ChaCha8Rng);
@@ -53,6 +54,7 @@ impl Craft {
         let on_battery = conditions.battery && seed.is_multiple_of(4);
         let told_lag_ms = lag_ms * dice.between(0.85, 1.15);
         let mass_kg = mass_factor * vehicle.mass_kg();
+        let phase = dice.between(0.0, 1.0);
         let mut text = format!(
             "vehicle = \"{name}\"\nseed = {seed}\ncourse = \"hover\"\n[air]\ndrag_per_s = {drag:?}\nmoment_n_m_per_m_s = {moment:?}\n"
         );
@@ -81,6 +83,10 @@ impl Craft {
         text += &format!("[told]\nlag_ms = {told_lag_ms}\nmass_kg = {mass_kg}\n");
         if on_battery {
             text += &format!("[battery]\ncharge = {charge}\n");
+        }
+        if conditions.estimator {
+            // A log begins at any moment between two predictions of the filter.
+            text += &format!("[filter]\nphase_ms = {}\n", (10.0 * phase).floor());
         }
         let head = if conditions.estimator { "estimator = \"kalman\"\n" } else { "" };
         let file = ScenarioFile::parse(&format!("{head}{text}"), "study").unwrap();
@@ -123,7 +129,7 @@ impl Craft {
         }
         let eight = Flown::eight(speed, 25.0).course;
         let flown = Flown { course: Box::new(Course { corners, eight }), measured_from_s: 0.0 };
-        Self { scenario, flown, truth, mass_kg, late_s }
+        Self { scenario, flown, truth, mass_kg, late_s, phase }
     }
 
     /// Its flight.

@@ -100,7 +100,7 @@ fn study(name: &str, seeds: std::ops::Range<u64>, conditions: &Conditions) -> BT
         let _ = std::fs::remove_file(&path);
         let verbose = std::env::var("STUDY_VERBOSE").is_ok();
         if verbose {
-            println!("{seed} explained {:.4?}", report.fit.explained);
+            println!("{seed} phase {} explained {:.4?}", craft.phase, report.fit.explained);
         }
         for (figure, truth) in &craft.truth {
             let tally = tallies.entry(figure).or_default();

@@ -277,5 +277,6 @@ fn filter(file: &ScenarioFile, checks: &Checks<'_>) -> Result<FilterFigures, Sce
         position_hz: rate("filter.position_hz", filter.position_hz)?,
         drag_per_s: checks.one("filter.drag_per_s", filter.drag_per_s, 0.0, [0.0, 3.0], "drag over mass in 1/s")?,
         latency_s: 1e-3 * checks.one("filter.latency_ms", filter.latency_ms, 0.0, [0.0, 200.0], "in ms")?,
+        phase_s: 1e-3 * checks.one("filter.phase_ms", filter.phase_ms, 0.0, [0.0, 9.0], "in ms")?,
     })
 }

@@ -187,6 +187,8 @@ pub struct Filter {
     pub drag_per_s: Option<f64>,
     /// Age of a position as it comes in, ms.
     pub latency_ms: Option<f64>,
+    /// How much later than the flight's samples, which are 10 ms apart, it predicts, ms.
+    pub phase_ms: Option<f64>,
 }
 
 /// How the start differs from the course's.

@@ -87,10 +87,16 @@ pub struct Filtered {
     /// Positions on their way: when they come in, and where the craft was.
     late: VecDeque<(u32, Vector3<f64>)>,
     step: u32,
+    /// Step of the last prediction, or the first one.
+    predicted: u32,
 }
 
 fn felt_or_none(specific_force_m_s2: Option<&Vector3<f64>>) -> Vector3<f64> {
     specific_force_m_s2.copied().unwrap_or_default()
+}
+
+fn steps_of(time_s: f64) -> u32 {
+    (time_s * f64::from(STEPS_HZ)).round() as u32
 }
 
 fn f32s(v: &Vector3<f64>) -> Vector3<f32> {
@@ -121,6 +127,8 @@ impl Filtered {
             attitude: quatrack::Quaternion::new(w, x, y, z),
             velocity_m_s: f32s(&start.velocity_m_s),
         };
+        // So many steps into a period of 10 ms.
+        let first = (10 - steps_of(figures.phase_s)) % 10;
         let steps = |hz: f64| (f64::from(STEPS_HZ) / hz).round() as u32;
         Ok(Self {
             estimate: filter.start(&state)?,
@@ -129,10 +137,11 @@ impl Filtered {
             averager: ImuAverager::new(),
             prediction_steps: steps(figures.prediction_hz),
             position_steps: steps(figures.position_hz),
-            latency_steps: (figures.latency_s * f64::from(STEPS_HZ)).round() as u32,
+            latency_steps: steps_of(figures.latency_s),
             position_deviation_m: position_noise_m.max(POSITION_DEVIATION_MIN_M),
             late: VecDeque::new(),
-            step: 0,
+            step: first,
+            predicted: first,
         })
     }
 
@@ -148,10 +157,11 @@ impl Filtered {
             specific_force_m_s2: f32s(&measured.specific_force_m_s2),
         });
         if self.step.is_multiple_of(self.prediction_steps)
-            && self.step > 0
+            && self.step > self.predicted
             && let Some(mean) = self.averager.take()
         {
-            let period_s = self.prediction_steps as f32 / STEPS_HZ as f32;
+            let period_s = (self.step - self.predicted) as f32 / STEPS_HZ as f32;
+            self.predicted = self.step;
             self.filter.predict(&mut self.estimate, &mean, period_s)?;
         }
         if self.step.is_multiple_of(self.position_steps) {

@@ -57,6 +57,8 @@ pub struct FilterFigures {
     pub drag_per_s: f64,
     /// Age of a position as it comes in, s.
     pub latency_s: f64,
+    /// How much later than the flight's samples, which are 10 ms apart, it predicts, s: a log that begins at any moment has any phase.
+    pub phase_s: f64,
 }
 
 /// How a start differs from the course's.

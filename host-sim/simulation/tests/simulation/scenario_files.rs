@@ -31,7 +31,7 @@ const KEYS: [(&str, &[&str]); 9] = [
     ),
     ("told", &["mass_kg", "lag_ms", "drag_per_s", "moment_n_m_per_m_s"]),
     ("noise", &["gyro_rad_s", "accelerometer_m_s2", "position_m", "velocity_m_s", "attitude_rad"]),
-    ("filter", &["prediction_hz", "position_hz", "drag_per_s", "latency_ms"]),
+    ("filter", &["prediction_hz", "position_hz", "drag_per_s", "latency_ms", "phase_ms"]),
     ("start", &["offset_m", "velocity_m_s", "turn_rad"]),
     ("battery", &["charge"]),
     ("vary", &["a", "errors"]),

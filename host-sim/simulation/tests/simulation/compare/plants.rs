@@ -98,7 +98,8 @@ impl Craft {
         let mut plant = self.plant(true);
         let noise = SensorNoise { position_m: 1e-3, ..SensorNoise::default() };
         let sensors = Sensors::new(noise, Vector3::zeros(), Vector3::zeros(), 1);
-        let figures = FilterFigures { prediction_hz: 100.0, position_hz: 100.0, drag_per_s, latency_s: 0.0 };
+        let figures =
+            FilterFigures { prediction_hz: 100.0, position_hz: 100.0, drag_per_s, latency_s: 0.0, phase_s: 0.0 };
         let filtered = Filtered::start(&figures, sensors, noise.position_m, plant.state()).unwrap();
         let estimation = Estimation::Filtered(filtered.into());
         Bench { flown, setpoints: Setpoints::At100Hz, estimation }.fly(&mut plant, law)

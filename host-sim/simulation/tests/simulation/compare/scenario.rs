@@ -50,6 +50,7 @@ prediction_hz = 100
 position_hz = 100
 drag_per_s = 0.0
 latency_ms = 0.0
+phase_ms = 0.0
 "#;
 
 fn scenario(text: &str) -> Result<Scenario, String> {
