@@ -84,10 +84,14 @@ pub(crate) fn shifted_smoothly(signal: &[f64], steps: f64) -> Vec<f64> {
         -(s + 1.0) * s * (s - 2.0) / 2.0,
         (s + 1.0) * s * (s - 1.0) / 6.0,
     ];
+    let at = |i: isize| signal[i.clamp(0, last) as usize];
+    let sum = |v: [f64; 4]| weights[0] * v[0] + weights[1] * v[1] + weights[2] * v[2] + weights[3] * v[3];
+    let first = whole as isize - 1;
     (0..signal.len() as isize)
         .map(|i| {
-            let from = i + whole as isize - 1;
-            (0..4).map(|k| weights[k as usize] * signal[(from + k).clamp(0, last) as usize]).sum()
+            let from = i + first;
+            let inside = usize::try_from(from).ok().and_then(|from| signal.get(from..from + 4)?.as_array::<4>());
+            sum(inside.copied().unwrap_or_else(|| [0, 1, 2, 3].map(|k| at(from + k))))
         })
         .collect()
 }

@@ -76,8 +76,16 @@ pub fn identify(
     let mut flights = flights;
     notes.extend(with_one_voltage(&mut flights));
     notes.extend(flights.iter().flat_map(|flight| flight.notes.0.iter().cloned()).chain(copies.0));
-    let fit = fit(&flights, &base)?;
-    let prediction = validate(&flights, &base).map(|(prediction, _)| prediction).map_err(|error| error.to_string());
+    // Two fits, of all of the flights and of all but their last quarters, at once.
+    let (fit, prediction) = std::thread::scope(|scope| {
+        let validated = scope.spawn(|| validate(&flights, &base));
+        (fit(&flights, &base), validated.join())
+    });
+    let fit = fit?;
+    let prediction = match prediction {
+        Ok(validated) => validated.map(|(prediction, _)| prediction).map_err(|error| error.to_string()),
+        Err(panic) => std::panic::resume_unwind(panic),
+    };
     let prediction = prediction.and_then(|prediction| {
         let end = prediction.ours.last().map_or(f64::NAN, |e| e.position_m + e.body_rate_rad_s);
         if end.is_finite() { Ok(prediction) } else { Err("what is predicted is no number".to_owned()) }

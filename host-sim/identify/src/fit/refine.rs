@@ -171,29 +171,31 @@ fn blocks(
             .map(|(_, there)| whiten * (there.covariance - here.covariance) * whiten.transpose() / DIFFERENCE)
             .collect();
         let of_spread = DMatrix::from_fn(active.len(), active.len(), |a, b| 0.5 * (spread[a] * spread[b]).trace());
-        let mut lines = vec![[0.0; 2]; active.len()];
         let (mut slopes, mut fisher) = (vec![Vec::new(); active.len()], vec![0.0; active.len()]);
         for (s, rows) in here.sections.iter().enumerate() {
             let count = (rows.len() / span).max(1);
-            let mut own = vec![(DMatrix::<f64>::zeros(active.len(), active.len()), vec![0.0; active.len()]); count];
-            for (i, row) in rows.iter().enumerate() {
-                let (matrix, score) = &mut own[(i / span).min(count - 1)];
-                let white = |[a, b]: [f64; 2]| [whiten[(0, 0)] * a, whiten[(1, 0)] * a + whiten[(1, 1)] * b];
-                let e = white(*row);
+            let white = |[a, b]: [f64; 2]| [whiten[(0, 0)] * a, whiten[(1, 0)] * a + whiten[(1, 1)] * b];
+            // The last block takes the rest.
+            let own = (0..count).map(|k| {
+                let part = k * span..if k + 1 == count { rows.len() } else { (k + 1) * span };
+                let errors: Vec<[f64; 2]> = rows[part.clone()].iter().map(|row| white(*row)).collect();
+                let mut lines = DMatrix::<f64>::zeros(2 * errors.len(), active.len());
+                let mut score = vec![0.0; active.len()];
                 for (a, (_, there)) in active.iter().enumerate() {
-                    let away = there.sections[s][i];
-                    let line = white([(away[0] - row[0]) / DIFFERENCE, (away[1] - row[1]) / DIFFERENCE]);
-                    lines[a] = line;
-                    let d = &spread[a];
-                    let squared = d[(0, 0)] * e[0] * e[0] + 2.0 * d[(0, 1)] * e[0] * e[1] + d[(1, 1)] * e[1] * e[1];
-                    score[a] += 0.5 * (squared - d.trace()) - line[0] * e[0] - line[1] * e[1];
-                    for b in 0..=a {
-                        matrix[(a, b)] += line[0] * lines[b][0] + line[1] * lines[b][1];
+                    let (d, mut sum) = (&spread[a], 0.0);
+                    let of_points = lines.column_mut(a).data.into_slice_mut().as_chunks_mut::<2>().0;
+                    let away = &there.sections[s][part.clone()];
+                    for (((line, away), row), e) in of_points.iter_mut().zip(away).zip(&rows[part.clone()]).zip(&errors)
+                    {
+                        *line = white([(away[0] - row[0]) / DIFFERENCE, (away[1] - row[1]) / DIFFERENCE]);
+                        let squared = d[(0, 0)] * e[0] * e[0] + 2.0 * d[(0, 1)] * e[0] * e[1] + d[(1, 1)] * e[1] * e[1];
+                        sum += 0.5 * (squared - d.trace()) - line[0] * e[0] - line[1] * e[1];
                     }
+                    score[a] = sum;
                 }
-                *matrix += &of_spread;
-            }
-            for (k, (matrix, score)) in own.into_iter().enumerate() {
+                (lines.tr_mul(&lines) + &of_spread * errors.len() as f64, score)
+            });
+            for (k, (matrix, score)) in own.enumerate() {
                 let block = &mut blocks[starts[s] + k];
                 for (a, (j, _)) in active.iter().enumerate() {
                     slopes[a].push(score[a]);
