@@ -10,7 +10,7 @@ use quatrack::{
     Settings,
 };
 use quatrack_design::vehicle::Vehicle;
-use quatrack_simulation::scenario::{ToldFigures, actuation_of, actuator_aware_of, cascade_of, cascade_of_table};
+use quatrack_simulation::scenario::{ToldFigures, actuation_of, actuator_aware_of, cascade_of_table, flown_cascade};
 use quatrack_simulation::vehicles;
 
 use crate::error::refused;
@@ -99,7 +99,7 @@ impl OwnedLaw {
         match name {
             "quatrack" => {
                 let (vehicle, told) = craft.ok_or_else(needed)?;
-                let cascade = cascade_of(&vehicle, &told).map_err(refused)?;
+                let cascade = flown_cascade(&vehicle, &told).map_err(refused)?;
                 let actuation = *cascade.actuation();
                 return Ok(own(Kept::Cascade(Box::new(cascade)), Some(actuation), Limits::NONE));
             }

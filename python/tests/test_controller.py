@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import quatrack as q
-from conftest import random_crafts, row_of
+from conftest import ROOT, random_crafts, row_of
 
 CRAFT = "crazyflie-2.1-brushless"
 LAWS = ["quatrack", "actuator-aware", "lqr-e", "lyap-e", "lqr-f", "lyap-f"]
@@ -96,6 +96,20 @@ def test_a_table_is_flown_on_its_own_vehicle():
     assert q.Controller(table).rate_hz == 500
     with pytest.raises(q.QuatrackError, match="made for crazyflie-2.1-brushless .* make its table anew"):
         q.Controller(table, "crazyflie-2.1")
+
+
+def test_an_own_craft_flies_the_certified_table_of_its_kind(tmp_path):
+    built_in = (ROOT / "gains" / "vehicles" / "crazyflie-2.1-brushless.toml").read_text()
+    own = tmp_path / "own.toml"
+    own.write_text(built_in.replace('name = "crazyflie-2.1-brushless"', 'name = "own"'))
+    controller = q.Controller("quatrack", str(own))
+    state = q.State([0.0, 0.0, 1.0], body_rates=[0.0, 0.0, 0.0])
+    forces = controller.step(state, q.Reference([0.0, 0.0, 1.0])).motor_forces
+    assert forces == pytest.approx(q.Vehicle(CRAFT).hover_force_n, rel=1e-6)
+    # The built-in one is designed for any lag; a table is certified for a range of them.
+    q.Controller("quatrack", CRAFT, lag_s=0.005)
+    with pytest.raises(q.QuatrackError, match="lag"):
+        q.Controller("quatrack", str(own), lag_s=0.005)
 
 
 def test_gains_along_a_trajectory_follow_its_player():

@@ -91,10 +91,13 @@ impl Following {
     }
 }
 
-/// The cascade that a scenario flies a vehicle with. A built-in one has that of [`cascade_of`]. Another vehicle has the certified table
-/// that `quatrack gains craft` makes, with the lag of its design, and its air where none is told; a lag that is told has to be in the
-/// table's region.
-fn flown_cascade(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, NotFlown> {
+/// The cascade at 500 Hz that a scenario flies a vehicle with. For a built-in one it is designed with the standard weights for the lag
+/// that is told, or for the one that it is flown with where none is. Another vehicle has the certified table that `quatrack gains craft`
+/// makes, with the lag of its design, and its air where none is told; a lag that is told has to be in the table's region.
+///
+/// # Errors
+/// [`NotFlown`] where there is no design or no certified table, or the core refuses a figure.
+pub fn flown_cascade(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, NotFlown> {
     if vehicles::is_built_in(vehicle) {
         return Ok(cascade_of(vehicle, told)?);
     }
@@ -103,12 +106,8 @@ fn flown_cascade(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, NotFl
     Ok(cascade_of_table(vehicle, told, &standard.table)?)
 }
 
-/// The cascade of a vehicle at 500 Hz, designed with the standard weights for the lag that is told, or for the one that the vehicle
-/// is flown with where none is. Nothing certifies it.
-///
-/// # Errors
-/// [`FlightError`] where there is no design, or the core refuses a figure.
-pub fn cascade_of(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, FlightError> {
+/// Designed with the standard weights for the lag that is told, or for the one that the vehicle is flown with.
+fn cascade_of(vehicle: &Vehicle, told: &ToldFigures) -> Result<Cascade, FlightError> {
     let lag_s = told.lag_s.unwrap_or_else(|| untold_lag_s(vehicle));
     let design = cascade(vehicle, lag_s, &CascadeWeights::for_lag(lag_s), PERIOD_S)?;
     let gains = CascadeGains::from_numbers(design.numbers().map(|gain| gain as f32))?;

@@ -53,12 +53,13 @@ mod track;
 mod varied;
 mod whole;
 
-pub use cascade_law::{cascade_of, cascade_of_table};
+pub use cascade_law::{cascade_of_table, flown_cascade};
 pub use core_law::{actuation_of, actuator_aware_of};
 pub use error::{ScenarioError, StartError};
 pub use kept::Tally;
 pub use laws::{Law, LawError};
 pub use log::{LogRow, cflib_csv};
+pub use not_flown::NotFlown;
 pub use prototype::Prototype;
 pub use recording::{Around, Recording};
 pub use sensors::SensorNoise;

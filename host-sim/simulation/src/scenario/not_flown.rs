@@ -4,9 +4,10 @@ use super::told::ToldError;
 use crate::crazyflie::StandardError;
 use crate::flight::motor_laws::FlightError;
 
-/// The reason.
+/// Why a law does not fly a vehicle.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub(super) enum NotFlown {
+#[non_exhaustive]
+pub enum NotFlown {
     /// There is no design, or the core refuses a figure.
     #[error(transparent)]
     Core(#[from] FlightError),
