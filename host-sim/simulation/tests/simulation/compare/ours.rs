@@ -76,14 +76,16 @@ fn told_lag_and_drag_it_is_closer_still() {
     }
 }
 
-/// Through a filter that reckons with the drag, the firmware's are between 0.33 and 1.28 m s off. Ours is held to a fifth
-/// above its measured error on the worst.
+/// Through a filter that reckons with the drag, the firmware's are between 0.33 and 1.28 m s off. Ours, whose velocity is carried on
+/// by the known forces between two predictions, is held close above its measured errors: 0.051 to 0.078 m s, and 0.101 on RotorPy's
+/// Brushless.
 #[test]
 fn through_a_filter_with_drag_ours_stays_close() {
     let eight = Flown::eight(2.1, 12.0);
-    for (of, drag_per_s) in CRAFT.into_iter().zip([0.24, 0.75, 0.43, 0.40, 0.50]) {
+    let stated = [(0.24, 0.08), (0.75, 0.12), (0.43, 0.08), (0.40, 0.08), (0.50, 0.08)];
+    for (of, (drag_per_s, bound)) in CRAFT.into_iter().zip(stated) {
         let craft = Craft::new(of);
         let found = errors(&craft, &told_the_mass(&craft), |law| craft.fly_filtered(law, &eight, drag_per_s));
-        hold(of.1, found, 0.112);
+        hold(of.1, found, bound);
     }
 }
