@@ -23,7 +23,7 @@ const SYSTEMATIC: [(&str, f64); 8] = [
     ("inertia_z", 0.16),
     ("inertia_", 0.08),
     ("drag_", 0.07),
-    ("moment_", 0.10),
+    ("moment_", 0.12),
     ("thrust_", 0.05),
     ("hover_command", 0.02),
 ];

@@ -148,14 +148,10 @@ fn study(name: &str, seeds: std::ops::Range<u64>, conditions: &Conditions) -> BT
 fn hold(tallies: &BTreeMap<&'static str, Tally>) {
     for (figure, tally) in tallies {
         let error = median(tally.errors.iter().map(|e| e.abs()).collect());
-        // A delay is in units of 0.1 s; the full thrust is a power of the thrust at hover.
+        // A delay is in units of 0.1 s.
         let most = match *figure {
             "delay_ms" => 0.02,
-            "thrust_full_n" => 0.03,
-            // The thrust that carries the craft, by its command.
-            "hover_command" => 0.01,
-            // They have the power's bias of 3 %, as torques over the command's slope.
-            name if name.starts_with("moment_") => 0.06,
+            "thrust_full_n" | "hover_command" => 0.01,
             _ => 0.05,
         };
         assert!(error < most, "{figure}: median error {error}");
