@@ -11,7 +11,7 @@ use quatrack::{
 };
 use quatrack_simulation::flight::motor_loop::RATE;
 use quatrack_simulation::scenario::file::ScenarioFile;
-use quatrack_simulation::scenario::{Scenario, actuation_of, actuator_aware_of, cascade_of};
+use quatrack_simulation::scenario::{Scenario, actuation_of, actuator_aware_of, flown_cascade};
 use quatrack_tests::cases::case;
 
 fn steps(criterion: &mut Criterion) {
@@ -30,7 +30,7 @@ fn steps(criterion: &mut Criterion) {
     let (gain, lag_s) = actuator_aware_of(vehicle, told).expect("there is a design");
     let actuation = actuation_of(vehicle, told, lag_s, RATE).expect("the core takes the vehicle");
     let aware = Controller::new(ActuatorAware::new(&gain, &actuation), Limits::NONE);
-    let cascade = cascade_of(vehicle, told).expect("there is a design");
+    let cascade = flown_cascade(vehicle, told).expect("there is a design");
     let ours = Controller::new(&cascade, Limits::NONE);
 
     let sample = FifthOrderSample::of_jerk(FlatSample { heading_rad: 0.0, heading_rate_rad_s: 0.0, ..case.sample });
