@@ -1,8 +1,9 @@
 //! The estimate as the loop takes it: carried on to each step, and its velocity held to its position.
 //!
 //! The firmware's filter predicts a hundred times a second. Between two of its estimates position goes on by the velocity,
-//! velocity by the forces that are known, and attitude by the gyroscope, which is read at each step. A velocity that is held
-//! instead is old by up to 10 ms, 0.1 m/s at 10 m/s^2, and pulls the thrust back and forth a hundred times a second.
+//! velocity by the acceleration that the force observer expects, and attitude by the gyroscope, which is read at each step.
+//! A velocity that stayed as it was would be off by up to 0.1 m/s at 10 m/s^2, and pull the thrust back and forth a
+//! hundred times a second.
 //!
 //! A filter that knows of no drag estimates a velocity that is off while its position is right. An observer of the position
 //! that is fed the velocity finds the difference b: `p^' = v - b + 2 w (p - p^)`, `b' = -w^2 (p - p^)`, both poles at w. The loop
@@ -66,20 +67,21 @@ impl Carried {
         gained: Vector3::new(0.0, 0.0, 0.0),
     };
 
-    /// The estimate at this step, a period after the last one, of a craft that accelerates by `a`; nothing where its
-    /// quaternion is no attitude.
+    /// The estimate at this step, a period after the last one, of a craft with body rates `w` and acceleration `a`; nothing
+    /// where its quaternion is no attitude.
     #[inline(always)]
     pub(super) fn at_step(
         &mut self,
         estimate: &State,
-        (w, a): (&Vector3<f32>, &Vector3<f32>),
+        w: &Vector3<f32>,
+        a: &Vector3<f32>,
         period_s: f32,
     ) -> Option<Now> {
         let (p, v) = (&estimate.position_m, &estimate.velocity_m_s);
         if *p == self.position && estimate.attitude == self.given {
             if self.age_s < CARRIED_MAX_S {
                 self.age_s += period_s;
-                let Self { gained: g, .. } = *self;
+                let g = self.gained;
                 self.gained = Vector3::new(g.x + period_s * a.x, g.y + period_s * a.y, g.z + period_s * a.z);
                 let half = 0.5 * period_s;
                 let turn = Quaternion::new(1.0, half * w.x, half * w.y, half * w.z);
@@ -161,12 +163,12 @@ mod tests {
     #[test]
     fn an_estimate_is_carried_on_by_velocity_and_gyro_and_not_for_ever() {
         let (state, mut carried) = (moving(Vector3::zeros(), Vector3::new(1.0, 0.0, 0.0)), Carried::NONE);
-        let fresh = carried.at_step(&state, (&TURNING, &STEADY), H).unwrap();
+        let fresh = carried.at_step(&state, &TURNING, &STEADY, H).unwrap();
         assert_eq!((fresh.position.x, fresh.attitude), (0.0, Quaternion::IDENTITY));
-        let later = (0..4).filter_map(|_| carried.at_step(&state, (&TURNING, &STEADY), H)).last().unwrap();
+        let later = (0..4).filter_map(|_| carried.at_step(&state, &TURNING, &STEADY, H)).last().unwrap();
         // 8 ms at 1 m/s and 1 rad/s; small angles.
         assert!((later.position.x - 0.008).abs() < 1e-7 && (later.attitude.z - 0.004).abs() < 1e-7);
-        let last = (0..100).filter_map(|_| carried.at_step(&state, (&TURNING, &STEADY), H)).last().unwrap();
+        let last = (0..100).filter_map(|_| carried.at_step(&state, &TURNING, &STEADY, H)).last().unwrap();
         assert!((last.position.x - 0.012).abs() < 1e-6);
     }
 
@@ -174,13 +176,13 @@ mod tests {
     fn a_velocity_gains_what_the_forces_give_until_there_is_a_new_one() {
         let (state, mut carried) = (moving(Vector3::zeros(), Vector3::new(1.0, 0.0, 0.0)), Carried::NONE);
         let a = Vector3::new(5.0, 0.0, -2.0);
-        let steps = [(); 8].map(|()| carried.at_step(&state, (&TURNING, &a), H).unwrap());
+        let steps = [(); 8].map(|()| carried.at_step(&state, &TURNING, &a, H).unwrap());
         assert_eq!(steps[0].velocity, state.velocity_m_s);
         // After 8 ms, and no longer than 12 ms.
         assert!((steps[4].velocity - Vector3::new(1.04, 0.0, -0.016)).norm() < 1e-6);
         assert!((steps[7].velocity - Vector3::new(1.06, 0.0, -0.024)).norm() < 1e-6);
         let newer = moving(Vector3::new(0.01, 0.0, 0.0), Vector3::new(1.02, 0.0, 0.0));
-        assert_eq!(carried.at_step(&newer, (&TURNING, &a), H).unwrap().velocity, newer.velocity_m_s);
+        assert_eq!(carried.at_step(&newer, &TURNING, &a, H).unwrap().velocity, newer.velocity_m_s);
     }
 
     #[test]
@@ -188,7 +190,7 @@ mod tests {
         for (norm, sound) in [(0.98, true), (1.05, true), (0.4, false), (2.1, false), (f32::NAN, false)] {
             let mut state = moving(Vector3::zeros(), Vector3::zeros());
             state.attitude = Quaternion::new(0.6 * norm, 0.0, 0.8 * norm, 0.0);
-            let now = { Carried::NONE }.at_step(&state, (&TURNING, &STEADY), H);
+            let now = { Carried::NONE }.at_step(&state, &TURNING, &STEADY, H);
             assert_eq!(now.is_some(), sound, "{norm}");
             if let Some(now) = now {
                 assert!((now.attitude.dot(now.attitude) - 1.0).abs() < 3e-7);
@@ -203,7 +205,7 @@ mod tests {
         for _ in 0..1000 {
             x += H;
             let state = moving(Vector3::new(x, 0.0, 0.0), Vector3::new(1.3, 0.0, 0.0));
-            let mut now = { Carried::NONE }.at_step(&state, (&TURNING, &STEADY), H).unwrap();
+            let mut now = { Carried::NONE }.at_step(&state, &TURNING, &STEADY, H).unwrap();
             held.step(&mut now, H);
             found = now.velocity.x;
         }
@@ -217,7 +219,7 @@ mod tests {
         for step in 0..500_u16 {
             let x = 0.5 * H * f32::from(step) + if step > 250 { 5.0 } else { 0.0 };
             let mut now = { Carried::NONE }
-                .at_step(&moving(Vector3::new(x, 0.0, 0.0), Vector3::new(0.5, 0.0, 0.0)), (&TURNING, &STEADY), H)
+                .at_step(&moving(Vector3::new(x, 0.0, 0.0), Vector3::new(0.5, 0.0, 0.0)), &TURNING, &STEADY, H)
                 .unwrap();
             held.step(&mut now, H);
             // Half the spacing of positions of 5 m, 2.4e-7 m, in each step of 2 ms.

@@ -47,7 +47,7 @@ pub(super) struct ForceObserver {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Disturbance {
     velocity: Vector3<f32>,
-    /// Its slope over the last step by all forces, m/s^2.
+    /// The acceleration over the last step by all forces, m/s^2.
     pub(super) acceleration: Vector3<f32>,
     /// Across in the world frame, m/s^2, and its slope, m/s^3.
     pub(super) across: [f32; 2],

@@ -5,7 +5,7 @@
 //! In the order in which data flows, with `n = R z` and forces in parts of thrust, roll, pitch and yaw:
 //!
 //! ```text
-//! estimate        p, v, q carried on to the step, v by the forces known; v held to p
+//! estimate        p, v, q carried on to the step, v by the force observer; v held to p
 //! outer           approach: the velocity towards p_r that the craft should have beside the reference's
 //! reference       a' = a + d v - d^, ...; flat map -> q_r, w_r, f_r, u_r; answer to the air's moment at v_r and some of the approach
 //! outer           A = -k_v sat[(v - v_r) + sat(k_p / k_v (p - p_r))];  h = a' + A + g z, within its limits
@@ -208,7 +208,7 @@ impl Cascade {
         let (mut carried, mut held, period_s) = (memory.carried, memory.held, self.actuation.lag.period_s());
         let flat = &input.sample.flat;
         let mut now =
-            carried.at_step(input.state, (input.body_rates_rad_s, &memory.disturbance.acceleration), period_s)?;
+            carried.at_step(input.state, input.body_rates_rad_s, &memory.disturbance.acceleration, period_s)?;
         held.step(&mut now, period_s);
 
         let position = difference(&now.position, &flat.position_m);

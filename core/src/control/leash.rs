@@ -23,7 +23,7 @@ impl Leash {
     /// The shortest that an owner may set, m: on a shorter one a flight does not get anywhere.
     pub const SHORTEST_M: f32 = 0.1;
 
-    /// The longest that has an effect in a room, m.
+    /// The longest that an owner may set, m: in a room it is as good as none.
     pub const LONGEST_M: f32 = 10.0;
 
     /// None: the laws as they are in the paper.

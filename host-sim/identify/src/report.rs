@@ -77,15 +77,12 @@ pub fn identify(
     notes.extend(with_one_voltage(&mut flights));
     notes.extend(flights.iter().flat_map(|flight| flight.notes.0.iter().cloned()).chain(copies.0));
     // Two fits, of all of the flights and of all but their last quarters, at once.
-    let (fit, prediction) = std::thread::scope(|scope| {
+    let (fit, validated) = std::thread::scope(|scope| {
         let validated = scope.spawn(|| validate(&flights, &base));
-        (fit(&flights, &base), validated.join())
+        (fit(&flights, &base), validated.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     });
     let fit = fit?;
-    let prediction = match prediction {
-        Ok(validated) => validated.map(|(prediction, _)| prediction).map_err(|error| error.to_string()),
-        Err(panic) => std::panic::resume_unwind(panic),
-    };
+    let prediction = validated.map(|(prediction, _)| prediction).map_err(|error| error.to_string());
     let prediction = prediction.and_then(|prediction| {
         let end = prediction.ours.last().map_or(f64::NAN, |e| e.position_m + e.body_rate_rad_s);
         if end.is_finite() { Ok(prediction) } else { Err("what is predicted is no number".to_owned()) }

@@ -1,6 +1,6 @@
 //! Quantities over one axis, panel below panel: a curve, or the residual of a flight.
 
-use super::flight::{Quantity, draw_quantities};
+use super::flight::{Marks, Quantity, draw_quantities};
 use super::render;
 use super::space::Frame;
 use super::style::TITLE;
@@ -19,8 +19,8 @@ pub struct ChartFigure<'a> {
     pub axis_name: &'a str,
     /// Places on the axis; increasing.
     pub places: &'a [f64],
-    /// Places that an upright line marks in every panel, dashed as a limit is.
-    pub marks: Vec<f64>,
+    /// Upright lines in every panel.
+    pub marks: Option<Marks<'a>>,
     /// Panels from top to bottom; each trace has one value for each place.
     pub quantities: Vec<Quantity<'a>>,
 }
@@ -33,7 +33,7 @@ impl ChartFigure<'_> {
     pub fn to_svg(&self) -> Result<String, FigureError> {
         self.validate()?;
         let mut sheet = Sheet::new([compose::WIDTH, HEIGHT], self.title);
-        draw_quantities(&mut sheet, PANELS, self.axis_name, self.places, &self.marks, &self.quantities)?;
+        draw_quantities(&mut sheet, PANELS, self.axis_name, self.places, self.marks.as_ref(), &self.quantities)?;
         let size = compose::fitting(self.title, TITLE)?;
         sheet.text(self.title, [0.5 * compose::WIDTH, 32.0], size, Anchor::Middle);
         Ok(sheet.into_document())

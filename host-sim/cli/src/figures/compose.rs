@@ -121,9 +121,12 @@ pub(super) fn note(flight: &Curve<'_>, axes: &[Range; 3]) -> Option<String> {
     }
 }
 
+/// By how much the letters of a viewer that lacks the figures' font may be wider: DejaVu Sans, Verdana.
+const OTHER_FONT: f64 = 1.2;
+
 /// `size`, or a smaller one that keeps the text on the sheet.
 pub(super) fn fitting(content: &str, size: f64) -> Result<f64, FigureError> {
-    Ok(size.min((WIDTH - 2.0 * MARGIN) / width_em(content)?))
+    Ok(size.min((WIDTH - 2.0 * MARGIN) / (OTHER_FONT * width_em(content)?)))
 }
 
 /// A row of samples with their labels, centred below the title; the reference first.

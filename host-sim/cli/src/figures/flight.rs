@@ -29,6 +29,15 @@ pub struct Trace<'a> {
     pub limit: bool,
 }
 
+/// Places on the axis that upright lines mark, dashed as a limit is.
+#[derive(Clone, Debug)]
+pub struct Marks<'a> {
+    /// For the panels' legends.
+    pub label: &'a str,
+    /// Within the axis.
+    pub places: Vec<f64>,
+}
+
 /// A panel.
 #[derive(Clone, Debug)]
 pub struct Quantity<'a> {
@@ -77,7 +86,7 @@ impl FlightFigure<'_> {
     }
 
     fn draw_panels(&self, sheet: &mut Sheet) -> Result<(), FigureError> {
-        draw_quantities(sheet, PANELS, "time (s)", self.tracking.reference.time_s, &[], &self.quantities)
+        draw_quantities(sheet, PANELS, "time (s)", self.tracking.reference.time_s, None, &self.quantities)
     }
 }
 
@@ -87,7 +96,7 @@ pub(super) fn draw_quantities(
     frame: Frame,
     axis_name: &str,
     places: &[f64],
-    marks: &[f64],
+    marks: Option<&Marks<'_>>,
     quantities: &[Quantity<'_>],
 ) -> Result<(), FigureError> {
     let range = Range { low: places[0], high: places[places.len() - 1] };
@@ -105,11 +114,11 @@ pub(super) fn draw_quantities(
         for (trace, stroke) in quantity.strokes() {
             panel.draw_samples(sheet, places.iter().zip(&trace.values).map(|(t, v)| [*t, *v]), stroke);
         }
-        for mark in marks {
-            panel.draw_samples(sheet, [value.range.low, value.range.high].map(|v| [*mark, v]).into_iter(), LIMIT);
+        for place in marks.iter().flat_map(|marks| &marks.places) {
+            panel.draw_samples(sheet, [value.range.low, value.range.high].map(|v| [*place, v]).into_iter(), LIMIT);
         }
         panel.draw_outline(sheet);
-        quantity.legend(sheet, frame.right, top - 9.0)?;
+        quantity.legend(sheet, marks, frame.right, top - 9.0)?;
         sheet.text_upwards(quantity.name, [frame.left - 50.0, top + 0.5 * height], LABEL);
     }
     let middle = 0.5 * (frame.left + frame.right);
@@ -126,14 +135,22 @@ impl Quantity<'_> {
     }
 
     /// Above the panel, from the right.
-    pub(super) fn legend(&self, sheet: &mut Sheet, right: f64, row: f64) -> Result<(), FigureError> {
+    pub(super) fn legend(
+        &self,
+        sheet: &mut Sheet,
+        marks: Option<&Marks<'_>>,
+        right: f64,
+        row: f64,
+    ) -> Result<(), FigureError> {
         const SAMPLE: f64 = 22.0;
-        let mut strokes = self.strokes();
-        strokes.dedup_by(|(next, _), (before, _)| next.label == before.label);
+        let marks = marks.map(|marks| (marks.label, LIMIT));
+        let traces = self.strokes().into_iter().map(|(trace, stroke)| (trace.label, stroke));
+        let mut rows: Vec<(&str, Stroke)> = marks.into_iter().chain(traces).collect();
+        rows.dedup_by(|(next, _), (before, _)| next == before);
         let mut x = right;
-        for (trace, stroke) in strokes.into_iter().rev() {
-            sheet.text(trace.label, [x, row], TICK, Anchor::End);
-            x -= width_em(trace.label)? * TICK + 6.0;
+        for (label, stroke) in rows.into_iter().rev() {
+            sheet.text(label, [x, row], TICK, Anchor::End);
+            x -= width_em(label)? * TICK + 6.0;
             let y = row - 0.5 * CAP_HEIGHT * TICK;
             sheet.line([x - SAMPLE, y], [x, y], stroke);
             x -= SAMPLE + 16.0;

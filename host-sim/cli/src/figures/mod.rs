@@ -19,7 +19,7 @@ mod svg;
 use nalgebra::Vector3;
 
 pub use chart::ChartFigure;
-pub use flight::{FlightFigure, Quantity, Trace};
+pub use flight::{FlightFigure, Marks, Quantity, Trace};
 pub use plots::{Plot, PlotsFigure};
 
 /// Coordinates and times up to this size can be told apart on an axis and labelled.

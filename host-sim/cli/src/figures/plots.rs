@@ -92,7 +92,7 @@ impl Plot<'_> {
             panel.draw_samples(sheet, self.at.iter().zip(values).map(|(at, value)| [place(*at), *value]), stroke);
         }
         panel.draw_outline(sheet);
-        quantity.legend(sheet, frame.right, frame.top - 9.0)?;
+        quantity.legend(sheet, None, frame.right, frame.top - 9.0)?;
         sheet.text_upwards(quantity.name, [frame.left - 56.0, 0.5 * (frame.top + frame.bottom)], LABEL);
         if with_axis {
             let middle = 0.5 * (frame.left + frame.right);

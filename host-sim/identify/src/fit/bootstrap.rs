@@ -63,9 +63,9 @@ impl Dice {
     }
 }
 
-/// How many blocks tell of a parameter, each weighed by how much it tells (Kish's effective sample size): drawing blocks shows nothing
+/// Kish's effective number of blocks for a parameter, each weighed by its share of Fisher's information: drawing blocks shows no spread
 /// of a parameter that one of them tells alone.
-pub(super) fn telling(blocks: &[Block], j: usize) -> f64 {
+pub(super) fn effective_count(blocks: &[Block], j: usize) -> f64 {
     let all = || blocks.iter().map(|block| block.matrix[(j, j)]);
     all().sum::<f64>().powi(2) / all().map(|share| share * share).sum::<f64>().max(1e-300)
 }
@@ -96,7 +96,7 @@ mod tests {
             shares.iter().map(|share| Block { flight: 0, matrix: of(share), score: DVector::zeros(2) }).collect()
         };
         // Equal ones count as they are; one among many that hardly tell is little more than one.
-        assert!((telling(&blocks(&[2.0; 5]), 0) - 5.0).abs() < 1e-12);
-        assert!((telling(&blocks(&[1.0, 0.01, 0.01, 0.01]), 0) - 1.06).abs() < 0.01);
+        assert!((effective_count(&blocks(&[2.0; 5]), 0) - 5.0).abs() < 1e-12);
+        assert!((effective_count(&blocks(&[1.0, 0.01, 0.01, 0.01]), 0) - 1.06).abs() < 0.01);
     }
 }

@@ -32,7 +32,7 @@ pub(super) struct Figures<'a> {
 /// columns are not what the map says.
 const TORQUES_LEAST: f64 = 0.5;
 
-/// So many blocks have to tell of a figure: one alone shows no spread.
+/// Least effective number of blocks that tell of a figure: one alone shows no spread.
 const BLOCKS_LEAST: f64 = 1.5;
 
 const STEPS: &str = "fly 20 s of steps between corners, which turn the craft fast";
@@ -51,16 +51,15 @@ impl<'a> Figures<'a> {
         self.all.insert(name, told(name, value, draws, self.spread, most, manoeuvre));
     }
 
-    /// Refuses a figure that one moment of the flight tells.
+    /// Refuses a figure that one block of the flight tells alone.
     fn repeated(&mut self, posterior: &Posterior, name: &'static str, j: usize, manoeuvre: &str) {
-        let blocks = posterior.telling(j);
-        if blocks < BLOCKS_LEAST {
+        if posterior.effective_blocks(j) < BLOCKS_LEAST {
             let reason = format!("one stretch of {BLOCK_S} s alone tells it, which shows no spread: {manoeuvre}");
             self.all.insert(name, Err(reason));
         }
     }
 
-    /// Refuses a figure that the prior tells, or one moment, and not the flight.
+    /// Refuses a figure that the prior tells, or one block, and not the flight.
     fn excited(&mut self, posterior: &Posterior, name: &'static str, j: usize, most: f64, manoeuvre: &str) {
         self.repeated(posterior, name, j, manoeuvre);
         let by_data = 1.96 * posterior.by_data(j);

@@ -7,9 +7,10 @@
 //!   model          the model of the most likely figures, and the share that it explains
 //!   posterior      the choice of one of two, and draws of it
 //!   refine         maximum a posteriori by filters: thrust, torque balance, lag, delay and noise together
-//!     innovations  of a Kalman filter that knows the figures
-//!       layout     the parameters: their places, start values and priors
-//!         steady   the steady Kalman filter of a model
+//!     fisher       its normal equations by blocks of time
+//!       innovations  of a Kalman filter that knows the figures
+//!         layout   the parameters: their places, start values and priors
+//!           steady the steady Kalman filter of a model
 //!   balanced       the same by the balances of torques and thrust below the corner
 //!   drag, yaw      regressions by themselves
 //!   balance        torques along a stretch of flight, for pictures
@@ -25,6 +26,7 @@ mod bootstrap;
 mod drag;
 mod estimate;
 mod figures;
+mod fisher;
 mod innovations;
 mod lag_curve;
 mod layout;

@@ -7,7 +7,7 @@
 use nalgebra::DVector;
 
 use super::balanced;
-use super::bootstrap::{DRAWS, Dice, telling};
+use super::bootstrap::{Block, DRAWS, Dice, effective_count};
 use super::layout::{DAMPING, SHARED};
 use super::prior::{Base, Prior};
 use super::problem::Prepared;
@@ -92,12 +92,16 @@ impl Posterior {
         Self { values: refined.values.clone(), draws, blocks, way: Way::Filters(refined) }
     }
 
+    fn priors_and_blocks(&self) -> (&[Prior], &[Block]) {
+        match &self.way {
+            Way::Balances { refined, .. } => (&refined.priors, &refined.blocks),
+            Way::Filters(refined) => (&refined.priors, &refined.blocks),
+        }
+    }
+
     /// Deviation of a parameter by what the flights say of it, without what was believed before.
     pub(super) fn by_data(&self, j: usize) -> f64 {
-        let priors = match &self.way {
-            Way::Balances { refined, .. } => &refined.priors,
-            Way::Filters(refined) => &refined.priors,
-        };
+        let (priors, _) = self.priors_and_blocks();
         let all: Vec<f64> = self.draws.iter().map(|draw| draw[j]).collect();
         let middle = mean(&all);
         let variance = mean(&all.iter().map(|value| (value - middle).powi(2)).collect::<Vec<_>>());
@@ -105,15 +109,9 @@ impl Posterior {
         if precision > 0.0 { precision.sqrt().recip() } else { f64::INFINITY }
     }
 
-    /// How many blocks tell of a parameter.
-    pub(super) fn telling(&self, j: usize) -> f64 {
-        telling(
-            match &self.way {
-                Way::Balances { refined, .. } => &refined.blocks,
-                Way::Filters(refined) => &refined.blocks,
-            },
-            j,
-        )
+    /// Effective number of blocks that tell of a parameter.
+    pub(super) fn effective_blocks(&self, j: usize) -> f64 {
+        effective_count(self.priors_and_blocks().1, j)
     }
 
     /// The same way once more with other parameters kept.

@@ -207,6 +207,7 @@ mod tests {
     use super::*;
     use crate::flight::{Flight, prepare};
     use crate::log::{RawLog, parse_csv};
+    use quatrack_simulation::control_law::Estimate;
     use quatrack_simulation::scenario::{LogRow, cflib_csv};
 
     /// Thirty seconds of leaning to and fro, with the drag and the specific force that belong to it.
@@ -224,11 +225,13 @@ mod tests {
                 let force = Vector3::new(-0.4 * body.x, -0.4 * body.y, GRAVITY_M_S2 / (q * Vector3::z()).z);
                 let row = LogRow {
                     time_s: t,
-                    position: p,
-                    velocity: v,
-                    attitude: q,
-                    gyro: (attitude(t - 0.005).inverse() * attitude(t + 0.005)).scaled_axis() / 0.01,
-                    specific_force: force,
+                    estimate: Estimate {
+                        position_m: p,
+                        velocity_m_s: v,
+                        attitude: q,
+                        body_rates_rad_s: (attitude(t - 0.005).inverse() * attitude(t + 0.005)).scaled_axis() / 0.01,
+                        specific_force_m_s2: force,
+                    },
                     commands: [0.6 + 0.05 * (7.0 * t).sin(); 4],
                     voltage: None,
                 };
@@ -303,7 +306,7 @@ mod tests {
     #[test]
     fn a_mirrored_pitch_is_named() {
         let mut rows = rows();
-        rows.iter_mut().for_each(|row| row.attitude = pitch_mirrored(&row.attitude));
+        rows.iter_mut().for_each(|row| row.estimate.attitude = pitch_mirrored(&row.estimate.attitude));
         let flight = prepared(&rows, |_| {}, MAP);
         assert!(flight.notes.0.iter().any(|note| note.contains("pitch has the other sign")), "{:?}", flight.notes);
     }
@@ -312,12 +315,10 @@ mod tests {
     fn a_late_pose_is_found() {
         let all = rows();
         let late: Vec<LogRow> = (7..all.len())
-            .map(|i| LogRow {
-                time_s: all[i].time_s,
-                position: all[i - 7].position,
-                velocity: all[i - 7].velocity,
-                attitude: all[i - 7].attitude,
-                ..all[i]
+            .map(|i| {
+                let (now, before) = (all[i].estimate, all[i - 7].estimate);
+                let Estimate { body_rates_rad_s, specific_force_m_s2, .. } = now;
+                LogRow { estimate: Estimate { body_rates_rad_s, specific_force_m_s2, ..before }, ..all[i] }
             })
             .collect();
         let flight = prepared(&late, |_| {}, MAP);

@@ -144,10 +144,11 @@ impl Craft {
         let mut text = String::from("t,px,py,pz,vx,vy,vz,qx,qy,qz,qw,gx,gy,gz,ax,ay,az,m1,m2,m3,m4,v\n");
         let mut rows: Vec<(f64, String)> = Vec::new();
         for row in recording.log_rows(most_n) {
-            let q = row.attitude.quaternion();
+            let known = &row.estimate;
+            let q = known.attitude.quaternion();
             let join = |values: &[f64]| values.iter().map(|v| format!("{v:.7}")).collect::<Vec<_>>().join(",");
-            let pose = [row.position.as_slice(), row.velocity.as_slice(), &[q.i, q.j, q.k, q.w]].concat();
-            let inertial = [row.gyro.as_slice(), row.specific_force.as_slice()].concat();
+            let pose = [known.position_m.as_slice(), known.velocity_m_s.as_slice(), &[q.i, q.j, q.k, q.w]].concat();
+            let inertial = [known.body_rates_rad_s.as_slice(), known.specific_force_m_s2.as_slice()].concat();
             let motors = row.commands.map(|u| (65535.0 * u.clamp(0.0, 1.0)).round() / 65535.0);
             let volts = row.voltage.map_or(String::new(), |v| format!("{v:.4}"));
             let [t_motors, t_inertial, t_pose] = self.late_s.map(|late| row.time_s + late);

@@ -27,7 +27,7 @@ pub(crate) struct Conditions {
     noise: bool,
     /// 0 to 20 ms of commands, inertial sensors and pose, each.
     delays: bool,
-    /// A half of the crafts on a battery, with the force by powers of command and voltage.
+    /// Every fourth craft on a battery, with the force by powers of command and voltage.
     battery: bool,
 }
 

@@ -7,6 +7,7 @@ use quatrack::State;
 use quatrack::estimator::{self, DeviationsAtStart, Estimator, EstimatorConfig, EstimatorError, Imu, ImuAverager};
 
 use super::sensors::Sensors;
+use super::track::SAMPLE_STEPS;
 use super::whole::FilterFigures;
 use crate::control_law::{Estimate, STEPS_HZ};
 use crate::plant::RigidState;
@@ -127,8 +128,8 @@ impl Filtered {
             attitude: quatrack::Quaternion::new(w, x, y, z),
             velocity_m_s: f32s(&start.velocity_m_s),
         };
-        // So many steps into a period of 10 ms.
-        let first = (10 - steps_of(figures.phase_s)) % 10;
+        // So many steps after a sample's time.
+        let first = (SAMPLE_STEPS - steps_of(figures.phase_s)) % SAMPLE_STEPS;
         let steps = |hz: f64| (f64::from(STEPS_HZ) / hz).round() as u32;
         Ok(Self {
             estimate: filter.start(&state)?,

@@ -2,26 +2,18 @@
 
 use std::fmt::Write as _;
 
-use nalgebra::{UnitQuaternion, Vector3};
 use quatrack_design::model::GRAVITY_M_S2;
 
 use super::recording::Recording;
+use crate::control_law::Estimate;
 
 /// One row of a log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LogRow {
     /// Since the start, s.
     pub time_s: f64,
-    /// World frame, m.
-    pub position: Vector3<f64>,
-    /// World frame, m/s.
-    pub velocity: Vector3<f64>,
-    /// Body to world.
-    pub attitude: UnitQuaternion<f64>,
-    /// Body frame, rad/s.
-    pub gyro: Vector3<f64>,
-    /// Body frame, m/s^2.
-    pub specific_force: Vector3<f64>,
+    /// The law's estimate, with its sensors.
+    pub estimate: Estimate,
     /// Commands as shares of a full one, from 0 to 1.
     pub commands: [f64; 4],
     /// V; none where nothing depends on it.
@@ -39,11 +31,7 @@ impl Recording {
         (self.flight.samples.iter().zip(&self.around))
             .map(|(sample, around)| LogRow {
                 time_s: sample.time_s,
-                position: around.estimate.position_m,
-                velocity: around.estimate.velocity_m_s,
-                attitude: around.estimate.attitude,
-                gyro: around.estimate.body_rates_rad_s,
-                specific_force: around.estimate.specific_force_m_s2,
+                estimate: around.estimate,
                 commands: [0, 1, 2, 3].map(|motor| sample.commands_n[motor] / full_n),
                 voltage: Some(around.voltage_v).filter(|volts| *volts > 0.0),
             })
@@ -59,12 +47,13 @@ pub fn cflib_csv(rows: &[LogRow]) -> String {
          motor.m1,motor.m2,motor.m3,motor.m4,pm.vbat\n",
     );
     for row in rows {
-        let q = row.attitude.quaternion();
+        let Estimate { position_m, velocity_m_s, attitude, body_rates_rad_s, specific_force_m_s2 } = &row.estimate;
+        let q = attitude.quaternion();
         // Writing to a string does not fail.
         let _ = write!(text, "{:.3}", 1e3 * row.time_s);
-        let gyro = row.gyro.map(f64::to_degrees);
-        let force = row.specific_force / GRAVITY_M_S2;
-        let pose = row.position.iter().chain(row.velocity.iter()).chain([&q.i, &q.j, &q.k, &q.w]);
+        let gyro = body_rates_rad_s.map(f64::to_degrees);
+        let force = specific_force_m_s2 / GRAVITY_M_S2;
+        let pose = position_m.iter().chain(velocity_m_s.iter()).chain([&q.i, &q.j, &q.k, &q.w]);
         for value in pose.chain(gyro.iter()).chain(force.iter()) {
             let _ = write!(text, ",{value:.7}");
         }

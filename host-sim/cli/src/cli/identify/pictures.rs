@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use quatrack_cli::figures::{ChartFigure, Curve, FigureError, FlightFigure, Quantity, Trace, TrackingFigure};
+use quatrack_cli::figures::{ChartFigure, Curve, FigureError, FlightFigure, Marks, Quantity, Trace, TrackingFigure};
 use quatrack_identify::Report;
 use quatrack_identify::fit::Balance;
 use quatrack_identify::predict::{Errors, Example, Prediction};
@@ -114,7 +114,7 @@ fn ahead<T>(prediction: &Prediction, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>
         title: "Mean error on the quarter held out",
         axis_name: "ahead (s)",
         places: &places,
-        marks: Vec::new(),
+        marks: None,
         quantities: vec![
             quantity("position (m)", |e| e.position_m),
             quantity("velocity (m/s)", |e| e.velocity_m_s),
@@ -141,7 +141,7 @@ fn residuals<T>(balance: &Balance, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) 
             ],
         })
         .collect();
-    draw(&ChartFigure { title: &title, axis_name: "time (s)", places: &balance.times_s, marks: Vec::new(), quantities })
+    draw(&ChartFigure { title: &title, axis_name: "time (s)", places: &balance.times_s, marks: None, quantities })
 }
 
 fn lag<T>(report: &Report, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) -> Drawn<T> {
@@ -151,20 +151,19 @@ fn lag<T>(report: &Report, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) -> Drawn
     let (title, marks) = match report.fit.figures.get("lag_ms") {
         Some(Ok(lag)) => (
             format!("Lag of the motors: {:.1} ms, 95 % {:.1} to {:.1} ms", lag.value, lag.low, lag.high),
-            vec![lag.low, lag.value, lag.high],
+            Some(Marks { label: "identified, and its interval", places: vec![lag.low, lag.value, lag.high] }),
         ),
-        _ => ("Lag of the motors: not told by these flights".to_owned(), Vec::new()),
+        _ => ("Lag of the motors: not told by these flights".to_owned(), None),
     };
-    let mut traces = vec![line("about x", of(0)), line("about y", of(1))];
-    if !marks.is_empty() {
-        // No values of its own: it names the marks in the legend.
-        traces.push(Trace { label: "identified, and its interval", values: vec![f64::NAN; places.len()], limit: true });
-    }
     draw(&ChartFigure {
         title: &title,
         axis_name: "lag (ms)",
         places: &places,
         marks,
-        quantities: vec![Quantity { name: "explained share of the motors' torque", shortest: 0.05, traces }],
+        quantities: vec![Quantity {
+            name: "explained share of the motors' torque",
+            shortest: 0.05,
+            traces: vec![line("about x", of(0)), line("about y", of(1))],
+        }],
     })
 }
