@@ -150,7 +150,14 @@ impl Whitened {
             }
             score.push(slope);
         }
-        (lines.tr_mul(&lines) + &self.of_spread * rows.len() as f64, score)
+        let mut matrix = &self.of_spread * rows.len() as f64;
+        for a in 0..moved.len() {
+            for b in 0..=a {
+                matrix[(a, b)] += lines.column(a).dot(&lines.column(b));
+            }
+        }
+        matrix.fill_upper_triangle_with_lower_triangle();
+        (matrix, score)
     }
 }
 

@@ -18,7 +18,7 @@ use crate::flight::{RATE_HZ, STEP_S};
 
 /// Balances: about x, about y, along the thrust.
 pub(super) const KINDS: usize = 3;
-/// No sensor is believed to be better, rad/s and m/s^2: between two samples the commands are not known that well.
+/// Joined to the noise of each sensor, rad/s and m/s^2: between two samples the commands are not known better than that.
 const RATE_LEAST: f64 = 2e-3;
 const FORCE_LEAST: f64 = 2e-2;
 /// Of a section, until the filter has forgotten how it began, s.
@@ -138,7 +138,10 @@ impl<'a> Balances<'a> {
                 fed(air, noise.air[1]),
                 fed(force, noise.force[1]),
             ),
-            r: Vector2::new(noise.sensors[0].max(RATE_LEAST).powi(2), noise.sensors[1].max(FORCE_LEAST).powi(2)),
+            r: Vector2::new(
+                noise.sensors[0].powi(2) + RATE_LEAST.powi(2),
+                noise.sensors[1].powi(2) + FORCE_LEAST.powi(2),
+            ),
         };
         let steady = model.steady()?;
         let [j_x, j_y, j_z] = [values[INERTIA[0]].exp(), values[INERTIA[1]].exp(), self.base.inertia_kg_m2[2]];
@@ -185,7 +188,7 @@ impl<'a> Balances<'a> {
             a: Matrix1::new(kept),
             h: Matrix1::new(1.0),
             q: Vector1::new((1.0 - kept * kept) * deviation * deviation),
-            r: Vector1::new(sensor.max(FORCE_LEAST).powi(2)),
+            r: Vector1::new(sensor.powi(2) + FORCE_LEAST.powi(2)),
         };
         let steady = model.steady()?;
         let sections = self

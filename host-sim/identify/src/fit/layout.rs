@@ -62,6 +62,12 @@ impl Noise {
     }
 }
 
+/// Parameters that are logarithms of deviations, and not of memories.
+pub(super) fn deviations() -> impl Iterator<Item = usize> {
+    let across = NOISE.into_iter().flat_map(|first| [1, 3, 5, 6, 7, 8].map(|k| first + k));
+    across.chain([NOISE_Z + 1, NOISE_Z + 2])
+}
+
 /// Steps of a difference, and units of the parameters.
 pub(super) fn units(base: &Base) -> Vec<f64> {
     let moment = 3e-3 * base.half_arm_m.max(0.01);

@@ -32,11 +32,11 @@ pub(crate) struct Drive {
 pub(super) struct Prepared {
     pub(super) flight: usize,
     pub(super) start_s: f64,
-    commands: [Vec<f64>; 4],
+    /// Logarithms of the commands, and of the voltage over the reference: so a power costs one exponential a point.
+    log_commands: [Vec<f64>; 4],
+    log_voltage: Vec<f64>,
     /// Points before which the commands jump, as they do where a setpoint does.
     jumps: Vec<usize>,
-    /// Over the reference.
-    voltage: Vec<f64>,
     /// Low-passed: angular acceleration, body velocity, body rates, specific force.
     pub(super) angular: [Vec<f64>; 3],
     pub(super) velocity: [Vec<f64>; 3],
@@ -93,13 +93,12 @@ impl Prepared {
         let count = section.len();
         let force_bias = force_bias(section);
         let force: Vec<Vector3<f64>> = section.specific_force.iter().map(|f| f - force_bias).collect();
-        let voltage = section.voltage.iter().map(|v| v / base.reference_v).collect();
         Self {
             flight,
             start_s: section.start_s,
             jumps: jumps(&section.commands),
-            commands: section.commands.clone(),
-            voltage,
+            log_commands: section.commands.each_ref().map(|command| command.iter().map(|u| u.ln()).collect()),
+            log_voltage: section.voltage.iter().map(|v| (v / base.reference_v).ln()).collect(),
             angular: [0, 1, 2].map(|k| low.both_ways(&derivative(&gyro[k], STEP_S))),
             products: [product(1, 2), product(2, 0)],
             across: low.both_ways(&across),
@@ -136,11 +135,11 @@ impl Prepared {
     /// The force asked of each motor at each point of the log.
     fn asked(&self, drive: &Drive) -> [Vec<f64>; 4] {
         let [p, q] = drive.powers;
-        self.commands.each_ref().map(|command| {
-            if self.voltage.is_empty() {
-                command.iter().map(|u| u.powf(p)).collect()
+        self.log_commands.each_ref().map(|command| {
+            if self.log_voltage.is_empty() {
+                command.iter().map(|u| (p * u).exp()).collect()
             } else {
-                command.iter().zip(&self.voltage).map(|(u, v)| u.powf(p) * v.powf(q)).collect()
+                command.iter().zip(&self.log_voltage).map(|(u, v)| (p * u + q * v).exp()).collect()
             }
         })
     }
@@ -162,7 +161,7 @@ impl Prepared {
     /// Thrusts without a low-pass. A command is a smooth curve through its samples: its course between them is not in the
     /// log.
     pub(super) fn thrusts_between(&self, drive: &Drive) -> Thrusts {
-        let count = self.commands[0].len();
+        let count = self.log_commands[0].len();
         let steps = -drive.delay_s / STEP_S;
         let asked = self.asked(drive).map(|asked| {
             let stairs = self.stairs(&asked);

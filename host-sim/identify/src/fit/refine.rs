@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use super::bootstrap::{Block, Dice};
 use super::fisher::{DIFFERENCE, State, blocks, state, total};
 use super::innovations::{Balances, KINDS};
-use super::layout::{JUMP, LIFT, SHARED, units};
+use super::layout::{JUMP, LIFT, SHARED, deviations, units};
 use super::normal_equations::Believed;
 use super::prior::{Base, Prior};
 use super::problem::Prepared;
@@ -54,7 +54,11 @@ pub(super) fn refine(sections: &[Prepared], base: &Base, flights: usize, start: 
     let mut weighed = false;
     for _ in 0..ROUNDS {
         let (blocks, _) = blocks(&balances, &values, &now, &units, &fixed, &weights);
-        let (matrix, slope) = total(&blocks);
+        let (mut matrix, slope) = total(&blocks);
+        // A variance exp(2 x) bends the cost over x by twice its slope, which Fisher's matrix lacks.
+        for j in deviations() {
+            matrix[(j, j)] += 2.0 * units[j] * (-slope[j]).max(0.0);
+        }
         let mut better = None;
         while damping < 1e6 {
             let believed = Believed { values: &values, priors: &priors, units: &units, fixed: &fixed };
