@@ -4,7 +4,7 @@
 //! exceed the range; the thrust moves to make room for them and for three tenths of the yaw asked; yaw takes the room
 //! that is left.
 
-use super::bounds::{between, smaller};
+use super::bounds::{between, larger, smaller, within};
 use crate::airframe::Airframe;
 use crate::mixer::{MotorLimited, Parts};
 
@@ -52,8 +52,9 @@ impl Allocation {
         let (along, across) = ((roll + pitch).abs(), (pitch - roll).abs());
         // No more than the yaw's share that the range has room for beside both.
         let room = half_range - swing;
-        let share = smaller(YAW_SHARE * yaw.abs(), room);
-        let lifted = between(thrust, least + swing + share, most - swing - share);
+        let share = within(YAW_SHARE * yaw, room);
+        let (upper, lower) = (larger(along - share, across + share), larger(along + share, across - share));
+        let lifted = between(thrust, least + lower, most - upper);
         if lifted != thrust {
             limited = limited.with_thrust();
         }

@@ -35,6 +35,12 @@ pub(super) fn smaller(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
+/// The larger of two numbers.
+#[inline(always)]
+pub(super) fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
 /// A horizontal vector, shortened to the length `bound`.
 #[inline(always)]
 pub(super) fn shortened([x, y]: [f32; 2], bound: f32) -> [f32; 2] {

@@ -251,6 +251,7 @@ impl Cascade {
         };
         let mut along = axis.x * wanted.x + axis.y * wanted.y + axis.z * wanted.z;
         if height {
+            along = OuterLoop::lifting(along, wanted.z, axis.z);
             let drag_apart = air.drag * (self.drag_along_share - 1.0);
             let v = &now.velocity;
             along = along - disturbance.along + drag_apart * (axis.x * v.x + axis.y * v.y + axis.z * v.z);

@@ -5,11 +5,11 @@
 //! made good. With
 //! `k_p = g k_r / k_th`, `k_v = g k_v / k_th` sideways and `4 k / (m (1 + k_f))` in height it is the LQR's own answer
 //! where nothing is limited. The specific force that thrust then has to make, `h = a' + A + g z`, keeps its upward part
-//! first, then its tilt, then its size.
+//! first, then its tilt, then its size. Of it the thrust makes the part along its axis, and no less than keeps the height.
 
 use nalgebra::Vector3;
 
-use super::bounds::{between, shortened, smaller, within};
+use super::bounds::{between, larger, shortened, smaller, within};
 use super::gains::CascadeGains;
 use super::limits::CascadeLimits;
 use super::reference::Approach;
@@ -23,6 +23,12 @@ const VELOCITY_MOST_M_S: f32 = 3.0;
 const UPWARD_LEAST_M_S2: f32 = 2.0;
 /// Its largest size as a share of that of all motors together: the allocation cuts the rest, and keeps the attitude.
 const SIZE_MOST_SHARE: f32 = 1.2;
+
+/// By so much the upward acceleration may fall short while the tilt is not the wanted one, m/s^2: more than noise and the tilt's
+/// errors along a course make of it.
+const SHORTFALL_M_S2: f32 = 1.0;
+/// Cosine of the tilt up to which thrust makes good for it.
+const UPRIGHT: f32 = 0.57;
 
 /// The loop's gains and limits.
 #[derive(Clone, Copy, Debug)]
@@ -127,6 +133,24 @@ impl OuterLoop {
         self.cut(own, x, y, up)
     }
 
+    /// The acceleration that the thrust should make along its axis, where the wanted specific force has a part `along` it and points
+    /// `up`, and the axis points `upward`: that part, or more, all in m/s^2 but the axis.
+    ///
+    /// A craft that has to tilt back first would fall: its thrust, farther from the vertical than the wanted force, lifts less than that
+    /// should. So the upward part falls short by no more than a bound. Beyond 55 degrees of tilt, where thrust hardly lifts, the
+    /// least thrust goes down to none at 90.
+    #[inline(always)]
+    pub(super) fn lifting(along: f32, up: f32, upward: f32) -> f32 {
+        let least = up - SHORTFALL_M_S2;
+        if along * upward < least { Self::lifted(along, least, upward) } else { along }
+    }
+
+    #[inline(never)]
+    fn lifted(along: f32, least: f32, upward: f32) -> f32 {
+        const FADED: f32 = 1.0 / (UPRIGHT * UPRIGHT);
+        larger(along, if upward > UPRIGHT { least / upward } else { least * upward * FADED })
+    }
+
     #[inline(never)]
     fn cut(&self, own: &Vector3<f32>, x: f32, y: f32, up: f32) -> Vector3<f32> {
         let most = self.most_m_s2;
@@ -174,6 +198,31 @@ mod tests {
             assert!(at(distance, 1.8).x.abs() < 1e-5 && at(distance, 1.5).z.abs() < 1e-5, "{distance}");
         }
         assert_eq!(outer.correction(&Vector3::new(1.0, 1.0, 0.0), &Vector3::zeros(), None), Vector3::zeros());
+    }
+
+    #[test]
+    fn while_the_craft_tilts_back_its_thrust_keeps_the_height() {
+        let at = |wanted: [f32; 2], tilt_deg: f32| {
+            let (sin, cos) = tilt_deg.to_radians().sin_cos();
+            (OuterLoop::lifting(wanted[0] * sin + wanted[1] * cos, wanted[1], cos), cos)
+        };
+        let upright = [0.0, 10.0];
+        // On its axis, and a little beside it, the force's own part.
+        assert_eq!(at(upright, 0.0).0, 10.0);
+        assert!((at(upright, 15.0).0 - 10.0 * 15.0_f32.to_radians().cos()).abs() < 1e-5);
+        // On the way to the wanted tilt that part lifts enough.
+        let (towards, cos) = at([8.0, 10.0], 20.0);
+        assert!((towards - (8.0 * 20.0_f32.to_radians().sin() + 10.0 * cos)).abs() < 1e-5 && towards * cos > 10.0);
+        // On the way back the upward part is 1 m/s^2 short.
+        for tilt_deg in [25.0, 40.0, 54.0] {
+            let (along, cos) = at(upright, tilt_deg);
+            assert!((along * cos - 9.0).abs() < 1e-5, "{tilt_deg}: {along}");
+        }
+        // Without a step at the end of it, and none upside down.
+        let [before, behind] = [55.24, 55.26].map(|tilt_deg| at(upright, tilt_deg).0);
+        assert!((before - behind).abs() < 0.02, "{before} {behind}");
+        assert!(at(upright, 89.9).0 < 0.1 && at(upright, 170.0).0 < 0.0);
+        assert!(OuterLoop::lifting(f32::NAN, 10.0, 1.0).is_nan());
     }
 
     #[test]

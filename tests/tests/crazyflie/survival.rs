@@ -54,7 +54,7 @@ fn a_goal_at_any_distance_is_reached_within_limits_at_any_lag() {
                 let goal = [distance, 0.0, 1.0];
                 let found = way(&mut flight, &position(goal, 0.0), goal.map_into(), seconds);
                 println!("{name} {lag_s} {distance}: {found:?}");
-                assert!(found.beyond_m <= 0.02 && found.left_m < 0.02, "{name}, {lag_s} s, {distance} m: {found:?}");
+                assert!(found.beyond_m <= 0.01 && found.left_m < 0.02, "{name}, {lag_s} s, {distance} m: {found:?}");
                 assert!(
                     found.tilt_deg <= 55.0 && found.speed_m_s <= 2.25,
                     "{name}, {lag_s} s, {distance} m: {found:?}"
@@ -67,13 +67,13 @@ fn a_goal_at_any_distance_is_reached_within_limits_at_any_lag() {
 #[test]
 fn a_turn_with_a_step_keeps_height() {
     for name in CRAFTS {
-        for yaw in [45.0, 135.0, 180.0] {
-            for distance in [0.1, 2.0] {
+        for yaw in [45.0, 90.0, 135.0, 180.0] {
+            for distance in [0.1, 0.5, 1.0, 2.0] {
                 let mut flight = hovering(name, 0.0);
                 let goal = [distance, 0.0, 1.0];
                 let found = way(&mut flight, &position(goal, yaw), goal.map_into(), 6);
                 println!("{name} {yaw} {distance}: {found:?}");
-                assert!(found.lowest_m > 0.93 && found.left_m < 0.02 && found.tilt_deg < 47.0, "{name}: {found:?}");
+                assert!(found.lowest_m > 0.95 && found.left_m < 0.02 && found.tilt_deg < 45.0, "{name}: {found:?}");
             }
         }
     }
