@@ -66,14 +66,37 @@ impl Source<'_> {
     }
 }
 
+/// A static of the board for one run, and free again after it: else thousands of runs take all memory.
+struct Lent<T>(*mut T);
+
+impl<T> Lent<T> {
+    fn new(value: T) -> Self {
+        Self(Box::into_raw(Box::new(value)))
+    }
+
+    /// To be asked for once; the borrower has to be gone first.
+    fn lend(&self) -> &'static mut T {
+        // SAFETY: of `new`, and freed by `drop` alone.
+        unsafe { &mut *self.0 }
+    }
+}
+
+impl<T> Drop for Lent<T> {
+    fn drop(&mut self) {
+        // SAFETY: of `new`, and dropped once.
+        drop(unsafe { Box::from_raw(self.0) });
+    }
+}
+
 fn fly(bytes: &[u8]) -> Option<()> {
     let mut source = Source(bytes);
     let protection = [Protection::CableOnly, Protection::Orders, Protection::Everything][usize::from(source.byte()? % 3)];
     let is_keyed = protection != Protection::CableOnly;
     let keys = Keys::of(&GivenKeys { link: is_keyed.then_some(([7; 32], protection)), signing: None });
-    // Leaked, as a static is on the board; the process lives for one search.
-    let mut flight = Here(Flight::new(Box::leak(Box::default()), None));
-    let mut session = Session::new(Box::leak(Box::new(Uploads::new())), keys, NoFlash, None);
+    // Before those that borrow them: what is declared first goes last.
+    let (store, uploads) = (Lent::new(Default::default()), Lent::new(Uploads::new()));
+    let mut flight = Here(Flight::new(store.lend(), None));
+    let mut session = Session::new(uploads.lend(), keys, NoFlash, None);
     // A pilot with the key, if there is one, and somebody without.
     let mut hosts = [HostSession::new(10), HostSession::new(11)];
     if is_keyed {

@@ -79,7 +79,7 @@ fn written(fit: &Fit, vehicle: &Vehicle, logs: &[String]) -> String {
     line(&format!("lag_s = {}", figure(lag_s)));
     let [shortest, longest] =
         lag.map_or(motors.published_lag_s, |lag| [lag.low, lag.high].map(|ms| 1e-3 * ms.max(1.0)));
-    line("# The ends of that interval.");
+    line(if lag.is_some() { "# The ends of that interval." } else { "# The published ones." });
     line(&format!("published_lag_s = [{}, {}]", figure(shortest), figure(longest)));
     if let (Some(lag), Some(delay)) = (lag, of("delay_ms")) {
         line("\n[motors.flown]");

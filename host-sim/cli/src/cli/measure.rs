@@ -54,7 +54,7 @@ fn counted(args: &Args) -> Result<InstructionReport, PilError> {
             Images { counting, control_path, motor_path, estimator, link, flying }
         }
         None => {
-            let checkout = image::checkout()?;
+            let checkout = image::checkout_for_image()?;
             let build = |image| image::build(&checkout, image);
             Images {
                 control_path: build(Image::ControlPath)?,

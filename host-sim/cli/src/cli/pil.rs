@@ -100,7 +100,7 @@ fn emulated(args: &Args, key: Option<Key>, interrupt: Interrupt) -> Result<Clien
     };
     let image = match &args.image {
         Some(path) => path.clone(),
-        None => image::build(&image::checkout()?, transport.image())?,
+        None => image::build(&image::checkout_for_image()?, transport.image())?,
     };
     if let Some(flash) = args.flash.as_deref().filter(|flash| !flash.exists()) {
         emulated::new_flash(flash)?;

@@ -73,6 +73,14 @@ pub fn checkout() -> Result<PathBuf, PilError> {
     current.ancestors().find(is_checkout).map(Path::to_path_buf).ok_or(PilError::NoCheckout)
 }
 
+/// The same for a command that also takes a built image.
+///
+/// # Errors
+/// [`PilError::NoImage`].
+pub fn checkout_for_image() -> Result<PathBuf, PilError> {
+    checkout().map_err(|error| if matches!(error, PilError::NoCheckout) { PilError::NoImage } else { error })
+}
+
 /// Builds an image in a checkout; cargo shows how it gets on.
 ///
 /// # Errors

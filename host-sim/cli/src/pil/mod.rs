@@ -45,8 +45,11 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum PilError {
     /// Nothing to build the image from.
-    #[error("not inside a checkout of quatrack, so there is no image to build; change there or give --image FILE")]
+    #[error("not inside a checkout of quatrack, so there is nothing to build from: change to one")]
     NoCheckout,
+    /// The same where an image may be given.
+    #[error("not inside a checkout of quatrack, so there is no image to build: change to one, or give --image FILE")]
+    NoImage,
     /// Cargo failed; it has said why.
     #[error("the image was not built: {command} ended with {status}; its own messages are above")]
     Build {

@@ -26,6 +26,7 @@ pub(super) struct Figures<'a> {
     base: &'a Base,
     pub(super) all: BTreeMap<&'static str, Result<Estimate, String>>,
     spread: f64,
+    steeper: f64,
 }
 
 /// Share of the torques about an axis that has to be explained before anything is told of them: less, and the flight is at rest, or its
@@ -35,20 +36,51 @@ const TORQUES_LEAST: f64 = 0.5;
 /// Least effective number of blocks that tell of a figure: one alone shows no spread.
 const BLOCKS_LEAST: f64 = 1.5;
 
-const STEPS: &str = "fly 20 s of steps between corners, which turn the craft fast";
+pub(super) const DENSE: &str = "log every control step";
+pub(super) const STEPS: &str = "fly 20 s of steps between corners, which turn the craft fast";
 const SPEED: &str = "fly 30 s at 1 m/s and more in both directions";
 const CLIMBS: &str = "fly climbs and drops of 0.5 m and more, as fast as they go";
 const DISCHARGE: &str = "log the battery's voltage over a few minutes, or two flights, one with a full battery";
 const TURNS: &str = "turn the heading by 90 degrees and back, fast, a few times";
 
 impl<'a> Figures<'a> {
-    /// None yet. `spread`: by how much intervals of few blocks are wider than those of many.
-    pub(super) fn new(base: &'a Base, spread: f64) -> Self {
-        Self { base, all: BTreeMap::new(), spread }
+    /// None yet. `spread`: by how much intervals of few blocks are wider than those of many; `steeper`: by how much the force may grow
+    /// faster with the command than the fit has it.
+    pub(super) fn new(base: &'a Base, spread: f64, steeper: f64) -> Self {
+        Self { base, all: BTreeMap::new(), spread, steeper }
     }
 
     fn put(&mut self, name: &'static str, value: f64, draws: &[f64], most: f64, manoeuvre: &str) {
         self.all.insert(name, told(name, value, draws, self.spread, most, manoeuvre));
+    }
+
+    /// A figure that goes with the slope of force over command, and is larger by a factor where that is as steep as it may be: the middle
+    /// of both by ratio, in an interval that holds both.
+    fn put_by_slope(
+        &mut self,
+        name: &'static str,
+        value: f64,
+        draws: &[f64],
+        [most, factor]: [f64; 2],
+        manoeuvre: &str,
+    ) {
+        self.put(name, value, draws, most, manoeuvre);
+        let Some(Ok(estimate)) = self.all.get_mut(name) else { return };
+        let more = (factor - 1.0) * value;
+        estimate.low += more.min(0.0);
+        estimate.high += more.max(0.0);
+        estimate.value *= factor.sqrt();
+        if more.abs() > most {
+            let reason = format!(
+                "it may be {factor:.2} times as large, since the commands of this log are noisy: {DENSE}, and {CLIMBS}"
+            );
+            self.all.insert(name, Err(reason));
+        }
+    }
+
+    /// Refuses some.
+    pub(super) fn refuse(&mut self, reasons: Vec<(&'static str, String)>) {
+        self.all.extend(reasons.into_iter().map(|(name, reason)| (name, Err(reason))));
     }
 
     /// Refuses a figure that one block of the flight tells alone.
@@ -97,7 +129,7 @@ impl<'a> Figures<'a> {
         let Posterior { values, draws, .. } = posterior;
         let of = |f: &dyn Fn(&DVector<f64>) -> f64| -> (f64, Vec<f64>) { (f(values), draws.iter().map(f).collect()) };
         let flights = values.len() - SHARED;
-        let mass = self.base.mass_kg;
+        let (mass, steeper) = (self.base.mass_kg, self.steeper);
         let (lag, all) = of(&|v| 1e3 * v[LAG].exp());
         self.put("lag_ms", lag, &all, 0.3 * lag, STEPS);
         self.excited(posterior, "lag_ms", LAG, 0.4, STEPS);
@@ -109,7 +141,7 @@ impl<'a> Figures<'a> {
             delay.high += 500.0 * STEP_S;
         }
         let (power, all) = of(&|v| v[COMMAND_POWER]);
-        self.put("command_power", power, &all, 0.3, CLIMBS);
+        self.put_by_slope("command_power", power, &all, [0.3, steeper], CLIMBS);
         self.excited(posterior, "command_power", COMMAND_POWER, 0.5, CLIMBS);
         if voltage {
             let (power, all) = of(&|v| v[VOLTAGE_POWER]);
@@ -121,9 +153,11 @@ impl<'a> Figures<'a> {
         let full = |v: &DVector<f64>| (SHARED..v.len()).map(|j| v[j]).sum::<f64>() / flights as f64;
         let (per_mass, mut all) = of(&|v| full(v).exp());
         self.between_flights(values, &mut all);
-        self.put("thrust_per_mass_m_s2", per_mass, &all, 0.2 * per_mass, CLIMBS);
+        // Hover is told by itself: a full command gives by the power more.
+        let fuller = (per_mass / GRAVITY_M_S2).max(1.0).powf(steeper - 1.0);
+        self.put_by_slope("thrust_per_mass_m_s2", per_mass, &all, [0.2 * per_mass, fuller], CLIMBS);
         let newton: Vec<f64> = all.iter().map(|a| 0.25 * mass * a).collect();
-        self.put("thrust_full_n", 0.25 * mass * per_mass, &newton, 0.05 * mass * per_mass, CLIMBS);
+        self.put_by_slope("thrust_full_n", 0.25 * mass * per_mass, &newton, [0.05 * mass * per_mass, fuller], CLIMBS);
         // A full command is not flown: what it gives is what the power makes of the thrust at hover.
         if self.all.get("command_power").is_none_or(Result::is_err) {
             for name in ["thrust_per_mass_m_s2", "thrust_full_n"] {
@@ -149,11 +183,11 @@ impl<'a> Figures<'a> {
         .enumerate()
         {
             let (value, all) = of(&|v| v[INERTIA[axis]].exp());
-            self.put(inertia, value, &all, 0.2 * value, STEPS);
+            self.put_by_slope(inertia, value, &all, [0.2 * value, steeper], STEPS);
             self.excited(posterior, inertia, INERTIA[axis], 0.3, STEPS);
             let (value, all) = of(&|v| v[MOMENT[axis]]);
             let most = (0.25 * value.abs()).max(2e-3 * self.base.half_arm_m * self.base.mass_kg);
-            self.put(moment, value, &all, most, SPEED);
+            self.put_by_slope(moment, value, &all, [most, steeper], SPEED);
             self.repeated(posterior, moment, MOMENT[axis], SPEED);
             let (value, all) = of(&|v| v[DAMPING[axis]]);
             self.put(damping, value, &all, 0.4 * self.base.damping_scale(), STEPS);

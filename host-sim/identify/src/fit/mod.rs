@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! whole            all figures of some flights
+//!   contradiction  two fits beside each other
 //!   figures        each told with an interval, or refused with a manoeuvre
 //!     estimate     its interval by draws
 //!   model          the model of the most likely figures, and the share that it explains
@@ -13,6 +14,7 @@
 //!           steady the steady Kalman filter of a model
 //!   balanced       the same by the balances of torques and thrust below the corner
 //!   drag, yaw      regressions by themselves
+//!   thrust         by how much the command's power may be larger
 //!   balance        torques along a stretch of flight, for pictures
 //!     lag_curve    how much of the torques a lag explains
 //!       problem    signals of the balances, as logged and low-passed
@@ -23,6 +25,7 @@
 mod balance;
 mod balanced;
 mod bootstrap;
+mod contradiction;
 mod drag;
 mod estimate;
 mod figures;
@@ -37,6 +40,7 @@ mod prior;
 mod problem;
 mod refine;
 mod steady;
+mod thrust;
 mod whole;
 mod yaw;
 

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::balance::{Balance, balance};
 use super::balanced;
 use super::bootstrap::few_units;
+use super::contradiction::contradictions;
 use super::drag::{Regression, drag};
 use super::estimate::Estimate;
 use super::figures::Figures;
@@ -15,6 +16,7 @@ use super::model::{FlightFit, Model, Summary, flight_fits, summary};
 use super::posterior::{EXPLAINED_LEAST, Posterior};
 use super::prior::Base;
 use super::problem::{Drive, Prepared, prepared};
+use super::thrust::steeper;
 use crate::IdentifyError;
 use crate::filter::mean;
 use crate::flight::{Flight, STEP_S};
@@ -57,10 +59,24 @@ pub fn fit(flights: &[Flight], base: &Base) -> Result<Fit, IdentifyError> {
     let (filler, priors) = start(base, &found(&sections, base, &curve, &drags));
     let begin = balanced::start(&sections, base, flights.len(), &curve, &drags, fixed.clone());
     let mut posterior = Posterior::balanced(&sections, base, begin, &fixed, &filler);
+    let told = |posterior: &Posterior| {
+        let steeper = steeper(&sections, base, &posterior.values);
+        let mut figures = Figures::new(base, few_units(&posterior.blocks), steeper);
+        figures.refined(posterior, voltage);
+        figures
+    };
+    // Where the filters tell other figures than slower motions do, they are not believed: commands that are noisy between the samples of
+    // a log excite the craft, and are not in it.
+    let mut contradicted = Vec::new();
     let rough = summary(&sections, base, &posterior.values, &drags);
     if 0.5 * (rough.explained[0] + rough.explained[1]) > EXPLAINED_LEAST {
         let filtered = Posterior::filtered(&sections, base, flights.len(), &posterior.values, priors, &fixed);
-        posterior = filtered.unwrap_or(posterior);
+        if let Some(filtered) = filtered {
+            contradicted = contradictions(&told(&posterior), &told(&filtered));
+            if contradicted.is_empty() {
+                posterior = filtered;
+            }
+        }
     }
     let Summary { full, yaws, model, explained: [x, y, thrust] } = summary(&sections, base, &posterior.values, &drags);
     if ![x, y, thrust].iter().all(|share| share.is_finite()) {
@@ -70,8 +86,8 @@ pub fn fit(flights: &[Flight], base: &Base) -> Result<Fit, IdentifyError> {
         ));
     }
     let flight_fits = flight_fits(&sections, base, &model, &full);
-    let mut figures = Figures::new(base, few_units(&posterior.blocks));
-    figures.refined(&posterior, voltage);
+    let mut figures = told(&posterior);
+    figures.refuse(contradicted);
     figures.apart(&sections, base, &posterior, voltage);
     figures.drag(&drags);
     figures.yaw(&yaws);
