@@ -1,4 +1,4 @@
-//! The part of a file that an error quotes: never more than a line of a terminal or two holds.
+//! The part of a file that an error quotes: never more than a line of a terminal or two holds, and nothing that a terminal obeys.
 
 /// Most characters of a file that an error quotes.
 pub const QUOTED_MAX: usize = 200;
@@ -15,11 +15,24 @@ pub fn one_line(message: &str) -> String {
     message.split_whitespace().map(|word| cut(word, WORD_MAX)).collect::<Vec<_>>().join(" ")
 }
 
+/// Whether a character shows itself: no control character, and none that hides or changes the direction of the text.
+pub fn is_plain(c: char) -> bool {
+    let turns = matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    !turns && !c.is_control()
+}
+
+/// A tab is a space; what else does not show itself is written as its number.
 fn cut(text: &str, most: usize) -> String {
-    if text.chars().count() <= most {
-        return text.to_owned();
+    let text = text.replace('\t', " ");
+    let shown: String = if text.chars().all(is_plain) {
+        text
+    } else {
+        text.chars().map(|c| if is_plain(c) { c.to_string() } else { c.escape_unicode().to_string() }).collect()
+    };
+    if shown.chars().count() <= most {
+        return shown;
     }
-    let kept: String = text.chars().take(most - 3).collect();
+    let kept: String = shown.chars().take(most - 3).collect();
     kept + "..."
 }
 
@@ -35,5 +48,12 @@ mod tests {
         let message = one_line(&format!("unknown field `{}`,\n expected one of", "k".repeat(5000)));
         assert!(message.starts_with("unknown field `kkk") && message.ends_with("... expected one of"), "{message}");
         assert!(message.len() < 150);
+    }
+
+    #[test]
+    fn a_terminal_is_told_nothing() {
+        assert_eq!(quoted("m\0\t\u{1b}[2J\u{202e}\u{b5}"), "m\\u{0} \\u{1b}[2J\\u{202e}\u{b5}");
+        assert_eq!(one_line("unknown field `\u{7}a`,\n expected"), "unknown field `\\u{7}a`, expected");
+        assert_eq!(quoted(&"\0".repeat(1000)).chars().count(), 200);
     }
 }

@@ -30,6 +30,7 @@ mod vehicle;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
+use quatrack_plan::quote::is_plain;
 
 /// Why a command stops: one line for the user and the exit code.
 #[derive(Debug)]
@@ -39,19 +40,28 @@ pub(crate) struct Failure {
 }
 
 impl Failure {
+    /// Names of files and their words may hold characters that a terminal obeys: they are written as numbers.
+    fn of(exit_code: u8, reason: &dyn std::fmt::Display) -> Self {
+        let mut line = String::new();
+        for c in reason.to_string().chars() {
+            if matches!(c, '\n' | '\t') || is_plain(c) { line.push(c) } else { line.extend(c.escape_unicode()) }
+        }
+        Self { exit_code, line }
+    }
+
     /// The input cannot be used: exit code 2.
     pub(crate) fn input(reason: impl std::fmt::Display) -> Self {
-        Self { exit_code: 2, line: reason.to_string() }
+        Self::of(2, &reason)
     }
 
     /// The question was answered with no: exit code 1.
     pub(crate) fn verdict(reason: impl std::fmt::Display) -> Self {
-        Self { exit_code: 1, line: reason.to_string() }
+        Self::of(1, &reason)
     }
 
     /// The craft was lost: exit code 3.
     pub(crate) fn lost(reason: impl std::fmt::Display) -> Self {
-        Self { exit_code: 3, line: reason.to_string() }
+        Self::of(3, &reason)
     }
 }
 

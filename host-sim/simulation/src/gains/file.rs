@@ -1,7 +1,7 @@
 //! Design files: TOML in, their entries out, key by key. Entries that depend on each other are checked in
 //! [`super::design`].
 
-use quatrack_plan::quote::{one_line, quoted};
+use quatrack_plan::quote::{is_plain, one_line, quoted};
 use serde::Deserialize;
 
 use super::GainsError;
@@ -179,7 +179,7 @@ pub(super) fn read(text: &str) -> Result<DesignFile, GainsError> {
         let written = quoted(text.lines().nth(line - 1).unwrap_or_default().trim());
         GainsError::Syntax { line, written, reason: one_line(error.message()) }
     })?;
-    match file.description.chars().find(|c| !is_plain(*c)) {
+    match file.description.chars().find(|c| *c != '\n' && !is_plain(*c)) {
         None => Ok(file),
         Some(c) => Err(GainsError::Value {
             key: "description".to_owned(),
@@ -187,13 +187,6 @@ pub(super) fn read(text: &str) -> Result<DesignFile, GainsError> {
             must: "plain text: it becomes a comment in Rust, where such a character turns or hides the rest".to_owned(),
         }),
     }
-}
-
-/// Whether a character may be in a description: no control character but the end of a line, and none that changes the direction of
-/// the text.
-fn is_plain(c: char) -> bool {
-    let turns = matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    !turns && (c == '\n' || !c.is_control())
 }
 
 #[cfg(test)]

@@ -115,4 +115,13 @@ proptest! {
         let end = whole.floor_char_boundary((start + length).min(whole.len()));
         read(&format!("{}{with}{}", &whole[..start], &whole[end..]))?;
     }
+
+    #[test]
+    fn no_error_has_a_character_that_a_terminal_obeys(at in any::<Index>(), with in "[\\x00-\\x1f\\x7f\\u{202e}]{1,5}") {
+        let whole = include_str!("../../../../docs/scenarios/brushed-eight.toml");
+        let start = whole.floor_char_boundary(at.index(whole.len()));
+        let (before, after) = whole.split_at(start);
+        read(&format!("{before}{with}{after}"))?;
+        read(&format!("vehicle = \"crazyflie-2.1\"\nlaw = {:?}", format!("{with}lee")))?;
+    }
 }

@@ -5,6 +5,7 @@ use quatrack_design::model::GRAVITY_M_S2;
 use serde::Deserialize;
 
 use crate::plan::PlanError;
+use crate::quote::one_line;
 
 /// Far beyond any flight; keeps products of numbers in range.
 pub(super) const LARGEST_COORDINATE_M: f64 = 1e5;
@@ -100,10 +101,7 @@ impl PlanFile {
         toml::from_str(text).map_err(|error| {
             let start = error.span().map_or(0, |span| span.start);
             let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
-            let words: Vec<&str> = error.message().split_whitespace().collect();
-            // The parser's quotation may be as long as the file.
-            let reason = words.join(" ").chars().take(200).collect();
-            PlanError::Syntax { line, reason }
+            PlanError::Syntax { line, reason: one_line(error.message()) }
         })
     }
 }
