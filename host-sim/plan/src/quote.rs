@@ -21,14 +21,17 @@ pub fn is_plain(c: char) -> bool {
     !turns && !c.is_control()
 }
 
-/// A tab is a space; what else does not show itself is written as its number.
-fn cut(text: &str, most: usize) -> String {
+/// A tab as a space; what else does not show itself as its number.
+pub fn plain(text: &str) -> String {
     let text = text.replace('\t', " ");
-    let shown: String = if text.chars().all(is_plain) {
-        text
-    } else {
-        text.chars().map(|c| if is_plain(c) { c.to_string() } else { c.escape_unicode().to_string() }).collect()
-    };
+    if text.chars().all(is_plain) {
+        return text;
+    }
+    text.chars().map(|c| if is_plain(c) { c.to_string() } else { c.escape_unicode().to_string() }).collect()
+}
+
+fn cut(text: &str, most: usize) -> String {
+    let shown = plain(text);
     if shown.chars().count() <= most {
         return shown;
     }

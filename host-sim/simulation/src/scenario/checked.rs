@@ -4,6 +4,7 @@ use std::path::Path;
 
 use nalgebra::Vector3;
 use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::quote::plain;
 
 use super::checks::Checks;
 use super::course::{HOVER_S, RAMP_S};
@@ -86,7 +87,11 @@ fn vehicle(name: &str, origin: &str, folder: &Path) -> Result<Vehicle, ScenarioE
     } else {
         vehicles::by_name(name)
     };
-    found.map_err(|error| ScenarioError::Named { origin: origin.to_owned(), key: "vehicle", reason: error.to_string() })
+    found.map_err(|error| ScenarioError::Named {
+        origin: origin.to_owned(),
+        key: "vehicle",
+        reason: plain(&error.to_string()),
+    })
 }
 
 fn course(

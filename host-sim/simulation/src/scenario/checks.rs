@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use quatrack_plan::quote::plain;
+
 use super::error::ScenarioError;
 
 /// Checks values of one file.
@@ -12,7 +14,7 @@ pub(super) struct Checks<'a> {
 
 impl Checks<'_> {
     pub(super) fn refuse(&self, key: &'static str, value: &dyn fmt::Display, must: String) -> ScenarioError {
-        ScenarioError::Value { origin: self.origin.to_owned(), key, value: value.to_string(), must }
+        ScenarioError::Value { origin: self.origin.to_owned(), key, value: plain(&value.to_string()), must }
     }
 
     /// A value within bounds, both included; the default where there is none. NaN is within no bounds.
