@@ -30,7 +30,7 @@ mod vehicle;
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use quatrack_plan::quote::is_plain;
+use quatrack_plan::quote::plain;
 
 /// Why a command stops: one line for the user and the exit code.
 #[derive(Debug)]
@@ -42,11 +42,8 @@ pub(crate) struct Failure {
 impl Failure {
     /// Names of files and their words may hold characters that a terminal obeys: they are written as numbers.
     fn of(exit_code: u8, reason: &dyn std::fmt::Display) -> Self {
-        let mut line = String::new();
-        for c in reason.to_string().chars() {
-            if matches!(c, '\n' | '\t') || is_plain(c) { line.push(c) } else { line.extend(c.escape_unicode()) }
-        }
-        Self { exit_code, line }
+        let lines: Vec<String> = reason.to_string().split('\n').map(plain).collect();
+        Self { exit_code, line: lines.join("\n") }
     }
 
     /// The input cannot be used: exit code 2.

@@ -48,7 +48,7 @@ pub enum PilError {
     #[error("not inside a checkout of quatrack, so there is nothing to build from: change to one")]
     NoCheckout,
     /// The same where an image may be given.
-    #[error("not inside a checkout of quatrack, so there is no image to build: change to one, or give --image FILE")]
+    #[error("not inside a checkout of quatrack, so there is no image to build: change to one, or give --image PATH")]
     NoImage,
     /// Cargo failed; it has said why.
     #[error("the image was not built: {command} ended with {status}; its own messages are above")]

@@ -1,9 +1,9 @@
 //! Two fits of the same flights beside each other: their figures in; those that are refused, since the fits contradict each other, out.
 //!
 //! Commands that are noisy between the samples of a log excite the craft, and are not in it. Motions below the corner hardly have that
-//! excitation; all motions together seem to tell much by it, and tell another craft.
+//! excitation; all motions together seem to tell much by it, and tell another craft. So the fit of the slower ones is believed then.
 
-use super::figures::{DENSE, Figures, STEPS};
+use super::figures::{EVERY_STEP, Figures, STEPS};
 
 /// Figures by which the fits are compared.
 const DECISIVE: [&str; 7] = [
@@ -28,11 +28,11 @@ pub(super) fn contradictions(slow: &Figures<'_>, all: &Figures<'_>) -> Vec<(&'st
         .filter(|(_, a, b)| a.low > b.high || b.low > a.high)
         .map(|(name, a, b)| {
             let (slow, all) = (a.value, b.value);
-            (name, format!("motions below 6 Hz tell {slow:.3e} and all of them {all:.3e}: {DENSE}, and {STEPS}"))
+            (name, format!("motions below 6 Hz tell {slow:.3e}, all motions {all:.3e}: {EVERY_STEP}, and {STEPS}"))
         })
         .collect();
     if let Some(name) = refused.first().map(|(name, _)| *name) {
-        let reason = format!("motions below 6 Hz tell another {name} than all of them: {DENSE}, and {STEPS}");
+        let reason = format!("motions below 6 Hz tell another {name} than all motions do: {EVERY_STEP}, and {STEPS}");
         refused.extend(TIMES.map(|time| (time, reason.clone())));
     }
     refused

@@ -36,7 +36,7 @@ const TORQUES_LEAST: f64 = 0.5;
 /// Least effective number of blocks that tell of a figure: one alone shows no spread.
 const BLOCKS_LEAST: f64 = 1.5;
 
-pub(super) const DENSE: &str = "log every control step";
+pub(super) const EVERY_STEP: &str = "log every control step";
 pub(super) const STEPS: &str = "fly 20 s of steps between corners, which turn the craft fast";
 const SPEED: &str = "fly 30 s at 1 m/s and more in both directions";
 const CLIMBS: &str = "fly climbs and drops of 0.5 m and more, as fast as they go";
@@ -56,14 +56,7 @@ impl<'a> Figures<'a> {
 
     /// A figure that goes with the slope of force over command, and is larger by a factor where that is as steep as it may be: the middle
     /// of both by ratio, in an interval that holds both.
-    fn put_by_slope(
-        &mut self,
-        name: &'static str,
-        value: f64,
-        draws: &[f64],
-        [most, factor]: [f64; 2],
-        manoeuvre: &str,
-    ) {
+    fn put_by_slope(&mut self, name: &'static str, value: f64, draws: &[f64], most: f64, factor: f64, manoeuvre: &str) {
         self.put(name, value, draws, most, manoeuvre);
         let Some(Ok(estimate)) = self.all.get_mut(name) else { return };
         let more = (factor - 1.0) * value;
@@ -72,7 +65,7 @@ impl<'a> Figures<'a> {
         estimate.value *= factor.sqrt();
         if more.abs() > most {
             let reason = format!(
-                "it may be {factor:.2} times as large, since the commands of this log are noisy: {DENSE}, and {CLIMBS}"
+                "it may be {factor:.2} times as large, since the commands of this log are noisy: {EVERY_STEP}, and {CLIMBS}"
             );
             self.all.insert(name, Err(reason));
         }
@@ -141,7 +134,7 @@ impl<'a> Figures<'a> {
             delay.high += 500.0 * STEP_S;
         }
         let (power, all) = of(&|v| v[COMMAND_POWER]);
-        self.put_by_slope("command_power", power, &all, [0.3, steeper], CLIMBS);
+        self.put_by_slope("command_power", power, &all, 0.3, steeper, CLIMBS);
         self.excited(posterior, "command_power", COMMAND_POWER, 0.5, CLIMBS);
         if voltage {
             let (power, all) = of(&|v| v[VOLTAGE_POWER]);
@@ -155,9 +148,9 @@ impl<'a> Figures<'a> {
         self.between_flights(values, &mut all);
         // Hover is told by itself: a full command gives by the power more.
         let fuller = (per_mass / GRAVITY_M_S2).max(1.0).powf(steeper - 1.0);
-        self.put_by_slope("thrust_per_mass_m_s2", per_mass, &all, [0.2 * per_mass, fuller], CLIMBS);
+        self.put_by_slope("thrust_per_mass_m_s2", per_mass, &all, 0.2 * per_mass, fuller, CLIMBS);
         let newton: Vec<f64> = all.iter().map(|a| 0.25 * mass * a).collect();
-        self.put_by_slope("thrust_full_n", 0.25 * mass * per_mass, &newton, [0.05 * mass * per_mass, fuller], CLIMBS);
+        self.put_by_slope("thrust_full_n", 0.25 * mass * per_mass, &newton, 0.05 * mass * per_mass, fuller, CLIMBS);
         // A full command is not flown: what it gives is what the power makes of the thrust at hover.
         if self.all.get("command_power").is_none_or(Result::is_err) {
             for name in ["thrust_per_mass_m_s2", "thrust_full_n"] {
@@ -183,14 +176,14 @@ impl<'a> Figures<'a> {
         .enumerate()
         {
             let (value, all) = of(&|v| v[INERTIA[axis]].exp());
-            self.put_by_slope(inertia, value, &all, [0.2 * value, steeper], STEPS);
+            self.put_by_slope(inertia, value, &all, 0.2 * value, steeper, STEPS);
             self.excited(posterior, inertia, INERTIA[axis], 0.3, STEPS);
             let (value, all) = of(&|v| v[MOMENT[axis]]);
             let most = (0.25 * value.abs()).max(2e-3 * self.base.half_arm_m * self.base.mass_kg);
-            self.put_by_slope(moment, value, &all, [most, steeper], SPEED);
+            self.put_by_slope(moment, value, &all, most, steeper, SPEED);
             self.repeated(posterior, moment, MOMENT[axis], SPEED);
             let (value, all) = of(&|v| v[DAMPING[axis]]);
-            self.put(damping, value, &all, 0.4 * self.base.damping_scale(), STEPS);
+            self.put_by_slope(damping, value, &all, 0.4 * self.base.damping_scale(), steeper, STEPS);
         }
     }
 
@@ -243,11 +236,12 @@ impl<'a> Figures<'a> {
         // The middle of both by ratio; the interval holds both.
         let inertia = (least * most).sqrt();
         let name = "inertia_z_kg_m2";
-        self.put(name, inertia, &column(0, inertia / values[0]), 0.25 * inertia, TURNS);
+        self.put_by_slope(name, inertia, &column(0, inertia / values[0]), 0.25 * inertia, self.steeper, TURNS);
         if let Some(Ok(estimate)) = self.all.get_mut(name) {
             (estimate.low, estimate.high) = (estimate.low.min(least), estimate.high.max(most));
         }
-        self.put("rate_damping_z_n_m_s", values[1], &column(1, 1.0), 0.4 * self.base.damping_scale(), TURNS);
+        let most = 0.4 * self.base.damping_scale();
+        self.put_by_slope("rate_damping_z_n_m_s", values[1], &column(1, 1.0), most, self.steeper, TURNS);
         self.put("rotor_lead_ms", 1e3 * values[2], &column(2, 1e3), 15.0, TURNS);
         let Some(thrust_n_s2) = self.base.thrust_n_s2 else {
             let reason =

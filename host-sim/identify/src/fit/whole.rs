@@ -65,16 +65,17 @@ pub fn fit(flights: &[Flight], base: &Base) -> Result<Fit, IdentifyError> {
         figures.refined(posterior, voltage);
         figures
     };
-    // Where the filters tell other figures than slower motions do, they are not believed: commands that are noisy between the samples of
-    // a log excite the craft, and are not in it.
-    let mut contradicted = Vec::new();
+    let mut figures = told(&posterior);
     let rough = summary(&sections, base, &posterior.values, &drags);
     if 0.5 * (rough.explained[0] + rough.explained[1]) > EXPLAINED_LEAST {
         let filtered = Posterior::filtered(&sections, base, flights.len(), &posterior.values, priors, &fixed);
         if let Some(filtered) = filtered {
-            contradicted = contradictions(&told(&posterior), &told(&filtered));
-            if contradicted.is_empty() {
-                posterior = filtered;
+            let all = told(&filtered);
+            let refused = contradictions(&figures, &all);
+            if refused.is_empty() {
+                (posterior, figures) = (filtered, all);
+            } else {
+                figures.refuse(refused);
             }
         }
     }
@@ -86,8 +87,6 @@ pub fn fit(flights: &[Flight], base: &Base) -> Result<Fit, IdentifyError> {
         ));
     }
     let flight_fits = flight_fits(&sections, base, &model, &full);
-    let mut figures = told(&posterior);
-    figures.refuse(contradicted);
     figures.apart(&sections, base, &posterior, voltage);
     figures.drag(&drags);
     figures.yaw(&yaws);
