@@ -16,6 +16,8 @@ PINNED = {
     "drone-controllers": "0.1.0",
     "control": "0.10.2",
     "gymnasium": "1.4.0",
+    "gym-pybullet-drones": "2.1.0",
+    "pybullet": "3.2.7",
 }
 
 

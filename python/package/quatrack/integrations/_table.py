@@ -8,9 +8,12 @@ the position error every 10 ms, summed up.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import importlib.metadata
+import io
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -239,10 +242,76 @@ def crazyflow(flown: Flown, drones: tuple[str, ...] = DRONES) -> Iterator[Row]:
         yield Row("crazyflow", drone, fly("rotor_vel", own), fly("state", theirs), "state control (Mellinger)")
 
 
+def gym_pybullet_drones(flown: Flown) -> Iterator[Row]:
+    """The Crazyflie of gym-pybullet-drones in its X, with drag, under its DSLPIDControl, which is told velocity and the rates of roll,
+    pitch and yaw too, both at 500 Hz. Its rotors turn at once; ours lets them lag by 15 ms."""
+    import pybullet
+    from gym_pybullet_drones.control.DSLPIDControl import DSLPIDControl
+    from gym_pybullet_drones.envs.CtrlAviary import CtrlAviary
+    from gym_pybullet_drones.utils.enums import DroneModel, Physics
+
+    from quatrack.integrations.gym_pybullet_drones import RotorControl
+
+    commands = flown.commands
+    pos, quat, vel, ang_vel = flown.start()
+    angles = np.array([pybullet.getEulerFromQuaternion(np.roll(attitude, -1)) for attitude in commands.state.attitude])
+    rates = np.gradient(angles, STEP_S, axis=0)
+
+    def fly(under: Callable[[Any], Callable[[Array, int], Array]]) -> float | None:
+        # It prints its parameters, and Gymnasium warns that their bounds are rounded.
+        with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            env = CtrlAviary(
+                drone_model=DroneModel.CF2X,
+                initial_xyzs=pos[np.newaxis],
+                initial_rpys=angles[:1],
+                physics=Physics.PYB_DRAG,
+                pyb_freq=round(2.0 / STEP_S),
+                ctrl_freq=round(1.0 / STEP_S),
+            )
+        obs, _ = env.reset()
+        # It sets no velocities; angular ones are of the world frame.
+        turning = np.reshape(pybullet.getMatrixFromQuaternion(quat), (3, 3)) @ ang_vel
+        pybullet.resetBaseVelocity(env.DRONE_IDS[0], vel, turning, physicsClientId=env.CLIENT)
+        obs[0, 10:16] = np.concatenate([vel, turning])
+        rotors = under(env)
+        positions = [pos]
+        for k in range(flown.steps):
+            obs, *_ = env.step(rotors(obs, k))
+            positions.append(obs[0, :3].copy())
+        env.close()
+        return flown.error_m_s(np.array(positions))
+
+    def own(env: Any) -> Callable[[Array, int], Array]:
+        control = RotorControl(env)
+        return lambda obs, k: control(obs, row_of(commands, k))
+
+    def theirs(env: Any) -> Callable[[Array, int], Array]:
+        control = DSLPIDControl(DroneModel.CF2X)
+        # It takes rates as differences of angles.
+        control.last_rpy = angles[0]
+
+        def rotors(obs: Array, k: int) -> Array:
+            told = {"target_pos": commands.position[k], "target_vel": commands.velocity[k], "target_rpy_rates": rates[k]}
+            speeds, _, _ = control.computeControlFromState(env.CTRL_TIMESTEP, obs[0], **told)
+            return np.asarray(speeds)[np.newaxis]
+
+        return rotors
+
+    yield Row("gym-pybullet-drones", "CF2X", fly(own), fly(theirs), "DSLPIDControl")
+
+
 PACKAGES: dict[str, Callable[..., Iterator[Row]]] = {
     "rotorpy": rotorpy,
     "drone-models": drone_models,
     "crazyflow": crazyflow,
+    "gym-pybullet-drones": gym_pybullet_drones,
+}
+
+# How to come by a package that no registry has.
+HINTS = {
+    "gym-pybullet-drones": "pip install --no-deps "
+    "git+https://github.com/utiasDSL/gym-pybullet-drones@90b178aba69b09085dd70e7a1e88bb58ca00b4c9",
 }
 
 
@@ -263,16 +332,15 @@ def main(arguments: list[str] | None = None) -> None:
     if unknown:
         parser.error(f"{unknown[0]}: there are {', '.join(PACKAGES)}")
     print(f"Eight at 2.1 m/s for {asked.seconds:g} s, in air, without noise: position error summed up, m s\n")
-    print(f"{'package':<20}{'craft':<15}{'quatrack':>10}{'its own':>10}  own controller")
+    print(f"{'package':<27}{'craft':<15}{'quatrack':>10}{'its own':>10}  own controller")
     for name in asked.packages or PACKAGES:
         try:
             version = importlib.metadata.version(name)
         except importlib.metadata.PackageNotFoundError:
-            print(f"{name:<20}skipped: not installed")
+            hint = f" ({HINTS[name]})" if name in HINTS else ""
+            print(f"{name:<27}skipped: not installed{hint}")
             continue
         for row in PACKAGES[name](Flown.eight(asked.seconds)):
             label = f"{row.package} {version}"
-            print(f"{label:<20}{row.craft:<15}{printed(row.ours):>10}{printed(row.theirs):>10}  {row.their_law}", flush=True)
-    if not asked.packages:
-        print("gym-pybullet-drones skipped: it is in no package registry")
+            print(f"{label:<27}{row.craft:<15}{printed(row.ours):>10}{printed(row.theirs):>10}  {row.their_law}", flush=True)
     sys.stdout.flush()
