@@ -114,6 +114,7 @@ impl Craft {
     }
 
     /// A known craft with an airframe of its own; nothing where its motors are faster than two control periods.
+    #[inline(never)]
     pub const fn with(airframe: Airframe, known: &Known, index: usize) -> Option<Self> {
         let figures = airframe.figures();
         let Ok(actuation) = Actuation::new(&airframe, RATE) else { return None };

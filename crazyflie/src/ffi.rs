@@ -35,7 +35,10 @@ static HANDOVER: TryCell<Handover> = TryCell::new(Handover::new());
 /// The firmware selects this controller: its memory of an earlier flight no longer holds.
 #[unsafe(no_mangle)]
 pub extern "C" fn controllerOutOfTreeInit() {
-    CONTROLLER.with(Controller::forget);
+    CONTROLLER.with(|controller| {
+        controller.forget();
+        HANDOVER.with(|handover| handover.select(controller));
+    });
 }
 
 /// Whether the controller can be selected: always. Without a known craft it keeps the motors off.
@@ -104,5 +107,5 @@ pub extern "C" fn quatrackPacket(packet: &Packet, answer: &mut Packet) {
 /// on.
 #[unsafe(no_mangle)]
 pub extern "C" fn quatrackService() {
-    SERVICE.with(|service| service.keep_house(&quatrack, &HANDOVER));
+    SERVICE.with(|service| service.apply_parameters(&quatrack, &HANDOVER));
 }

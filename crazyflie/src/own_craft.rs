@@ -1,9 +1,9 @@
-//! A craft of the owner's: its figures and its table in, as `quatrack gains craft` writes them into the app's `quatrack_craft.h`;
-//! the craft and its table, or the reason why it does not fly, out.
+//! A craft of the owner's: its figures and its table in, as `quatrack gains craft` writes them into the app's `quatrack_craft.h` or
+//! into a file to be sent; the craft and its table, or the reason why it does not fly, out.
 
 use core::ffi::CStr;
 
-use quatrack::checksum::Crc32c;
+use quatrack::checksum::{Crc32c, crc32c};
 use quatrack::gains::table::{CascadeTable, GainTable};
 use quatrack::{Airframe, AirframeFigures};
 
@@ -11,6 +11,16 @@ use crate::craft::{Craft, Known, OWN, Platform, RATE, is_near};
 
 /// Bytes of a table of the cascade.
 pub const TABLE_BYTES: usize = 326;
+
+/// Figures of a craft beside its table.
+const FIGURES: usize = 15;
+
+/// How a craft begins as a file: by its magic and the version of its form.
+pub const MAGIC: [u8; 6] = *b"QTCR\x01\0";
+
+/// Bytes of a craft as a file and over the app channel: the magic, the figures in the order of [`OwnCraft`], f32 each, the
+/// table, and the CRC-32C of all that. Little-endian.
+pub const CRAFT_BYTES: usize = MAGIC.len() + 4 * FIGURES + TABLE_BYTES + 4;
 
 /// A craft with its table, in SI: `quatrackCraft_t`.
 #[repr(C)]
@@ -114,24 +124,49 @@ impl OwnCraft {
         Ok((craft, cascade))
     }
 
+    /// The craft as a file ([`CRAFT_BYTES`]).
+    pub fn to_bytes(&self) -> [u8; CRAFT_BYTES] {
+        let mut bytes = [0; CRAFT_BYTES];
+        let (body, checksum) = bytes.split_at_mut(CRAFT_BYTES - 4);
+        let figures = self.figures();
+        let parts = MAGIC.into_iter().chain(figures.into_iter().flat_map(f32::to_le_bytes)).chain(self.table);
+        body.iter_mut().zip(parts).for_each(|(to, byte)| *to = byte);
+        checksum.copy_from_slice(&crc32c(body).to_le_bytes());
+        bytes
+    }
+
+    /// The craft of a file whose checksum has been looked at; nothing where it is none.
+    pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let (figures, bytes) = bytes.strip_prefix(&MAGIC)?.split_first_chunk::<{ 4 * FIGURES }>()?;
+        let (table, checksum) = bytes.split_first_chunk::<TABLE_BYTES>()?;
+        let mut figures = figures.as_chunks().0.iter().map(|figure| f32::from_le_bytes(*figure));
+        let mut next = || figures.next();
+        let own = Self {
+            mass_kg: next()?,
+            inertia_kg_m2: [next()?, next()?, next()?, next()?, next()?, next()?],
+            arm_m: next()?,
+            force_n: [next()?, next()?],
+            torque_per_thrust_m: next()?,
+            motor_lag_s: next()?,
+            body_rates_rad_s: [next()?, next()?, next()?],
+            table: *table,
+        };
+        (checksum.len() == 4).then_some(own)
+    }
+
     /// The number by which a table names the vehicle that it is for: CRC-32C of its name and figures.
     fn id(&self, name: &str) -> u32 {
+        let mut sum = Crc32c::new();
+        name.bytes().chain(self.figures().into_iter().flat_map(f32::to_le_bytes)).for_each(|byte| sum.update(byte));
+        sum.value()
+    }
+
+    /// All but the table, in order.
+    const fn figures(&self) -> [f32; FIGURES] {
         let Self { mass_kg, inertia_kg_m2, arm_m, force_n, torque_per_thrust_m, motor_lag_s, body_rates_rad_s, .. } =
             self;
-        let figures: [&[f32]; 7] = [
-            &[*mass_kg],
-            inertia_kg_m2,
-            &[*arm_m],
-            force_n,
-            &[*torque_per_thrust_m],
-            &[*motor_lag_s],
-            body_rates_rad_s,
-        ];
-        let mut sum = Crc32c::new();
-        name.bytes().for_each(|byte| sum.update(byte));
-        figures.iter().flat_map(|figures| figures.iter()).flat_map(|figure| figure.to_le_bytes()).for_each(|byte| {
-            sum.update(byte);
-        });
-        sum.value()
+        let [xx, xy, xz, yy, yz, zz] = *inertia_kg_m2;
+        let ([least, most], [p, q, r]) = (*force_n, *body_rates_rad_s);
+        [*mass_kg, xx, xy, xz, yy, yz, zz, *arm_m, least, most, *torque_per_thrust_m, *motor_lag_s, p, q, r]
     }
 }

@@ -37,6 +37,16 @@ pub(crate) fn put_back(parameters: &Parameters, craft: &Craft) -> Option<u16> {
     last
 }
 
+/// Another craft takes a craft's place: a value that was the one's default becomes the other's.
+pub(crate) fn replace(parameters: &Parameters, craft: &Craft, other: &Craft) {
+    for (value, (own, others)) in parameters.floats().into_iter().zip(defaults(craft).into_iter().zip(defaults(other)))
+    {
+        if value.get() == own {
+            value.set(others);
+        }
+    }
+}
+
 /// The owner's tuning of a table.
 pub(crate) fn tuning(parameters: &Parameters, craft: &Craft) -> Tuning {
     let moment_n_s = [&parameters.moment_x_n_s, &parameters.moment_y_n_s];

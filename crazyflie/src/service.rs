@@ -8,7 +8,7 @@ use quatrack::gains::table::{CascadeTable, GainTable};
 use quatrack::nalgebra::Vector3;
 
 use crate::abi;
-use crate::control::{Controller, Settings};
+use crate::control::{Controller, Mode, Settings};
 use crate::craft::{Craft, Platform};
 use crate::output::Output;
 use crate::own_craft::{OwnCraft, OwnCraftError};
@@ -17,21 +17,32 @@ use crate::shared::Shared;
 use crate::tables::{Brought, Refusal, Table, Tuning};
 use crate::try_cell::TryCell;
 use crate::units;
-use crate::upload::{Packet, Status, Uploads};
+use crate::upload::{Packet, Sent, Status, Uploads};
 
 /// The state of the app's task.
 pub struct Service {
+    /// The figures that the firmware was built with; nothing until the app has said.
+    platform: Option<Platform>,
     craft: Option<Craft>,
     /// The table of a craft of the owner's.
     own: Option<CascadeTable>,
-    /// The craft is new, and has to be handed over.
-    is_new: bool,
+    /// The craft is new and has to be handed over.
+    arrival: Option<Arrival>,
     uploads: Uploads,
     uploaded: Option<GainTable<'static>>,
     uploads_taken: u8,
     asked: Option<Asked>,
     /// Limits of the table in the air.
     limits: Limits,
+}
+
+/// How a craft has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Arrival {
+    /// From the app as it starts: everything begins anew.
+    Started,
+    /// Over the app channel: it waits until the one before does not fly.
+    Sent,
 }
 
 /// The table and tuning that the owner last asked for.
@@ -46,7 +57,7 @@ struct Asked {
 
 /// Values on their way to the stabilizer's task; those present have not been taken over yet.
 pub struct Handover {
-    craft: Option<Craft>,
+    craft: Option<(Craft, Arrival)>,
     table: Option<Table>,
     settings: Option<(Settings, Craft)>,
     /// The controller has kept the table that it flew.
@@ -68,17 +79,27 @@ impl Handover {
         }
     }
 
+    /// The controller is selected: it takes over a craft that has come since, whatever it flew before.
+    pub fn select(&mut self, controller: &mut Controller) {
+        if let Some((_, arrival)) = &mut self.craft {
+            *arrival = Arrival::Started;
+            self.take_over(controller);
+        }
+    }
+
     #[inline(never)]
     fn hand_to(&mut self, controller: &mut Controller) {
-        if let Some(craft) = &self.craft {
-            // The motors are off: there is time, and nothing is flown with a half of it.
-            controller.change_craft(craft);
-            self.craft = None;
-            while self.settings.is_some() {
-                self.hand_one(controller);
+        match &self.craft {
+            Some((_, Arrival::Sent)) if controller.mode().is_flight() => {}
+            Some((craft, _)) => {
+                // The motors are off: there is time, and nothing is flown with a half of it.
+                controller.change_craft(craft);
+                self.craft = None;
+                while self.settings.is_some() {
+                    self.hand_one(controller);
+                }
             }
-        } else {
-            self.hand_one(controller);
+            None => self.hand_one(controller),
         }
     }
 
@@ -107,9 +128,10 @@ impl Service {
     /// Nothing known yet.
     pub(crate) const fn new() -> Self {
         Self {
+            platform: None,
             craft: None,
             own: None,
-            is_new: false,
+            arrival: None,
             uploads: Uploads::new(),
             uploaded: None,
             uploads_taken: 0,
@@ -121,9 +143,10 @@ impl Service {
     /// Starts anew for the craft that the firmware was built for; whether there are tables for it.
     pub fn start(&mut self, platform: &Platform) -> bool {
         *self = Self::new();
+        self.platform = Some(*platform);
         self.craft = Craft::of(platform);
-        self.is_new = self.craft.is_some();
-        self.is_new
+        self.arrival = self.craft.is_some().then_some(Arrival::Started);
+        self.craft.is_some()
     }
 
     /// Starts anew for a craft of the owner's.
@@ -132,35 +155,57 @@ impl Service {
     /// [`OwnCraftError`]: there is no craft then, and the motors stay off.
     pub fn start_own(&mut self, platform: &Platform, own: &OwnCraft) -> Result<(), OwnCraftError> {
         *self = Self::new();
+        self.platform = Some(*platform);
         let (craft, table) = own.on(platform)?;
-        (self.craft, self.own, self.is_new) = (Some(craft), Some(table), true);
+        (self.craft, self.own, self.arrival) = (Some(craft), Some(table), Some(Arrival::Started));
         Ok(())
     }
 
     /// Takes a packet of the app channel and gives the answer to it.
     pub fn packet(&mut self, packet: &Packet, shared: &Shared) -> Packet {
-        let Some(craft) = &self.craft else { return self.uploads.answer(packet.bytes[0], Status::Busy) };
-        let (answer, table) = self.uploads.take(packet, &craft.vehicle);
-        match table {
-            Some(table) => {
+        let [kind, ..] = packet.bytes;
+        let Some(platform) = self.platform else { return self.uploads.answer(kind, Status::Busy) };
+        let (status, sent) = self.uploads.take(packet, self.craft.as_ref().map(|craft| &craft.vehicle));
+        let status = match sent {
+            Some(Sent::Table(table)) => {
                 self.uploaded = Some(table);
                 self.uploads_taken = self.uploads_taken.wrapping_add(1);
+                status
             }
-            None if answer.bytes[1] == Status::Table as u8 => refuse(shared, Refusal::Table),
-            None if answer.bytes[1] == Status::Vehicle as u8 => refuse(shared, Refusal::Vehicle),
-            None if [Status::Along as u8, Status::ActuatorAware as u8].contains(&answer.bytes[1]) => {
-                refuse(shared, Refusal::Law);
+            Some(Sent::Craft(own)) => {
+                self.change_craft(&own, &platform, shared).map_or_else(|error| error, |()| status)
             }
-            None => {}
+            None => status,
+        };
+        match status {
+            Status::Table => refuse(shared, Refusal::Table),
+            Status::Vehicle => refuse(shared, Refusal::Vehicle),
+            Status::Along | Status::ActuatorAware => refuse(shared, Refusal::Law),
+            _ => {}
         }
-        answer
+        self.uploads.answer(kind, status)
+    }
+
+    /// A craft of the owner's has been sent: it takes the place of the one before, which does not fly.
+    #[inline(never)]
+    fn change_craft(&mut self, own: &OwnCraft, platform: &Platform, shared: &Shared) -> Result<(), Status> {
+        if Mode::is_flight_numbered(shared.log.mode.load(Relaxed)) {
+            return Err(Status::Flying);
+        }
+        let (craft, table) = own.on(platform)?;
+        if let Some(before) = &self.craft {
+            parameters::replace(&shared.parameters, before, &craft);
+        }
+        (self.craft, self.own, self.arrival) = (Some(craft), Some(table), Some(Arrival::Sent));
+        (self.uploaded, self.asked) = (None, None);
+        Ok(())
     }
 
     /// Looks at the parameters and hands over changes; to be called a few times a second.
-    pub(crate) fn keep_house(&mut self, shared: &Shared, handover: &TryCell<Handover>) {
+    pub(crate) fn apply_parameters(&mut self, shared: &Shared, handover: &TryCell<Handover>) {
         let Some(craft) = &self.craft else { return };
         if let Some(parameter) = parameters::put_back(&shared.parameters, craft)
-            && !self.is_new
+            && self.arrival.is_none()
         {
             shared.log.put_back.fetch_add(1, Relaxed);
             shared.log.parameter.store(parameter, Relaxed);
@@ -182,14 +227,14 @@ impl Service {
                     refuse(shared, refusal);
                     // There is always one to start with.
                     let first = || Table::for_published_lags(&craft, &asked.tuning, brought.own).ok();
-                    if self.is_new { first() } else { None }
+                    if self.arrival.is_some() { first() } else { None }
                 }
             };
         }
         let limits = table.as_ref().map_or(self.limits, |table| table.limits);
         let handed = handover.with(|place| {
-            if self.is_new {
-                place.craft = Some(craft);
+            if let Some(arrival) = self.arrival {
+                place.craft = Some((craft, arrival));
             }
             if let Some(table) = &table {
                 place.table = Some(*table);
@@ -197,7 +242,7 @@ impl Service {
             place.settings = Some((parameters::settings(&shared.parameters, &craft, &limits), craft));
         });
         if handed.is_some() {
-            (self.is_new, self.asked, self.limits) = (false, Some(asked), limits);
+            (self.arrival, self.asked, self.limits) = (None, Some(asked), limits);
             if let Some(table) = &table {
                 show_table(shared, table);
             }

@@ -1,4 +1,5 @@
-//! A table over the app channel: packets of at most 30 bytes in, answers and, at the end, an accepted table out.
+//! A table, or a craft with its table, over the app channel: packets of at most 30 bytes in, answers and, at the end, an accepted
+//! table or the craft out.
 //!
 //! ```text
 //! 1  length: u16  checksum: u32      announces a table, by its own checksum: its last four bytes
@@ -8,7 +9,8 @@
 //!
 //! Little-endian. Every packet is answered with its own first byte, a [`Status`] and the offset of the next bytes (u16); a
 //! refusal in words behind.
-//! The table is the file of docs/gain-tables.md; nothing of it is used before all of it has come and been checked.
+//! The table is the file of docs/gain-tables.md, the craft that of [`OwnCraft::to_bytes`]; nothing of either is used before all of it
+//! has come and been checked.
 
 use quatrack::gains::table::{
     CONSTANT_TABLE_BYTES_MAX, GainTable, LoadError, TABLE_BYTES_MAX, TableError, TableKind, Vehicle,
@@ -16,6 +18,7 @@ use quatrack::gains::table::{
 use quatrack::link::{BlobKind, BlobReceiver, Chunk, UploadBegin, UploadError};
 
 use crate::craft::RATE;
+use crate::own_craft::{CRAFT_BYTES, MAGIC, OwnCraft, OwnCraftError};
 
 /// `APPCHANNEL_MTU`.
 pub const PACKET_BYTES: usize = 30;
@@ -61,6 +64,34 @@ pub enum Status {
     Along = 10,
     /// A table of the actuator-aware law, which the cascade has taken the place of: design a cascade.
     ActuatorAware = 11,
+    /// A craft while one flies: land first.
+    Flying = 12,
+    /// A craft whose table was made for other figures: make the file again.
+    Figures = 13,
+    /// Figures of no craft: make the file again.
+    NoCraft = 14,
+    /// A craft whose motors' lag is not among those that its table is certified for: widen the design's region.
+    MotorLag = 15,
+    /// A craft with another arm than the firmware was built for (`ARM_LENGTH`).
+    Arm = 16,
+    /// With another largest force of a motor (`THRUST_MAX`).
+    ForceMax = 17,
+    /// With another torque per thrust (`THRUST2TORQUE`).
+    TorquePerThrust = 18,
+}
+
+impl From<OwnCraftError> for Status {
+    fn from(error: OwnCraftError) -> Self {
+        match error {
+            OwnCraftError::Table => Self::Table,
+            OwnCraftError::Figures => Self::Figures,
+            OwnCraftError::NoCraft => Self::NoCraft,
+            OwnCraftError::MotorLag => Self::MotorLag,
+            OwnCraftError::Arm => Self::Arm,
+            OwnCraftError::ForceMax => Self::ForceMax,
+            OwnCraftError::TorquePerThrust => Self::TorquePerThrust,
+        }
+    }
 }
 
 impl Status {
@@ -79,11 +110,27 @@ impl Status {
             Self::Vehicle => b"for another craft or rate",
             Self::Along => b"gains along a trajectory",
             Self::ActuatorAware => b"actuator-aware: outdated",
+            Self::Flying => b"motors on: land first",
+            Self::Figures => b"table for other figures",
+            Self::NoCraft => b"figures of no craft",
+            Self::MotorLag => b"motor lag not certified",
+            Self::Arm => b"firmware's arm differs",
+            Self::ForceMax => b"firmware's force differs",
+            Self::TorquePerThrust => b"firmware's torque differs",
         }
     }
 }
 
-const _: () = assert!(CONSTANT_TABLE_BYTES_MAX <= TABLE_BYTES_MAX);
+const _: () = assert!(CONSTANT_TABLE_BYTES_MAX <= TABLE_BYTES_MAX && CRAFT_BYTES <= CONSTANT_TABLE_BYTES_MAX);
+
+/// An upload that has come whole.
+#[allow(clippy::large_enum_variant, reason = "there is no heap to put the larger one on")]
+pub enum Sent {
+    /// A table that is accepted for the craft.
+    Table(GainTable<'static>),
+    /// A craft with its table, not looked at yet.
+    Craft(OwnCraft),
+}
 
 /// The receiving end.
 pub struct Uploads {
@@ -96,10 +143,10 @@ impl Uploads {
         Self { receiver: BlobReceiver::new() }
     }
 
-    /// Takes a packet; with the last one comes the table.
-    pub fn take(&mut self, packet: &Packet, vehicle: &Vehicle) -> (Packet, Option<GainTable<'static>>) {
+    /// Takes a packet; with the last one comes the table for a vehicle, or a craft.
+    pub fn take(&mut self, packet: &Packet, vehicle: Option<&Vehicle>) -> (Status, Option<Sent>) {
         let bytes = packet.bytes.get(..usize::from(packet.length)).unwrap_or_default();
-        let (status, table) = match bytes {
+        match bytes {
             [1, l0, l1, c0, c1, c2, c3] => {
                 let checksum = u32::from_le_bytes([*c0, *c1, *c2, *c3]);
                 let length = u32::from(u16::from_le_bytes([*l0, *l1]));
@@ -112,9 +159,7 @@ impl Uploads {
             [2, o0, o1, bytes @ ..] => (self.chunk(u16::from_le_bytes([*o0, *o1]), bytes), None),
             [3] => self.commit(vehicle),
             _ => (Status::Unknown, None),
-        };
-        let kind = bytes.first().copied().unwrap_or_default();
-        (self.answer(kind, status), table)
+        }
     }
 
     /// The answer to a packet of some kind.
@@ -135,14 +180,19 @@ impl Uploads {
         self.receiver.chunk(&chunk).map_or_else(status_of, |_| Status::Taken)
     }
 
-    fn commit(&mut self, vehicle: &Vehicle) -> (Status, Option<GainTable<'static>>) {
+    fn commit(&mut self, vehicle: Option<&Vehicle>) -> (Status, Option<Sent>) {
         let Ok(progress) = self.receiver.progress() else { return (Status::NotBegun, None) };
         let blob = match self.receiver.finish(progress.id) {
             Ok((_, blob)) => blob,
             Err(error) => return (status_of(error), None),
         };
+        if blob.starts_with(&MAGIC) {
+            let own = OwnCraft::from_bytes(blob);
+            return (own.map_or(Status::Table, |_| Status::Taken), own.map(Sent::Craft));
+        }
+        let Some(vehicle) = vehicle else { return (Status::Busy, None) };
         match read(blob, vehicle) {
-            Ok(Some(table)) => (Status::Taken, Some(table)),
+            Ok(Some(table)) => (Status::Taken, Some(Sent::Table(table))),
             Ok(None) => (Status::Along, None),
             Err(LoadError::Table(TableError::ActuatorAware)) => (Status::ActuatorAware, None),
             Err(LoadError::Accept(_)) => (Status::Vehicle, None),

@@ -19,6 +19,8 @@ import upload
 
 ROOT = Path(__file__).resolve().parents[2]
 GENERATED = ROOT / "gains" / "generated"
+# `quatrack gains craft gains/vehicles/crazyflie-2.1-legacy.toml --out legacy-craft.bin`.
+CRAFT = (ROOT / "tests" / "data" / "legacy-craft.bin").read_bytes()
 # platform_defaults_cf2.h of the Crazyflie 2.1+, and of the Brushless.
 CRAZYFLIE = (0.029, 0.046, 0.12, 0.0069928949)
 BRUSHLESS = (0.0393, 0.05, 0.2, 0.0056927884)
@@ -63,6 +65,8 @@ def tables_and_refusals(library):
     assert said("store", "motorLag=0.02") == ("quatrack.motorLag = 0.02, stored", None)
     assert made.stored == ["quatrack.motorLag"]
     assert said("table", GENERATED / "cascade-20ms.bin")[1] is None
+    _, ending = said("craft", GENERATED / "cascade-20ms.bin")
+    assert ending.endswith("is no craft of `quatrack gains craft --out NAME.bin`; send it with `upload.py table`"), ending
     _, ending = said("table", GENERATED / "cascade-20ms.json")
     assert ending.endswith("is no binary gain table; " + str(GENERATED / "cascade-20ms.bin") + " beside it is one"), ending
     assert said("store", "feedForward=1")[1] == "upload.py: quatrack.feedForward cannot be stored: it is set anew at each start"
@@ -75,6 +79,29 @@ def a_craft_without_tables(library):
     out, ending = said("table", GENERATED / "cascade-100ms.bin")
     assert out == "" and ending.startswith("upload.py: refused: no craft"), ending
     assert craft(library, BRUSHLESS).has_tables
+
+
+def crafts(library, folder):
+    """A craft with other propellers, which there is no table for, and how each that does not fit is refused."""
+    figures = struct.unpack("<15f", CRAFT[6:66])
+    legacy = (figures[0], figures[7], figures[9], figures[10])
+    file = Path(folder) / "craft.bin"
+    file.write_bytes(CRAFT)
+    made = craft(library, legacy)
+    assert not made.has_tables
+    # A lag that was stored for another craft is refused, and the table flies for its own.
+    assert said("craft", file)[1] == f"upload.py: sent, and flown for the lag of its table's design: {upload.REFUSALS[3]}"
+    assert said("store", "motorLag=0")[1] is None
+    assert said("craft", file) == ("sent, 396 bytes: motors off, as asked; table 0, the cascade", None), said("craft", file)
+    # A table for it is now one for this craft, and that of another is not.
+    assert said("table", GENERATED / "cascade-100ms.bin")[1] == "upload.py: refused: for another craft or rate (status 8)"
+    own = Path(folder) / "table.bin"
+    own.write_bytes(CRAFT[66:-4])
+    assert said("table", own) == ("sent, 326 bytes: motors off, as asked; table 5, the table that was sent", None)
+    assert said("table", file)[1].endswith("is no binary gain table; send it with `upload.py craft`")
+    craft(library, CRAZYFLIE)
+    words = f"upload.py: refused: firmware's torque differs (status 18){upload.REMEDIES[18]}"
+    assert said("craft", file) == ("", words), said("craft", file)
 
 
 def trajectories(library):
@@ -145,6 +172,8 @@ def main():
     words_are_those_of_the_source()
     tables_and_refusals(library)
     a_craft_without_tables(library)
+    with tempfile.TemporaryDirectory() as folder:
+        crafts(library, folder)
     trajectories(library)
     nothing_is_sent_in_flight(library)
     the_first_flight_of_the_chapter(library)

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Sends gain tables and trajectories to a Crazyflie that flies quatrack, stores parameters, and names the law in the air. Needs cflib (0.1.34).
+"""Sends gain tables, crafts and trajectories to a Crazyflie that flies quatrack, stores parameters, and names the law in the air. Needs
+cflib (0.1.34).
 
     upload.py status
     upload.py table my-craft.bin                  # from `quatrack gains design`
+    upload.py craft my-craft.bin                  # a craft with its table, from `quatrack gains craft --out my-craft.bin`
     upload.py trajectory w.csv                    # from `quatrack refit --csv`, or the form of `--compressed`
     upload.py store motorLag=0.058 drag=0.31      # parameters of the group quatrack, kept when it is switched off
 
@@ -43,7 +45,7 @@ MODES = {
     4: "motors off: there is no table for the craft that the firmware was built for",
 }
 TABLES = {0: "the cascade", 1: "LYAP-E", 2: "LQR-E", 3: "LYAP-F", 4: "LQR-F", 5: "the table that was sent"}
-SENT = 5
+OWN, SENT = 0, 5
 REFUSALS = {
     0: "nothing has been refused",
     1: "there is no table of that number: 0 to 5",
@@ -55,7 +57,18 @@ REFUSALS = {
 }
 LOGGED = ("quatrack.mode", "quatrack.table", "quatrackN.refused", "quatrackN.refusal")
 # By status of the upload, where the words in the packet have no room for it.
-REMEDIES = {11: ": design one of the cascade, `quatrack gains design` with method = \"cascade\""}
+REMAKE = ": make the file again with `quatrack gains craft`"
+REMEDIES = {
+    11: ": design one of the cascade, `quatrack gains design` with method = \"cascade\"",
+    13: REMAKE,
+    14: REMAKE,
+    15: ": widen region.motor_lag_ms of the design, or mend motors.lag_s of the vehicle",
+    16: ": build the firmware with -DARM_LENGTH, or mend motors.arm_m of the vehicle",
+    17: ": build the firmware with -DTHRUST_MAX, or mend motors.thrust_max_n of the vehicle",
+    18: ": build the firmware with -DTHRUST2TORQUE, or mend motors.torque_per_thrust_m of the vehicle",
+}
+# How each file begins, and the command that writes it.
+FILES = {"table": (b"QTGT", "binary gain table"), "craft": (b"QTCR", "craft of `quatrack gains craft --out NAME.bin`")}
 BEGIN, CHUNK, COMMIT = 1, 2, 3
 TAKEN, ALREADY_THERE = 0, 4
 CHUNK_BYTES = 27
@@ -89,6 +102,17 @@ def flown(values):
 
 def send_table(cf, table):
     """Sends the bytes of a table, whole or not at all, and flies it from then on."""
+    _send(cf, table)
+    return _fly(cf, SENT, "sent, but not flown")
+
+
+def send_craft(cf, craft):
+    """Sends the bytes of a craft with its table, motors off; from then on it is this craft, until it is switched off."""
+    _send(cf, craft)
+    return _fly(cf, OWN, "sent, and flown for the lag of its table's design")
+
+
+def _send(cf, table):
     answers = queue.Queue()
     cf.appchannel.packet_received.add_callback(answers.put)
     try:
@@ -100,13 +124,17 @@ def send_table(cf, table):
         _exchange(cf, answers, bytes([COMMIT]))
     finally:
         cf.appchannel.packet_received.remove_callback(answers.put)
+
+
+def _fly(cf, table, otherwise):
+    """Asks for a table, and waits until it is the one that is flown."""
     before = look(cf)["quatrackN.refused"]
-    cf.param.set_value("quatrack.table", SENT)
+    cf.param.set_value("quatrack.table", table)
     for _ in range(10):
         values = look(cf)
         if values["quatrackN.refused"] != before:
-            raise Refused(f"sent, but not flown: {REFUSALS[values['quatrackN.refusal']]}")
-        if values["quatrack.table"] == SENT:
+            raise Refused(f"{otherwise}: {REFUSALS[values['quatrackN.refusal']]}")
+        if values["quatrack.table"] == table:
             return values
     raise Refused(f"sent, but not flown yet: {flown(values)}")
 
@@ -209,14 +237,19 @@ def store(cf, name, value):
         raise Refused(f"{name}: the craft did not store it")
 
 
-def table_file(path):
-    """The bytes of a binary table, or which file is meant."""
+def sent_file(command, path):
+    """The bytes of a binary table or of a craft, or which file is meant."""
+    magic, meant = FILES[command]
     data = Path(path).read_bytes()
-    if data[:4] != b"QTGT":
-        beside = Path(path).with_suffix(".bin")
-        hint = f"; {beside} beside it is one" if beside.exists() and beside != Path(path) else ""
-        raise Refused(f"{path} is no binary gain table{hint}")
-    return data
+    if data[:4] == magic:
+        return data
+    beside, hint = Path(path).with_suffix(".bin"), ""
+    for other, (begins, _) in FILES.items():
+        if data[:4] == begins:
+            hint = f"; send it with `upload.py {other}`"
+        elif other == command and beside != Path(path) and beside.exists() and beside.read_bytes()[:4] == magic:
+            hint = f"; {beside} beside it is one"
+    raise Refused(f"{path} is no {meant}{hint}")
 
 
 def run(cf, arguments):
@@ -228,9 +261,10 @@ def run(cf, arguments):
         return
     if look(cf)["quatrack.mode"] == 1:
         raise Refused("it flies, and closing this link would turn its motors off: land first, or send from the script that flies")
-    if arguments.command == "table":
-        data = table_file(arguments.file)
-        print(f"sent, {len(data)} bytes: {flown(send_table(cf, data))}")
+    if arguments.command in FILES:
+        data = sent_file(arguments.command, arguments.file)
+        send = {"table": send_table, "craft": send_craft}[arguments.command]
+        print(f"sent, {len(data)} bytes: {flown(send(cf, data))}")
     elif arguments.command == "trajectory":
         data, pieces, duration_s, compressed = read_trajectory(arguments.file)
         send_trajectory(cf, data, pieces, compressed, arguments.number, arguments.address)
@@ -257,6 +291,7 @@ def main(arguments=None):
     commands = parser.add_subparsers(dest="command", required=True)
     commands.add_parser("status", help="the law in the air, and why the last table that does not was refused")
     commands.add_parser("table", help="send a gain table and fly it").add_argument("file")
+    commands.add_parser("craft", help="send a craft with its table and fly it, until it is switched off").add_argument("file")
     trajectory = commands.add_parser("trajectory", help="write a trajectory into the craft's memory")
     trajectory.add_argument("file")
     trajectory.add_argument("--number", type=int, default=1, help="by which it is started (1)")
@@ -264,8 +299,8 @@ def main(arguments=None):
     commands.add_parser("store", help="keep parameters").add_argument("pairs", nargs="+", type=pair, metavar="NAME=VALUE")
     arguments = parser.parse_args(arguments)
     try:
-        if arguments.command == "table":
-            table_file(arguments.file)
+        if arguments.command in FILES:
+            sent_file(arguments.command, arguments.file)
         cflib.crtp.init_drivers()
         with SyncCrazyflie(arguments.uri, cf=Crazyflie(rw_cache=None)) as craft:
             run(craft.cf, arguments)

@@ -57,6 +57,7 @@ impl Memory {
     }
 
     /// Takes the motors to be at the forces of hover, where nobody has kept their commands in flight.
+    #[inline(never)]
     pub fn assume_hovering(&mut self, airframe: &Airframe) {
         self.forces_n = [airframe.hover_force_n(); 4];
         #[cfg(feature = "cascade")]

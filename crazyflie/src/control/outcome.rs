@@ -25,6 +25,18 @@ pub enum Mode {
     NoCraft = 4,
 }
 
+impl Mode {
+    /// Whether it has the motors turn.
+    pub(crate) const fn is_flight(self) -> bool {
+        Self::is_flight_numbered(self as u8)
+    }
+
+    /// The same of its number.
+    pub(crate) const fn is_flight_numbered(number: u8) -> bool {
+        number == Self::Flying as u8 || number == Self::Descending as u8
+    }
+}
+
 /// Why a flight was left, for the log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]

@@ -1,18 +1,26 @@
 //! Crafts that the object does not know as they are: other masses, and vehicle files with tables of their own.
 
 use std::path::Path;
+use std::sync::atomic::Ordering::Relaxed;
 
+use nalgebra::Vector3;
 use quatrack::gains::table::GainTable;
+use quatrack_crazyflie::abi::Setpoint;
 use quatrack_crazyflie::craft::{KNOWN, Platform};
+use quatrack_crazyflie::ffi;
 use quatrack_crazyflie::own_craft::{OwnCraft, OwnCraftError};
+use quatrack_crazyflie::upload::Status;
+use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
 use quatrack_simulation::crazyflie::{
-    Case, Course, Firmware, FlightErrors, Tune, craft_header, fly_on, own_craft, platform, standard_design,
+    Case, Course, Firmware, FlightErrors, Setpoints, Tune, craft_header, fly_on, own_craft, platform, standard_design,
 };
 use quatrack_simulation::gains::{Certified, Design};
+use quatrack_simulation::plant::RigidState;
 use quatrack_simulation::vehicles;
 
 use super::tables::QUIET;
+use super::uploads::send_for_words;
 
 /// The figure eight of 2.1 m/s, in vacuum.
 const EIGHT: Course = Course::FigureEight(1.485);
@@ -77,8 +85,8 @@ fn a_vehicle_file_flies_with_its_own_table() {
         // A lag that it is not certified for is refused, and the table in the air stays.
         drop(firmware);
         let firmware = Firmware::start_own(&vehicle, &built_for, &own, &Tune::new(0, 0.3), QUIET).unwrap();
-        let log = &quatrack_crazyflie::ffi::quatrack.log;
-        let refusal = log.refusal.load(std::sync::atomic::Ordering::Relaxed);
+        let log = &ffi::quatrack.log;
+        let refusal = log.refusal.load(Relaxed);
         assert_eq!(refusal, quatrack_crazyflie::tables::Refusal::MotorLag as u16);
         drop(firmware);
     }
@@ -103,6 +111,78 @@ fn figures_that_do_not_fit_together_are_refused_in_words() {
     table[200] ^= 1;
     refused(built_for, OwnCraft { table, ..own }, OwnCraftError::Table);
     assert!(Firmware::start_own(&vehicle, &built_for, &own, &Tune::new(0, 0.0), QUIET).is_ok());
+}
+
+fn weight_n(vehicle: &Vehicle) -> f64 {
+    GRAVITY_M_S2 * vehicle.mass_kg()
+}
+
+/// Steps of a craft that is held at rest where its course is, or with its motors off; the force that is commanded at the end, N.
+fn held(firmware: &mut Firmware, vehicle: &Vehicle, course: Option<&Course>, steps: u32) -> f64 {
+    let place = course.map_or_else(Vector3::zeros, |course| course.position_m(0.0).unwrap());
+    let thrust_n = course.map_or(0.0, |_| vehicle.hover_thrust_n());
+    let (state, off) = (RigidState::at_rest(place, thrust_n), Setpoint::default());
+    let mut force_n = 0.0;
+    for _ in 0..steps {
+        if let Some(course) = course {
+            firmware.command(course, 0.0, Setpoints::HighLevel);
+        }
+        force_n = firmware.step(&state, if course.is_some() { None } else { Some(&off) }).sum();
+    }
+    force_n
+}
+
+#[test]
+fn a_craft_is_sent_and_flies_once_the_one_before_does_not() {
+    let (built_in, vehicle) =
+        (vehicles::by_name("crazyflie-2.1-brushless").unwrap(), file("crazyflie-2.1-brushless-45g.toml"));
+    let own = own_craft(&certified(&vehicle)).unwrap();
+    let hover = Course::Hover(Vector3::z());
+    let log = &ffi::quatrack.log;
+    let mut firmware =
+        Firmware::start_told(&vehicle, built_in.mass_kg(), &Tune::new(0, 0.0), QUIET).expect("the built-in one");
+    // In the air it is refused.
+    let force_n = held(&mut firmware, &vehicle, Some(&hover), 100);
+    assert!((force_n / weight_n(&built_in) - 1.0).abs() < 0.02, "{force_n} N");
+    assert_eq!(send_for_words(&own.to_bytes()), (Status::Flying as u8, "motors on: land first".to_owned()));
+    // On the ground it is taken, and a flight that begins before the app has looked at it ends as it began.
+    held(&mut firmware, &vehicle, None, 100);
+    let mut damaged = own.to_bytes();
+    damaged[10] ^= 1;
+    let end = damaged.len() - 4;
+    let checksum = quatrack::checksum::crc32c(&damaged[..end]).to_le_bytes();
+    damaged[end..].copy_from_slice(&checksum);
+    assert_eq!(send_for_words(&damaged), (Status::Figures as u8, "table for other figures".to_owned()));
+    assert_eq!(send_for_words(&own.to_bytes()).0, Status::Taken as u8);
+    held(&mut firmware, &vehicle, Some(&hover), 100);
+    ffi::quatrackService();
+    let force_n = held(&mut firmware, &vehicle, Some(&hover), 500);
+    assert_eq!(log.mode.load(Relaxed), 1);
+    assert!((force_n / weight_n(&built_in) - 1.0).abs() < 0.02, "{force_n} N");
+    held(&mut firmware, &vehicle, None, 100);
+    let force_n = held(&mut firmware, &vehicle, Some(&hover), 100);
+    assert!((force_n / weight_n(&vehicle) - 1.0).abs() < 0.02, "{force_n} N");
+    // It is told its own air where the owner has not said another.
+    let told = own.on(&platform(&vehicle)).unwrap().0.air.drag_per_s;
+    assert_eq!(ffi::quatrack.parameters.drag_per_s.get(), told);
+    drop(firmware);
+}
+
+#[test]
+fn a_craft_that_there_is_no_table_for_flies_once_it_is_sent() {
+    let vehicle = file("crazyflie-2.1-legacy.toml");
+    let own = own_craft(&certified(&vehicle)).unwrap();
+    // Nothing of the built-in ones: the propellers are others.
+    assert!(Firmware::start_told(&vehicle, vehicle.mass_kg(), &Tune::new(0, 0.0), QUIET).is_none());
+    let mut firmware = Firmware::start(&vehicle, &Tune::new(0, 0.0).in_vacuum(), QUIET);
+    held(&mut firmware, &vehicle, None, 100);
+    assert_eq!(send_for_words(&own.to_bytes()).0, Status::Taken as u8);
+    ffi::quatrackService();
+    held(&mut firmware, &vehicle, None, 100);
+    let lag_s = GainTable::from_bytes(&own.table).unwrap().cascade().unwrap().motor_lag_s;
+    let flown = eight(&mut firmware, &vehicle, &Case::of_lag(lag_s.into()));
+    // As built in.
+    assert!(flown.iae.is_some_and(|iae| iae <= 0.0023), "{flown:?}");
 }
 
 #[test]

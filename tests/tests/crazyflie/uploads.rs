@@ -66,7 +66,7 @@ fn send(table: &[u8]) -> u8 {
 }
 
 /// The same with the words of the answer.
-fn send_for_words(table: &[u8]) -> (u8, String) {
+pub(super) fn send_for_words(table: &[u8]) -> (u8, String) {
     let length = (table.len() as u16).to_le_bytes();
     let begin = [&[1][..], &length, &table[table.len() - 4..]].concat();
     assert_eq!(exchange(&begin), (Status::Taken as u8, 0));

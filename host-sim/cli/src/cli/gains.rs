@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
 use quatrack_plan::bounded;
-use quatrack_simulation::crazyflie::{craft_header, standard_design, standard_force_input};
+use quatrack_simulation::crazyflie::{craft_header, own_craft, standard_design, standard_force_input};
 use quatrack_simulation::gains::{self, Certified, Checked, Design, Failed, GainsError, Problem};
 use quatrack_simulation::generated::{self, GenerateError};
 use quatrack_simulation::vehicles;
@@ -80,7 +80,7 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         plot: Option<PathBuf>,
     },
-    /// Writes the header by which the Crazyflie's object flies a craft that it does not know, with a table of its own.
+    /// Writes the header or file by which the Crazyflie's object flies a craft that it does not know, with a table of its own.
     ///
     /// Of a vehicle file the table is the standard cascade for it, certified over the same region as the built-in ones.
     /// Exit code 1 where that cannot be had: then write a design.
@@ -88,7 +88,8 @@ enum Command {
         /// A vehicle, or a design of the cascade for one: TOML files.
         #[arg(value_name = "FILE")]
         file: PathBuf,
-        /// The header to write [default: quatrack_craft.h]
+        /// The header to write; with the ending .bin a file that crazyflie/tools/upload.py sends to a craft
+        /// [default: quatrack_craft.h]
         #[arg(long, value_name = "FILE", default_value = "quatrack_craft.h", hide_default_value = true)]
         out: PathBuf,
     },
@@ -203,8 +204,13 @@ fn craft(path: &Path, out: &Path) -> Result<(), Failure> {
     } else {
         certified(path)?
     };
-    let header = craft_header(&certified).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
-    output::write(out, header.as_bytes())?;
+    let made = if out.extension().is_some_and(|ending| ending == "bin") {
+        own_craft(&certified).map(|own| own.to_bytes().to_vec())
+    } else {
+        craft_header(&certified).map(String::into_bytes)
+    };
+    let made = made.map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
+    output::write(out, &made)?;
     let (vehicle, document) = (&certified.design.vehicle, gains::json_document(&certified));
     let cascade = certified.table.as_ref().and_then(gains::Table::cascade);
     let [from_ms, to_ms] = cascade.map_or([0.0; 2], |table| table.certified.motor_lag_s.map(|lag_s| 1e3 * lag_s));

@@ -57,7 +57,7 @@ pub struct Row {
     pub setpoints: &'static str,
     /// Of the control steps, every other one of the firmware's.
     pub control_step: Count,
-    /// Of the steps between, which keep house.
+    /// Of the steps between, in which observers, logs and parameters are seen to.
     pub other_step: Count,
 }
 

@@ -123,6 +123,14 @@ fn a_vehicle_file_becomes_a_header_for_the_crazyflie_and_flies() {
     let refused = quatrack(&["gains", "craft", &format!("{GAINS}/lqr-e.toml"), "--out", other.to_str().unwrap()]);
     assert_refused(&refused, 2, &["lqr is no law that the Crazyflie object flies", "method = \"cascade\""]);
     assert!(!other.exists());
+    // The same to be sent: its magic, 15 figures, the table, a checksum.
+    let file = dir.join("legacy.bin");
+    assert_done(&quatrack(&["gains", "craft", &vehicle, "--out", file.to_str().unwrap()]));
+    let bytes = fs::read(&file).unwrap();
+    assert_eq!((bytes.len(), &bytes[..6]), (6 + 60 + 326 + 4, &b"QTCR\x01\0"[..]));
+    assert_eq!(bytes[6..10], 0.029_f32.to_le_bytes());
+    // The one that upload.py is tried with.
+    assert_eq!(bytes, include_bytes!("../../../../../tests/data/legacy-craft.bin"));
     let flown = quatrack(&["crazyflie", "--vehicle", &vehicle]);
     assert_done(&flown);
 }
