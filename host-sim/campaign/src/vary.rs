@@ -159,7 +159,9 @@ fn walk(
     found: &mut Vec<Varied>,
 ) -> Result<(), (String, String)> {
     for (key, value) in vary {
-        path.push(key.clone());
+        let depth = path.len();
+        // A quoted key, as a dictionary has it, is a path as well.
+        path.extend(key.split('.').map(str::to_owned));
         let refused = |reason: String| (path.join("."), reason);
         if ["seed", "vary", "laws", "law"].contains(&path[0].as_str()) {
             return Err(refused("is not drawn: seeds are a campaign's own, laws are in laws = [...]".to_owned()));
@@ -192,7 +194,7 @@ fn walk(
             }
             _ => return Err(refused(format!("{value} is no distribution; {EXAMPLE}"))),
         }
-        path.pop();
+        path.truncate(depth);
     }
     Ok(())
 }

@@ -35,8 +35,10 @@ fn a_draw_goes_where_its_name_says() {
     let text = "errors.lag_ms = { choice = [50] }\nair.wind_m_s = [{ choice = [2] }, 0.5, { choice = [-1] }]\n";
     let mut scenario: Table = "air = \"vehicle\"\n".parse().unwrap();
     let varied = all(&text.parse().unwrap(), &mut scenario).unwrap();
-    let names: Vec<String> = varied.iter().map(Varied::name).collect();
-    assert_eq!(names, ["air.wind_m_s.0", "air.wind_m_s.2", "errors.lag_ms"]);
+    let names = |varied: &[Varied]| varied.iter().map(Varied::name).collect::<Vec<_>>();
+    assert_eq!(names(&varied), ["air.wind_m_s.0", "air.wind_m_s.2", "errors.lag_ms"]);
+    let quoted = text.replace("errors.lag_ms", "\"errors.lag_ms\"").parse().unwrap();
+    assert_eq!(names(&all(&quoted, &mut Table::new()).unwrap()), names(&varied));
     for figure in &varied {
         figure.put(&mut scenario, figure.drawn(1, 1)).unwrap();
     }
