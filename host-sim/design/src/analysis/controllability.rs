@@ -5,7 +5,7 @@
 //! within rounding of the given one (Paige 1981). The controllability matrix is there because the paper argues with
 //! it; where the two disagree, believe the staircase.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -184,12 +184,28 @@ pub(crate) fn moves(a: &DMatrix<f64>, b: &DMatrix<f64>, eigenvalue: Complex64) -
     let norm = adjoint.norm();
     // The inverse's Frobenius norm bounds the smallest singular value from below. The test's own tolerance is `max(n, m) eps` of
     // the largest, and the factor is off by some roundings of the norm.
-    let bound = adjoint.qr().r().solve_upper_triangular(&DMatrix::identity(n, n)).map(|inverse| 1.0 / inverse.norm());
+    let bound = inverse_norm(&adjoint.qr().r()).map(|norm| 1.0 / norm);
     let doubtless = 100.0 * n.max(m) as f64 * f64::EPSILON * norm;
     match bound {
         Some(bound) if bound > doubtless => Ok(true),
         _ => Ok(pbh_test(a, b, eigenvalue)?.controllable),
     }
+}
+
+/// Frobenius norm of the inverse of an upper triangular matrix; nothing if a diagonal entry is zero.
+fn inverse_norm(r: &DMatrix<Complex64>) -> Option<f64> {
+    let n = r.nrows();
+    let mut sum = 0.0;
+    for j in 0..n {
+        // Column j of the inverse ends at row j.
+        let mut column = DVector::zeros(j + 1);
+        column[j] = Complex64::ONE;
+        if !r.view((0, 0), (j + 1, j + 1)).solve_upper_triangular_mut(&mut column) {
+            return None;
+        }
+        sum += column.norm_squared();
+    }
+    Some(sum.sqrt())
 }
 
 /// Rank of the controllability matrix, its columns brought to length 1 first (which leaves the rank and removes the

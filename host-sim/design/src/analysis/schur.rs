@@ -105,7 +105,20 @@ fn block_eigenvalue(t: &DMatrix<f64>, k: usize) -> (f64, f64) {
 }
 
 /// `A = Q T Q'` with `T` quasi-triangular; the 2x2 blocks that remain have complex eigenvalues.
+///
+/// The sweeps stall on about one in a hundred matrices with a cluster of equal eigenvalues, and seldom on the same matrix in
+/// the reversed order of its states.
 fn real_schur(a: &DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>), MatrixError> {
+    by_sweeps(a).or_else(|stalled| {
+        let last = a.nrows() - 1;
+        let reversed = DMatrix::from_fn(a.nrows(), a.nrows(), |i, j| a[(last - i, last - j)]);
+        let (t, q) = by_sweeps(&reversed).map_err(|_| stalled)?;
+        Ok((t, DMatrix::from_fn(q.nrows(), q.ncols(), |i, j| q[(last - i, j)])))
+    })
+}
+
+/// As [`real_schur`], in the given order of the states.
+fn by_sweeps(a: &DMatrix<f64>) -> Result<(DMatrix<f64>, DMatrix<f64>), MatrixError> {
     let n = a.nrows();
     if n < 2 {
         return Ok((a.clone(), DMatrix::identity(n, n)));

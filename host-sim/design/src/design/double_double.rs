@@ -2,11 +2,13 @@
 //!
 //! The refinement of a Riccati or Lyapunov solution lives on residuals that are far smaller than the terms they are the
 //! difference of. With these computed in 32 digits, and only the corrections in 16, the solution comes out to the last
-//! digit of an f64 even where the equation is ill-conditioned. Products are split without a fused multiply-add, so that
-//! every target computes the same bits.
+//! digit of an f64 even where the equation is ill-conditioned. Every target computes the same bits.
 //! References: Dekker 1971; Ogita, Rump and Oishi 2005 (Dot2).
 
 use nalgebra::DMatrix;
+
+/// Rounding of a product or a sum, relative: `2^-104`.
+pub(super) const UNIT_ROUNDING: f64 = f64::EPSILON * f64::EPSILON;
 
 /// `hi + lo` with `|lo| <= ulp(hi) / 2`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,13 +18,15 @@ pub(super) struct Double {
 }
 
 /// `a + b` and its rounding error (Knuth).
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+#[inline(always)]
+pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let virtual_b = sum - a;
     (sum, (a - (sum - virtual_b)) + (b - virtual_b))
 }
 
 /// The two halves of a factor, each short enough for exact products (Veltkamp).
+#[inline(always)]
 fn split(a: f64) -> (f64, f64) {
     let scaled = 134_217_729.0 * a; // 2^27 + 1
     let high = scaled - (scaled - a);
@@ -30,22 +34,32 @@ fn split(a: f64) -> (f64, f64) {
 }
 
 /// `a * b` and its rounding error (Dekker).
-fn two_product(a: f64, b: f64) -> (f64, f64) {
+#[inline(always)]
+pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
     (product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low)
 }
 
 impl Double {
+    #[inline(always)]
     pub(super) fn new(value: f64) -> Self {
         Self { hi: value, lo: 0.0 }
     }
 
-    fn renormalised(hi: f64, lo: f64) -> Self {
+    #[inline(always)]
+    pub(super) fn renormalised(hi: f64, lo: f64) -> Self {
         let sum = hi + lo;
         Self { hi: sum, lo: lo - (sum - hi) }
     }
 
+    /// `(hi, lo)`.
+    #[inline(always)]
+    pub(super) fn parts(self) -> (f64, f64) {
+        (self.hi, self.lo)
+    }
+
+    #[inline(always)]
     pub(super) fn plus(self, other: Self) -> Self {
         let (hi, error) = two_sum(self.hi, other.hi);
         let (lo, low_error) = two_sum(self.lo, other.lo);
@@ -53,15 +67,23 @@ impl Double {
         Self::renormalised(first.hi, first.lo + low_error)
     }
 
+    #[inline(always)]
     pub(super) fn minus(self, other: Self) -> Self {
-        self.plus(Self { hi: -other.hi, lo: -other.lo })
+        self.plus(other.negated())
     }
 
+    #[inline(always)]
+    pub(super) fn negated(self) -> Self {
+        Self { hi: -self.hi, lo: -self.lo }
+    }
+
+    #[inline(always)]
     pub(super) fn times(self, other: Self) -> Self {
         let (product, error) = two_product(self.hi, other.hi);
         Self::renormalised(product, error + (self.hi * other.lo + self.lo * other.hi))
     }
 
+    #[inline(always)]
     pub(super) fn over(self, other: Self) -> Self {
         let first = self.hi / other.hi;
         let remainder = self.minus(other.times(Self::new(first)));
@@ -126,6 +148,21 @@ impl DoubleMatrix {
         Self { hi: &self.hi * power_of_two, lo: &self.lo * power_of_two }
     }
 
+    /// The columns of both, side by side.
+    pub(super) fn beside(&self, other: &Self) -> Self {
+        let join = |left: &DMatrix<f64>, right: &DMatrix<f64>| {
+            let mut joined = left.clone().resize_horizontally(left.ncols() + right.ncols(), 0.0);
+            joined.columns_mut(left.ncols(), right.ncols()).copy_from(right);
+            joined
+        };
+        Self { hi: join(&self.hi, &other.hi), lo: join(&self.lo, &other.lo) }
+    }
+
+    /// `count` columns from `first` on.
+    pub(super) fn columns(&self, first: usize, count: usize) -> Self {
+        Self { hi: self.hi.columns(first, count).into_owned(), lo: self.lo.columns(first, count).into_owned() }
+    }
+
     /// Adds an f64 matrix.
     pub(super) fn add(&mut self, other: &DMatrix<f64>) {
         for j in 0..other.ncols() {
@@ -138,67 +175,6 @@ impl DoubleMatrix {
     /// `(M + M') / 2`.
     pub(super) fn symmetrised(&self) -> Self {
         self.plus(&self.transposed()).scaled(0.5)
-    }
-
-    /// Matrix product: exact products, their sum kept as sum and sum of errors.
-    pub(super) fn times(&self, other: &Self) -> Self {
-        let (rows, inner, columns) = (self.hi.nrows(), self.hi.ncols(), other.hi.ncols());
-        let mut result = Self::new(DMatrix::zeros(rows, columns));
-        for j in 0..columns {
-            let mut sums = vec![0.0; rows];
-            let mut errors = vec![0.0; rows];
-            for k in 0..inner {
-                let factor = other.get(k, j);
-                // Models of chains are mostly zeros.
-                if factor.hi == 0.0 {
-                    continue;
-                }
-                let column = self.hi.column(k);
-                let low = self.lo.column(k);
-                let entries = column.iter().zip(low.iter());
-                for ((sum, error), (hi, lo)) in sums.iter_mut().zip(&mut errors).zip(entries) {
-                    let (product, product_error) = two_product(*hi, factor.hi);
-                    let (total, sum_error) = two_sum(*sum, product);
-                    *sum = total;
-                    *error += sum_error + (product_error + (hi * factor.lo + lo * factor.hi));
-                }
-            }
-            for i in 0..rows {
-                result.set(i, j, Double::renormalised(sums[i], errors[i]));
-            }
-        }
-        result
-    }
-
-    /// Inverse by Gauss-Jordan elimination with row pivoting; `None` if a pivot is zero or not finite.
-    pub(super) fn inverse(&self) -> Option<Self> {
-        let n = self.hi.nrows();
-        let mut left: Vec<Vec<Double>> = (0..n).map(|i| (0..n).map(|j| self.get(i, j)).collect()).collect();
-        let mut right: Vec<Vec<Double>> =
-            (0..n).map(|i| (0..n).map(|j| Double::new(f64::from(u8::from(i == j)))).collect()).collect();
-        for k in 0..n {
-            let pivot = (k..n).max_by(|i, j| left[*i][k].hi.abs().total_cmp(&left[*j][k].hi.abs()))?;
-            left.swap(k, pivot);
-            right.swap(k, pivot);
-            if left[k][k].hi == 0.0 || !left[k][k].hi.is_finite() {
-                return None;
-            }
-            let reciprocal = Double::new(1.0).over(left[k][k]);
-            for entry in left[k].iter_mut().chain(&mut right[k]) {
-                *entry = entry.times(reciprocal);
-            }
-            let (pivot_left, pivot_right) = (left[k].clone(), right[k].clone());
-            for i in (0..n).filter(|i| *i != k) {
-                let factor = left[i][k];
-                if factor.hi == 0.0 {
-                    continue;
-                }
-                for (entry, above) in left[i].iter_mut().zip(&pivot_left).chain(right[i].iter_mut().zip(&pivot_right)) {
-                    *entry = entry.minus(factor.times(*above));
-                }
-            }
-        }
-        Some(Self::from_fn(n, n, |i, j| right[i][j]))
     }
 
     pub(super) fn is_finite(&self) -> bool {

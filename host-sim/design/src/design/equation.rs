@@ -2,13 +2,12 @@
 //!
 //! In flow A, Q and a factor F of `B R^-1 B' = F F'`; out flow the same equation balanced, and the residual of any X.
 //! With F absent the equation is Lyapunov's. The product `F F'` is never part of the residual: `F' X` is formed first,
-//! so an R that is nearly singular costs no digits. R itself is factorised in 32 digits after its diagonal has been
-//! brought to about 1.
+//! so an R that is nearly singular costs no digits.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::DesignError;
-use super::double_double::{Double, DoubleMatrix};
+use super::cost_coordinates::CostCoordinates;
+use super::double_double::DoubleMatrix;
 
 /// Exponents of the balancing stay within this of the start.
 const MAX_EXPONENT: i32 = 100;
@@ -17,11 +16,11 @@ const MAX_EXPONENT: i32 = 100;
 #[derive(Debug, Clone)]
 pub(super) struct Equation {
     /// `D^-1 A D`, n x n.
-    pub(super) a: DMatrix<f64>,
+    pub(super) a: DoubleMatrix,
     /// `D^-1 F`, n x m; m = 0 for a linear equation.
     pub(super) factor: DoubleMatrix,
     /// `D Q D`, n x n.
-    pub(super) q: DMatrix<f64>,
+    pub(super) q: DoubleMatrix,
     /// Diagonal of D: powers of two, so that the scaling is exact.
     pub(super) scale: DVector<f64>,
 }
@@ -40,13 +39,13 @@ impl Equation {
     /// The equation as given, `D = I`.
     pub(super) fn new(a: DMatrix<f64>, factor: DoubleMatrix, q: DMatrix<f64>) -> Self {
         let scale = DVector::from_element(a.nrows(), 1.0);
-        Self { a, factor, q, scale }
+        Self { a: DoubleMatrix::new(a), factor, q: DoubleMatrix::new(q), scale }
     }
 
     /// The equation with Q and `F F'` brought to equal norms by one factor for all states.
     pub(super) fn uniformly_scaled(mut self) -> Self {
         let mut g = &self.factor.hi * self.factor.hi.transpose();
-        let (norm_a, norm_g, norm_q) = (self.a.norm(), g.norm(), self.q.norm());
+        let (norm_a, norm_g, norm_q) = (self.a.hi.norm(), g.norm(), self.q.hi.norm());
         let ratio = match (norm_g > 0.0, norm_q > 0.0) {
             (true, true) => (norm_g / norm_q).sqrt(),
             (true, false) if norm_a > 0.0 => norm_g / norm_a,
@@ -54,7 +53,7 @@ impl Equation {
             _ => 1.0,
         };
         let uniform = (0.5 * ratio.log2()).round().clamp(-200.0, 200.0) as i32;
-        for i in 0..self.a.nrows() {
+        for i in 0..self.states() {
             self.scale_state(i, uniform, &mut g);
         }
         self
@@ -67,8 +66,8 @@ impl Equation {
     pub(super) fn balanced(self) -> Self {
         let mut equation = self.uniformly_scaled();
         let mut g = &equation.factor.hi * equation.factor.hi.transpose();
-        let mut exponents = vec![0_i32; equation.a.nrows()];
-        let total = 2.0 * equation.a.norm_squared() + g.norm_squared() + equation.q.norm_squared();
+        let mut exponents = vec![0_i32; equation.states()];
+        let total = 2.0 * equation.a.hi.norm_squared() + g.norm_squared() + equation.q.hi.norm_squared();
         for _ in 0..20 {
             let mut changed = false;
             for (i, exponent) in exponents.iter_mut().enumerate() {
@@ -89,9 +88,10 @@ impl Equation {
     /// The exponent by which state i is best scaled, all others held.
     fn best_shift(&self, i: usize, g: &DMatrix<f64>, least: f64) -> i32 {
         let off = |norm_squared: f64, diagonal: f64| (norm_squared - diagonal * diagonal).max(0.0);
-        let (aii, qii, gii) = (self.a[(i, i)], self.q[(i, i)], g[(i, i)]);
-        let up = off(self.a.column(i).norm_squared(), aii) + off(self.q.column(i).norm_squared(), qii);
-        let down = off(self.a.row(i).norm_squared(), aii) + off(g.column(i).norm_squared(), gii);
+        let (a, q) = (&self.a.hi, &self.q.hi);
+        let (aii, qii, gii) = (a[(i, i)], q[(i, i)], g[(i, i)]);
+        let up = off(a.column(i).norm_squared(), aii) + off(q.column(i).norm_squared(), qii);
+        let down = off(a.row(i).norm_squared(), aii) + off(g.column(i).norm_squared(), gii);
         let size = |exponent: i32| {
             let d2 = f64::from(2 * exponent).exp2();
             2.0 * (up * d2 + down / d2) + qii * qii * d2 * d2 + gii * gii / (d2 * d2)
@@ -116,25 +116,44 @@ impl Equation {
     fn scale_state(&mut self, i: usize, exponent: i32, g: &mut DMatrix<f64>) {
         let factor = f64::from(exponent).exp2();
         self.scale[i] *= factor;
-        self.a.column_mut(i).scale_mut(factor);
-        self.a.row_mut(i).unscale_mut(factor);
-        self.q.column_mut(i).scale_mut(factor);
-        self.q.row_mut(i).scale_mut(factor);
+        for a in [&mut self.a.hi, &mut self.a.lo] {
+            a.column_mut(i).scale_mut(factor);
+            a.row_mut(i).unscale_mut(factor);
+        }
+        for q in [&mut self.q.hi, &mut self.q.lo] {
+            q.column_mut(i).scale_mut(factor);
+            q.row_mut(i).scale_mut(factor);
+        }
         g.column_mut(i).unscale_mut(factor);
         g.row_mut(i).unscale_mut(factor);
         self.factor.hi.row_mut(i).unscale_mut(factor);
         self.factor.lo.row_mut(i).unscale_mut(factor);
     }
 
+    /// The same equation in other coordinates of the states, for the unknown there.
+    pub(super) fn in_coordinates(&self, coordinates: &CostCoordinates) -> Self {
+        Self {
+            a: coordinates.map(&self.a),
+            factor: coordinates.input(&self.factor),
+            q: coordinates.form(&self.q),
+            scale: DVector::from_element(self.states(), 1.0),
+        }
+    }
+
+    /// n.
+    pub(super) fn states(&self) -> usize {
+        self.a.hi.nrows()
+    }
+
     /// The Hamiltonian matrix `[A -FF'; -Q -A']`, 2n x 2n, with `F F'` in 32 digits.
     pub(super) fn precise_hamiltonian(&self) -> DoubleMatrix {
-        let n = self.a.nrows();
+        let n = self.states();
         let g = self.factor.times(&self.factor.transposed());
         DoubleMatrix::from_fn(2 * n, 2 * n, |i, j| match (i < n, j < n) {
-            (true, true) => Double::new(self.a[(i, j)]),
-            (true, false) => Double::new(0.0).minus(g.get(i, j - n)),
-            (false, true) => Double::new(-self.q[(i - n, j)]),
-            (false, false) => Double::new(-self.a[(j - n, i - n)]),
+            (true, true) => self.a.get(i, j),
+            (true, false) => g.get(i, j - n).negated(),
+            (false, true) => self.q.get(i - n, j).negated(),
+            (false, false) => self.a.get(j - n, i - n).negated(),
         })
     }
 
@@ -145,15 +164,14 @@ impl Equation {
 
     /// The residual of a symmetric X, with the products in 32 digits.
     pub(super) fn residual(&self, x: &DoubleMatrix) -> Residual {
-        let linear = DoubleMatrix::new(self.a.transpose()).times(x);
+        let linear = self.a.transposed().times(x);
         let feedback = self.factor.transposed().times(x);
         let quadratic = feedback.transposed().times(&feedback);
-        let mut value = linear.plus(&linear.transposed()).minus(&quadratic);
-        value.add(&self.q);
+        let value = linear.plus(&linear.transposed()).minus(&quadratic).plus(&self.q);
         Residual {
-            terms: 2.0 * linear.hi.norm() + self.q.norm() + quadratic.hi.norm(),
+            terms: 2.0 * linear.hi.norm() + self.q.hi.norm() + quadratic.hi.norm(),
             value: value.symmetrised(),
-            closed_loop: &self.a - self.factor.times(&feedback).hi,
+            closed_loop: self.a.minus(&self.factor.times(&feedback)).hi,
         }
     }
 
@@ -168,79 +186,5 @@ impl Equation {
         let unscale =
             |m: &DMatrix<f64>| DMatrix::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] / self.scale[i] / self.scale[j]);
         DoubleMatrix { hi: unscale(&scaled.hi), lo: unscale(&scaled.lo) }
-    }
-}
-
-/// `R = S^-1 L L' S^-1` with S diagonal, powers of two, and L lower triangular in 32 digits.
-#[derive(Debug, Clone)]
-pub(super) struct InputWeight {
-    lower: DoubleMatrix,
-    scale: DVector<f64>,
-}
-
-impl InputWeight {
-    /// Factorises a symmetric R.
-    ///
-    /// A pivot up to `m eps` of its diagonal entry is refused: the entries of R are not known to more.
-    pub(super) fn new(r: &DMatrix<f64>) -> Result<Self, DesignError> {
-        let m = r.nrows();
-        if let Some(row) = (0..m).find(|i| r[(*i, *i)] <= 0.0) {
-            return Err(DesignError::NotPositiveDefinite { row, pivot: r[(row, row)].signum().min(0.0) });
-        }
-        let scale = DVector::from_fn(m, |i, _| (-0.5 * r[(i, i)].log2()).round().exp2());
-        let mut lower = DoubleMatrix::new(DMatrix::zeros(m, m));
-        for j in 0..m {
-            for i in j..m {
-                let mut sum = Double::new(r[(i, j)] * scale[i] * scale[j]);
-                for k in 0..j {
-                    sum = sum.minus(lower.get(i, k).times(lower.get(j, k)));
-                }
-                if i > j {
-                    lower.set(i, j, sum.over(lower.get(j, j)));
-                    continue;
-                }
-                let pivot = sum.hi / (r[(j, j)] * scale[j] * scale[j]);
-                if pivot.is_nan() || pivot <= m as f64 * f64::EPSILON {
-                    return Err(DesignError::NotPositiveDefinite { row: j, pivot });
-                }
-                lower.set(j, j, sum.sqrt());
-            }
-        }
-        Ok(Self { lower, scale })
-    }
-
-    /// `F = B S L^-T`, so that `F F' = B R^-1 B'`.
-    pub(super) fn factor(&self, b: &DMatrix<f64>) -> DoubleMatrix {
-        let mut factor = DoubleMatrix::new(DMatrix::from_fn(b.nrows(), b.ncols(), |i, j| b[(i, j)] * self.scale[j]));
-        for i in 0..b.nrows() {
-            for j in 0..b.ncols() {
-                let mut sum = factor.get(i, j);
-                for k in 0..j {
-                    sum = sum.minus(factor.get(i, k).times(self.lower.get(j, k)));
-                }
-                factor.set(i, j, sum.over(self.lower.get(j, j)));
-            }
-        }
-        factor
-    }
-
-    /// `K = R^-1 B' X = S L^-T (F' X)`, rounded once.
-    pub(super) fn gain(&self, factor: &DoubleMatrix, x: &DoubleMatrix) -> DMatrix<f64> {
-        self.in_input_units(factor.transposed().times(x))
-    }
-
-    /// `S L^-T W`: the action through F as an input that acts through B, rounded once.
-    pub(super) fn in_input_units(&self, mut gain: DoubleMatrix) -> DMatrix<f64> {
-        let (m, n) = gain.hi.shape();
-        for j in 0..n {
-            for i in (0..m).rev() {
-                let mut sum = gain.get(i, j);
-                for k in i + 1..m {
-                    sum = sum.minus(self.lower.get(k, i).times(gain.get(k, j)));
-                }
-                gain.set(i, j, sum.over(self.lower.get(i, i)));
-            }
-        }
-        DMatrix::from_fn(m, n, |i, j| gain.hi[(i, j)] * self.scale[i])
     }
 }

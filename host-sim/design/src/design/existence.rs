@@ -34,9 +34,9 @@ pub(super) fn require_positive_semidefinite(q: &DMatrix<f64>) -> Result<(), Desi
 /// By the staircase, and for up to [`MAX_PBH_STATES`] states by the PBH test at each unstable eigenvalue too: where a
 /// step of the staircase hangs on a weak coupling, the rounding behind it can hide an unreached simple mode.
 pub(super) fn require_stabilisable(equation: &Equation) -> Result<(), DesignError> {
-    let stairs = staircase(&equation.a, &equation.factor.hi)?;
-    let n = equation.a.nrows();
-    let norm = equation.a.norm();
+    let stairs = staircase(&equation.a.hi, &equation.factor.hi)?;
+    let n = equation.states();
+    let norm = equation.a.hi.norm();
     if stairs.uncontrollable > 0 {
         let unreached = stairs.uncontrollable_a();
         let tolerance = unreached.nrows() as f64 * f64::EPSILON * norm;
@@ -53,9 +53,12 @@ pub(super) fn require_stabilisable(equation: &Equation) -> Result<(), DesignErro
     // The size of B says nothing about the states that it reaches.
     let size = if norm > 0.0 { norm } else { 1.0 };
     let input = &equation.factor.hi * (size / equation.factor.hi.norm().max(f64::MIN_POSITIVE));
-    // Of a pair of conjugates, one tells.
-    for eigenvalue in eigenvalues(&equation.a)?.into_iter().filter(|value| value.re >= -tolerance && value.im >= 0.0) {
-        if !moves(&equation.a, &input, eigenvalue)? {
+    let mut unstable = eigenvalues(&equation.a.hi)?;
+    // Of a pair of conjugates, one tells; the eigenvalues of a triangular matrix may be all the same.
+    unstable.retain(|value| value.re >= -tolerance && value.im >= 0.0);
+    unstable.dedup();
+    for eigenvalue in unstable {
+        if !moves(&equation.a.hi, &input, eigenvalue)? {
             return Err(DesignError::NotStabilisable { eigenvalue: snapped(eigenvalue, tolerance) });
         }
     }
@@ -64,12 +67,12 @@ pub(super) fn require_stabilisable(equation: &Equation) -> Result<(), DesignErro
 
 /// Refuses a Q that does not see a mode of A on the imaginary axis.
 pub(super) fn require_detectable(equation: &Equation) -> Result<(), DesignError> {
-    let stairs = staircase(&equation.a.transpose(), &equation.q)?;
+    let stairs = staircase(&equation.a.hi.transpose(), &equation.q.hi)?;
     if stairs.uncontrollable == 0 {
         return Ok(());
     }
     let unseen = stairs.uncontrollable_a();
-    let tolerance = unseen.nrows() as f64 * f64::EPSILON * equation.a.norm();
+    let tolerance = unseen.nrows() as f64 * f64::EPSILON * equation.a.hi.norm();
     for eigenvalue in eigenvalues(&unseen)? {
         if on_axis(&unseen, eigenvalue, tolerance) {
             let eigenvalue = snapped(Complex64::new(0.0, eigenvalue.im.abs()), tolerance);
@@ -103,30 +106,24 @@ fn on_axis(m: &DMatrix<f64>, eigenvalue: Complex64, tolerance: f64) -> bool {
     })
 }
 
-/// A pole of the closed loop that is on the axis as far as the entries of the Hamiltonian are known.
+/// The pole nearest to the axis, if it is on it as far as the entries of the Hamiltonian are known.
 ///
 /// Decided in three scalings, since one in which the matrix is far from singular settles that it is not: the equation's
 /// own, the one in which X has a unit diagonal, and the balanced one.
-pub(super) fn marginal_pole(equation: &Equation, refined: &Refined, abscissa: f64) -> Option<Complex64> {
-    if abscissa.abs() > 1e-5 * refined.closed_loop.norm() {
-        return None;
-    }
+pub(super) fn marginal_pole(equation: &Equation, refined: &Refined, nearest: Complex64) -> Option<Complex64> {
     let h = equation.hamiltonian();
-    let n = equation.a.nrows();
+    let n = equation.states();
     let unit = |i: usize| {
         let diagonal = refined.x.hi[(i % n, i % n)].abs();
         let d = if diagonal > 0.0 { diagonal.sqrt().recip() } else { 1.0 };
         if i < n { d } else { 1.0 / d }
     };
     let unit_diagonal = DMatrix::from_fn(2 * n, 2 * n, |i, j| h[(i, j)] / unit(i) * unit(j));
-    let poles = eigenvalues(&refined.closed_loop).ok()?;
-    let nearest = poles.last().filter(|pole| {
-        [&h, &unit_diagonal, &balance(&h).0].into_iter().all(|scaled| {
-            let tolerance = 10.0 * scaled.nrows() as f64 * f64::EPSILON * scaled.norm();
-            on_axis(scaled, **pole, tolerance)
-        })
-    })?;
-    Some(Complex64::new(0.0, nearest.im.abs()))
+    let on_axis_in = |scaled: &DMatrix<f64>| {
+        let tolerance = 10.0 * scaled.nrows() as f64 * f64::EPSILON * scaled.norm();
+        on_axis(scaled, nearest, tolerance)
+    };
+    [&h, &unit_diagonal, &balance(&h).0].into_iter().all(on_axis_in).then(|| Complex64::new(0.0, nearest.im.abs()))
 }
 
 /// Why there is no solution: an eigenvalue on the axis, or only too little accuracy.

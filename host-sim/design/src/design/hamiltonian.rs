@@ -2,23 +2,24 @@
 //!
 //! The columns of `[I; X]` span the invariant subspace of H that belongs to its n stable eigenvalues. Two ways to it,
 //! both bounded: the matrix sign function (Roberts 1980; Byers 1987), and the ordered Schur form (Laub 1979). Both work
-//! in f64 and lose digits on hard problems; the refinement brings them back. Where they lose them all, the sign function
-//! is taken once more in 32 digits.
+//! in f64 and lose digits on hard problems; the refinement brings them back. Where they lose them all, 32 digits are taken: for
+//! structured doubling, and for the sign function where that fails.
 
 use num_complex::Complex64;
 
 use super::double_double::{Double, DoubleMatrix};
+use super::doubling::continuous_doubling;
 use super::equation::Equation;
 use crate::analysis::{ComplexSchur, complex_schur};
 
 /// Sign iterations at most; 10 are usual.
 const MAX_SIGN_STEPS: usize = 80;
 /// States up to which 32 digits cost no more than about a second.
-const MAX_PRECISE_STATES: usize = 40;
+const MAX_PRECISE_STATES: usize = 100;
 
 /// X by the scaled Newton iteration for `sign(H)`.
 pub(super) fn by_sign_function(equation: &Equation) -> Option<DoubleMatrix> {
-    let n = equation.a.nrows();
+    let n = equation.states();
     let mut z = equation.hamiltonian();
     let mut previous = f64::INFINITY;
     for _ in 0..MAX_SIGN_STEPS {
@@ -53,7 +54,7 @@ pub(super) fn by_sign_function(equation: &Equation) -> Option<DoubleMatrix> {
 
 /// X by the sign function in 32 digits: slow, for small problems on which the other two leave no digit.
 pub(super) fn by_precise_sign_function(equation: &Equation) -> Option<DoubleMatrix> {
-    let n = equation.a.nrows();
+    let n = equation.states();
     if n > MAX_PRECISE_STATES {
         return None;
     }
@@ -87,13 +88,18 @@ pub(super) fn by_precise_sign_function(equation: &Equation) -> Option<DoubleMatr
     // Normal equations: squaring the condition is affordable in 32 digits.
     let (unknowns, rest) = (column(n, n), column(0, 0));
     let transposed = unknowns.transposed();
-    let x = transposed.times(&unknowns).inverse()?.times(&transposed.times(&rest));
+    let x = transposed.times(&unknowns).solve(&transposed.times(&rest))?;
     symmetric(&x.scaled(-1.0))
+}
+
+/// X by doubling in 32 digits, for small problems on which rounding leaves too little of the others.
+pub(super) fn by_precise_doubling(equation: &Equation) -> Option<DoubleMatrix> {
+    if equation.states() > MAX_PRECISE_STATES { None } else { continuous_doubling(equation) }
 }
 
 /// X by the ordered complex Schur form of H.
 pub(super) fn by_schur_vectors(equation: &Equation) -> Option<DoubleMatrix> {
-    let n = equation.a.nrows();
+    let n = equation.states();
     let mut schur = complex_schur(&equation.hamiltonian()).ok()?;
     // The n eigenvalues furthest left are the stable ones, wherever rounding has put those near the axis.
     let mut by_real_part: Vec<usize> = (0..2 * n).collect();

@@ -61,12 +61,12 @@ pub fn lyapunov(a: &DMatrix<f64>, q: &DMatrix<f64>) -> Result<LyapunovSolution, 
     let given = Equation::new(a.clone(), DoubleMatrix::new(DMatrix::zeros(n, 0)), q);
     let mut equation = given.clone();
     let (balanced, scale) = balance(a);
-    equation.q = DMatrix::from_fn(n, n, |i, j| given.q[(i, j)] * scale[i] * scale[j]);
-    equation.a = balanced;
+    equation.q.hi = DMatrix::from_fn(n, n, |i, j| given.q.hi[(i, j)] * scale[i] * scale[j]);
+    equation.a.hi = balanced;
     equation.scale = scale;
-    let operator = LyapunovOperator::new(&equation.a)?;
-    operator.require_regular(equation.a.norm())?;
-    let refined = refine(&equation, DoubleMatrix::new(operator.solve(&equation.q)))
+    let operator = LyapunovOperator::new(&equation.a.hi)?;
+    operator.require_regular(equation.a.hi.norm())?;
+    let refined = refine(&equation, DoubleMatrix::new(operator.solve(&equation.q.hi)), f64::INFINITY)
         .filter(|refined| refined.last_correction < 1e-12)
         .ok_or(DesignError::Inaccurate { equation: "the Lyapunov equation", residual: f64::NAN })?;
     let x = equation.unscaled(&refined.x).hi;
@@ -99,10 +99,11 @@ pub fn decay_rate_design(a: &DMatrix<f64>, b: &DMatrix<f64>, mu: f64) -> Result<
     let equation = given.clone().balanced();
     let inaccurate = |residual| DesignError::Inaccurate { equation: "equation (15)", residual };
     // (A + mu I) Y + Y (A + mu I)' - F F' = 0 is the Lyapunov equation of the transpose.
-    let inverse = LyapunovOperator::new(&equation.a.transpose())?
+    let inverse = LyapunovOperator::new(&equation.a.hi.transpose())?
         .solve(&(-(&equation.factor.hi * equation.factor.hi.transpose())));
     let start = inverse.try_inverse().ok_or_else(|| inaccurate(f64::INFINITY))?;
-    let refined = refine(&equation, DoubleMatrix::new(start).symmetrised()).ok_or_else(|| inaccurate(f64::INFINITY))?;
+    let refined = refine(&equation, DoubleMatrix::new(start).symmetrised(), f64::INFINITY)
+        .ok_or_else(|| inaccurate(f64::INFINITY))?;
     let p = equation.unscaled(&refined.x);
     let relative_residual = given.relative_residual(&p.hi);
     if refined.last_correction > 1e-12 || !relative_residual.is_finite() {

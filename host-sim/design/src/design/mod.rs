@@ -5,7 +5,7 @@
 //!
 //! - [`lyapunov()`]: `A' X + X A + Q = 0`; [`decay_rate_design`]: (15) and (17).
 //! - [`lqr`], [`care`], [`strong_care`]: the continuous algebraic Riccati equation, (20) and (21).
-//! - [`stein()`]: `A' X A - X + Q = 0`; [`dlqr`], [`dare`]: the discrete algebraic Riccati equation.
+//! - [`stein()`]: `A' X A - X + Q = 0`; [`dlqr`], [`dare()`]: the discrete algebraic Riccati equation.
 //! - [`discretise`]: a pair under held inputs, with or without a delay; [`sampled`]: gains for a control rate.
 //! - [`along`]: gains over time along a trajectory.
 //! - [`mod@actuator_aware`]: gains from 19 errors, motors' lag and integral among them, to four motor forces.
@@ -17,18 +17,26 @@ pub mod actuator_aware;
 pub mod along;
 pub mod cascade;
 pub mod codegen;
+mod cost_coordinates;
 mod dare;
+mod dare_equation;
+mod dare_existence;
 pub mod discretise;
 mod double_double;
+mod double_elimination;
+mod double_products;
+mod doubling;
 mod equation;
 mod error;
 mod existence;
 mod hamiltonian;
+mod input_weight;
 pub mod integral;
 mod lyapunov;
 mod lyapunov_operator;
 mod newton;
 mod riccati;
+mod riccati_attempts;
 pub mod sampled;
 mod stein;
 pub mod synthesis;

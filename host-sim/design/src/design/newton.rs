@@ -7,8 +7,8 @@
 
 use nalgebra::DMatrix;
 
-use super::double_double::DoubleMatrix;
-use super::equation::Equation;
+use super::double_double::{DoubleMatrix, UNIT_ROUNDING};
+use super::equation::{Equation, Residual};
 use super::lyapunov_operator::LyapunovOperator;
 
 /// Newton steps at most: 3 or 4 from a good start, some 50 halvings where the closed loop ends on the imaginary axis.
@@ -26,16 +26,19 @@ pub(super) struct Refined {
     pub(super) closed_loop: DMatrix<f64>,
     /// Norm of the last correction over the norm of X.
     pub(super) last_correction: f64,
+    /// How far the rounding of the residual may put X off, over X.
+    pub(super) rounding: f64,
 }
 
-/// Refines `start` until the corrections vanish or stop shrinking; `None` if they blow up.
-pub(super) fn refine(equation: &Equation, start: DoubleMatrix) -> Option<Refined> {
+/// Refines `start` until the corrections vanish or stop shrinking; `None` if they blow up, or if the first one is above
+/// `roughest`, relative to X.
+pub(super) fn refine(equation: &Equation, start: DoubleMatrix, roughest: f64) -> Option<Refined> {
     let mut x = start;
     let mut operator: Option<LyapunovOperator> = None;
     let mut last_correction = f64::INFINITY;
     let mut fast = false;
     let mut growing = 0;
-    for _ in 0..MAX_STEPS {
+    for step in 0..MAX_STEPS {
         let residual = equation.residual(&x);
         if !residual.value.is_finite() {
             return None;
@@ -54,6 +57,9 @@ pub(super) fn refine(equation: &Equation, start: DoubleMatrix) -> Option<Refined
             break;
         }
         let relative = size / x.hi.norm().max(size);
+        if step == 0 && relative > roughest {
+            return None;
+        }
         if relative < SETTLED && relative > 0.7 * last_correction {
             break;
         }
@@ -68,6 +74,8 @@ pub(super) fn refine(equation: &Equation, start: DoubleMatrix) -> Option<Refined
             break;
         }
     }
-    let closed_loop = equation.residual(&x).closed_loop;
-    x.is_finite().then_some(Refined { x, closed_loop, last_correction })
+    let Residual { closed_loop, terms, .. } = equation.residual(&x);
+    let reach = operator?.solve(&DMatrix::identity(x.hi.nrows(), x.hi.nrows())).norm();
+    let rounding = UNIT_ROUNDING * terms * reach / x.hi.norm().max(f64::MIN_POSITIVE);
+    x.is_finite().then_some(Refined { x, closed_loop, last_correction, rounding })
 }

@@ -8,9 +8,10 @@
 //! 2. The Hamiltonian matrix is balanced by powers of two.
 //! 3. The staircase forms of (A, F), with PBH tests beside them, and of (A', Q) decide whether an unstable mode is out
 //!    of reach, or a mode on the imaginary axis out of sight.
-//! 4. The matrix sign function of the Hamiltonian gives a first P; where that fails, its ordered Schur form does, or for
-//!    up to 40 states the sign function in 32 digits.
-//! 5. Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below the rounding of an f64.
+//! 4. The matrix sign function of the Hamiltonian gives a first P. Where too little of it is left by rounding, doubling in
+//!    32 digits does for up to 100 states; where that fails too, the ordered Schur form, or the sign function in 32 digits.
+//! 5. Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below the rounding of an f64;
+//!    after doubling in 32 digits in coordinates in which P is about the identity, where few digits are lost.
 //! 6. The result counts only if the corrections have vanished and every pole of the closed loop is stable.
 //!
 //! **Conditions.** A stabilising solution exists and is unique if (A, B) is stabilisable and the Hamiltonian has no
@@ -25,21 +26,21 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-use super::double_double::DoubleMatrix;
-use super::equation::{Equation, InputWeight};
+use super::equation::Equation;
 use super::existence::{
     marginal_pole, no_solution, require_detectable, require_positive_semidefinite, require_stabilisable,
 };
-use super::hamiltonian::{by_precise_sign_function, by_schur_vectors, by_sign_function};
+use super::input_weight::InputWeight;
 use super::lyapunov_operator::LyapunovOperator;
-use super::newton::{Refined, refine};
+use super::newton::Refined;
+use super::riccati_attempts::{ACCURATE, Attempt, best_attempt};
 use super::{DesignError, require_symmetric};
-use crate::analysis::{MatrixError, eigenvalues, require_finite, require_square, spectral_abscissa};
+use crate::analysis::{MatrixError, require_finite, require_square};
 
-/// A solution counts as found if the last correction, relative to P, is below this.
-const ACCURATE: f64 = 1e-13;
 /// The same where poles on the axis make the equation singular and each step only halves the error.
 const ACCURATE_ON_AXIS: f64 = 1e-7;
+/// A pole within this of the axis, relative to the closed loop, may be on it but for rounding.
+const NEAR_AXIS: f64 = 1e-5;
 
 /// Solution of the Riccati equation.
 #[derive(Debug, Clone)]
@@ -144,15 +145,19 @@ fn solve(
     // A second scaling for the rare matrix that balancing makes worse.
     let scalings = [balanced, given.clone().uniformly_scaled()];
     let Some(attempt) = best_attempt(&scalings) else { return Err(no_solution(&scalings[0], f64::INFINITY)) };
-    let Attempt { equation, refined, abscissa } = attempt;
+    let abscissa = attempt.abscissa();
+    let Attempt { equation, refined, poles } = attempt;
     let p = equation.unscaled(&refined.x);
     let relative_residual = given.relative_residual(&p.hi);
     let stable = refined.last_correction <= ACCURATE && abscissa < 0.0;
     let good = match accepted {
         Poles::Stable => {
+            let near_axis = abscissa.abs() <= NEAR_AXIS * refined.closed_loop.norm();
             // For Q >= 0 the test of detectability has already settled that the axis is free.
-            if let Some(eigenvalue) = marginal_pole(equation, &refined, abscissa)
-                && (!stable || require_positive_semidefinite(&given.q).is_err())
+            if near_axis
+                && let Some(nearest) = poles.last()
+                && (!stable || require_positive_semidefinite(&given.q.hi).is_err())
+                && let Some(eigenvalue) = marginal_pole(equation, &refined, *nearest)
             {
                 require_detectable(&given)?;
                 return Err(DesignError::HamiltonianOnAxis { eigenvalue });
@@ -174,44 +179,12 @@ fn solve(
     }
     Ok(RiccatiSolution {
         gain: weight.gain(&given.factor, &p),
-        poles: eigenvalues(&refined.closed_loop)?,
         relative_residual,
         last_correction: refined.last_correction,
         condition: condition(equation, &refined)?,
+        poles,
         p: p.hi,
     })
-}
-
-/// From an equation to a first approximation.
-type Start = fn(&Equation) -> Option<DoubleMatrix>;
-
-/// A refined solution in the coordinates of its equation.
-struct Attempt<'a> {
-    equation: &'a Equation,
-    refined: Refined,
-    /// Largest real part of the closed loop's poles, 1/s.
-    abscissa: f64,
-}
-
-/// Tries the starts in each scaling until one refines to full accuracy; otherwise the best there was.
-fn best_attempt(scalings: &[Equation]) -> Option<Attempt<'_>> {
-    let mut best: Option<Attempt> = None;
-    for start in [by_sign_function as Start, by_schur_vectors, by_precise_sign_function] {
-        for equation in scalings {
-            let Some(refined) = start(equation).and_then(|x| refine(equation, x)) else { continue };
-            let Ok(abscissa) = spectral_abscissa(&refined.closed_loop) else { continue };
-            let attempt = Attempt { equation, refined, abscissa };
-            // A stable attempt beats an unstable one; among equals the better known one wins.
-            let rank = |attempt: &Attempt| (attempt.abscissa >= 0.0, attempt.refined.last_correction);
-            if attempt.abscissa < 0.0 && attempt.refined.last_correction <= ACCURATE {
-                return Some(attempt);
-            }
-            if best.as_ref().is_none_or(|held| rank(&attempt) < rank(held)) {
-                best = Some(attempt);
-            }
-        }
-    }
-    best
 }
 
 /// Kenney and Hewer's upper estimate of the condition number.
@@ -219,7 +192,7 @@ fn best_attempt(scalings: &[Equation]) -> Option<Attempt<'_>> {
 /// With `H_k` the solution of `(A - G X)' H + H (A - G X) = -X^k`, the norms of the three perturbation maps are `|H_0|`
 /// for Q, at most `2 sqrt(|H_0| |H_2|)` for A, and `|H_2|` for G.
 fn condition(equation: &Equation, refined: &Refined) -> Result<f64, DesignError> {
-    let n = equation.a.nrows();
+    let n = equation.states();
     let operator = LyapunovOperator::new(&refined.closed_loop)?;
     let x = &refined.x.hi;
     let norm_x = x.norm();
@@ -229,5 +202,5 @@ fn condition(equation: &Equation, refined: &Refined) -> Result<f64, DesignError>
     let h0 = operator.solve(&DMatrix::identity(n, n)).norm();
     let h2 = operator.solve(&(x * x)).norm();
     let norm_g = (&equation.factor.hi * equation.factor.hi.transpose()).norm();
-    Ok((h0 * equation.q.norm() + 2.0 * (h0 * h2).sqrt() * equation.a.norm() + h2 * norm_g) / norm_x)
+    Ok((h0 * equation.q.hi.norm() + 2.0 * (h0 * h2).sqrt() * equation.a.hi.norm() + h2 * norm_g) / norm_x)
 }

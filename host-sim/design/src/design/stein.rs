@@ -103,11 +103,6 @@ impl SteinOperator {
         })
     }
 
-    /// Largest modulus of the eigenvalues.
-    pub(super) fn spectral_radius(&self) -> f64 {
-        self.schur.eigenvalues().iter().map(|value| value.norm()).fold(0.0, f64::max)
-    }
-
     /// Refuses A if the product of two of its eigenvalues is 1 within its rounding.
     fn require_regular(&self) -> Result<(), DesignError> {
         let values = self.schur.eigenvalues();

@@ -26,7 +26,13 @@ pub(super) fn solve_by_columns(
 ) -> DMatrix<f64> {
     let (u, t) = (&schur.unitary, &schur.triangular);
     let n = t.nrows();
-    let mut y = -(u.adjoint() * c.map(|value| Complex64::new(value, 0.0)) * u);
+    // Real products run at many times the speed of complex ones.
+    let (re, im) = (u.map(|value| value.re), u.map(|value| value.im));
+    let (c_re, c_im) = (c * &re, c * &im);
+    let (re_transposed, im_transposed) = (re.transpose(), im.transpose());
+    let turned_re = &re_transposed * &c_re + &im_transposed * &c_im;
+    let turned_im = &re_transposed * c_im - &im_transposed * c_re;
+    let mut y = turned_re.zip_map(&turned_im, |re, im| -Complex64::new(re, im));
     for j in 0..n {
         let (known, mut open) = y.columns_range_pair_mut(0..j, j..n);
         let mut column = open.column_mut(0);
@@ -36,6 +42,8 @@ pub(super) fn solve_by_columns(
             column[i] = (column[i] - adjoint * sum) / (adjoint * t[(i, i)].conj() + identity);
         }
     }
-    let x = (u * y * u.adjoint()).map(|value| value.re);
+    // The real part of U Y U*.
+    let (y_re, y_im) = (y.map(|value| value.re), y.map(|value| value.im));
+    let x = (&re * &y_re - &im * &y_im) * re_transposed + (re * y_im + im * y_re) * im_transposed;
     (&x + x.transpose()) * 0.5
 }

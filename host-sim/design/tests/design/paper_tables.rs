@@ -55,6 +55,15 @@ fn lyapunov_gains_are_their_closed_forms() {
 }
 
 #[test]
+fn every_decay_rate_has_its_gains() {
+    // The poles are one eigenvalue ten times over, on which the sweeps of the QR iteration stall for one rate in a hundred.
+    for hundredths in 30..400 {
+        let mu = f64::from(hundredths) * 0.01;
+        assert!(lyapunov_equilibrium(mu).is_ok() && lyapunov_flat(mu).is_ok(), "mu = {mu}");
+    }
+}
+
+#[test]
 fn riccati_gains_are_their_closed_forms() {
     // Scalar chains by hand: k = sqrt(q/r) for one integrator, sqrt(q_v/r + 2 sqrt(q_r/r)) for the second of two.
     let position = (200.0_f64 / 0.1).sqrt();
