@@ -4,7 +4,7 @@
 //! as sum and sum of errors (Ogita, Rump and Oishi 2005). Each entry has its own sum, so the order of its terms is the same
 //! however many entries a processor takes at once.
 //!
-//! Where the processor has a fused multiply-add, that gives the rounding error of a product in one instruction in place of
+//! Where the processor has a fused multiply-add, and the feature `x86-v3` is on, that gives the rounding error of a product in one instruction in place of
 //! Dekker's sixteen. The error is an f64 either way, and so the bits are the same, short of overflow and underflow.
 
 use nalgebra::DMatrix;
@@ -29,11 +29,11 @@ impl Product for Split {
 }
 
 /// By a fused multiply-add.
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(feature = "x86-v3", target_arch = "x86_64"))]
 #[derive(Clone, Copy)]
 struct Fused;
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(feature = "x86-v3", target_arch = "x86_64"))]
 impl Product for Fused {
     #[inline(always)]
     fn of(self, a: f64, b: f64) -> (f64, f64) {
@@ -51,7 +51,7 @@ pub(super) trait Computation {
 
 /// Runs it by the widest instructions of this processor.
 pub(super) fn run<C: Computation>(computation: C) -> C::Output {
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(feature = "x86-v3", target_arch = "x86_64"))]
     if let Some(simd) = pulp::x86::V3::try_new() {
         return simd.vectorize(
             #[inline(always)]
@@ -129,7 +129,7 @@ mod tests {
         DoubleMatrix::from_fn(rows, columns, |i, j| entry(i, j).over(Double::new(3.0 + j as f64)))
     }
 
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(feature = "x86-v3", target_arch = "x86_64"))]
     #[test]
     fn both_kinds_of_product_have_the_same_bits() {
         let (left, right) = (matrix(9, 13), matrix(13, 5));
