@@ -7,19 +7,21 @@
 //! - a planning problem as TOML, known by its `waypoints`; it is handed on as text;
 //! - bytes in the Crazyflie's compressed form ([`super::compressed`]).
 
+mod control_points;
+mod error;
+
 use std::io;
 use std::path::Path;
 
-use nalgebra::Vector3;
-use serde::Deserialize;
-
-use super::bspline::{BSpline, BSplineError};
+use super::bspline::BSpline;
 use super::compressed;
-use super::polynomial::csv::{self, CsvError};
-use super::polynomial::{PiecewisePolynomial, PolynomialError};
+use super::polynomial::PiecewisePolynomial;
+use super::polynomial::csv;
 use super::table::Table;
 use super::waypoints::{self, Kind};
-use crate::bounded::{self, MOST_BYTES};
+use crate::bounded;
+use control_points::{curves, spline};
+pub use error::FileError;
 
 /// The contents of a trajectory file.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,132 +32,6 @@ pub enum TrajectoryFile {
     Spline(BSpline),
     /// The text of a planning problem, not looked at any further.
     Plan(String),
-}
-
-/// Why a file cannot be used: one line with the file, where in it, the value and the remedy.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FileError {
-    /// Missing, a folder, not permitted.
-    #[error("{name}: cannot be read ({reason}); name an existing trajectory file")]
-    Unreadable {
-        /// The file.
-        name: String,
-        /// From the operating system.
-        #[source]
-        reason: io::Error,
-    },
-    /// Longer than any trajectory, or without an end.
-    #[error("{name}: longer than {} MB, or a device without an end; name a trajectory file", MOST_BYTES >> 20)]
-    TooLong {
-        /// The file.
-        name: String,
-    },
-    /// Bytes that are not text.
-    #[error("{name}: line {line} is not UTF-8; save the file as UTF-8 text")]
-    NotUtf8 {
-        /// The file.
-        name: String,
-        /// Line of the first such byte, from 1.
-        line: usize,
-    },
-    /// None of the accepted forms.
-    #[error(
-        "{name}: {found}; accepted are polynomial pieces as CSV (header duration,x^0,..,yaw^7), control points as JSON or \
-         TOML (degree, duration_s, control_points_m), a plan as TOML (waypoints), and the Crazyflie's compressed form"
-    )]
-    Unrecognised {
-        /// The file.
-        name: String,
-        /// The form found instead.
-        found: String,
-    },
-    /// Pieces that cannot be flown.
-    #[error("{name}: {reason}")]
-    Pieces {
-        /// The file.
-        name: String,
-        /// Line, column, value and remedy.
-        #[source]
-        reason: CsvError,
-    },
-    /// Places to pass, which say nothing of how.
-    #[error(
-        "{name}: rows of waypoints{}, no trajectory yet; `quatrack plan {name}{} --toml planned.toml` plans one, which is \
-         flown by --trajectory planned.toml",
-        if *.timed { " with times" } else { "" },
-        if *.timed { "" } else { " --speed-max-m-s 1 --acceleration-max-m-s2 2" }
-    )]
-    Waypoints {
-        /// The file.
-        name: String,
-        /// Whether they have times.
-        timed: bool,
-    },
-    /// A flight that was recorded or sampled.
-    #[error(
-        "{name}: rows of a flight sampled over time ({columns}), no trajectory; take some rows as waypoints, with the columns \
-         t,x,y,z alone, and plan them with `quatrack plan`"
-    )]
-    Samples {
-        /// The file.
-        name: String,
-        /// Its columns, shortened.
-        columns: String,
-    },
-    /// Curves that do not follow each other.
-    #[error("{name}: {reason}")]
-    Curves {
-        /// The file.
-        name: String,
-        /// The fault.
-        #[source]
-        reason: PolynomialError,
-    },
-    /// Keys that are missing, unknown or of another type, or text that is not JSON or TOML.
-    #[error(
-        "{name}: line {line}: {reason}; control points are degree (1 to 7), duration_s (s) and control_points_m ([[x, y, z], ...], m)"
-    )]
-    Keys {
-        /// The file.
-        name: String,
-        /// From 1.
-        line: usize,
-        /// The fault there.
-        reason: String,
-    },
-    /// Control points that do not make a spline.
-    #[error("{name}: {reason}")]
-    Spline {
-        /// The file.
-        name: String,
-        /// Key, value and remedy.
-        #[source]
-        reason: BSplineError,
-    },
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ControlPoints {
-    /// The schema that `quatrack plan` writes before the rest.
-    #[serde(default)]
-    #[expect(dead_code, reason = "a file may state its schema")]
-    schema: Option<String>,
-    degree: usize,
-    duration_s: f64,
-    control_points_m: Vec<[f64; 3]>,
-    heading_control_points_rad: Option<Vec<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Curves {
-    /// As of [`ControlPoints`].
-    #[serde(default)]
-    #[expect(dead_code, reason = "a file may state its schema")]
-    schema: Option<String>,
-    curves: Vec<ControlPoints>,
 }
 
 /// The bytes of a file or device, as far as a trajectory or a plan can be long.
@@ -283,31 +159,6 @@ fn rows(name: &str, table: &Table) -> Result<TrajectoryFile, FileError> {
         }
         None => csv::read(table).map(TrajectoryFile::Pieces).map_err(|reason| FileError::Pieces { name, reason }),
     }
-}
-
-fn spline(name: &str, points: ControlPoints) -> Result<TrajectoryFile, FileError> {
-    one_spline(name, points).map(TrajectoryFile::Spline)
-}
-
-fn one_spline(name: &str, points: ControlPoints) -> Result<BSpline, FileError> {
-    let control_points_m = points.control_points_m.into_iter().map(Vector3::from).collect();
-    let spline = BSpline::new(points.degree, points.duration_s, control_points_m);
-    let spline = match points.heading_control_points_rad {
-        Some(heading) => spline.and_then(|spline| spline.with_heading(heading)),
-        None => spline,
-    };
-    spline.map_err(|reason| FileError::Spline { name: name.into(), reason })
-}
-
-/// Curves one after the other, as pieces.
-fn curves(name: &str, Curves { curves, .. }: Curves) -> Result<TrajectoryFile, FileError> {
-    let mut pieces = Vec::new();
-    let wrong = |reason| FileError::Curves { name: name.into(), reason };
-    for points in curves {
-        let of_curve = PiecewisePolynomial::from_bspline(&one_spline(name, points)?).map_err(wrong)?;
-        pieces.extend_from_slice(of_curve.pieces());
-    }
-    PiecewisePolynomial::new(pieces).map(TrajectoryFile::Pieces).map_err(wrong)
 }
 
 /// The line, from 1, that holds byte `offset`.
