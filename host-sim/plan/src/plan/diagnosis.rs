@@ -6,18 +6,20 @@
 //! the solution is the next bound to try, which descends to the least one (Dinkelbach's method). A longer duration loosens
 //! every bound; the least is found by halving. Every printed remedy has been tried with the printed digits.
 
-use std::fmt;
+mod needed;
+mod remedy;
 
 use nalgebra::Vector3;
-use quatrack_design::model::GRAVITY_M_S2;
 
 use super::budget::Budget;
 use super::leg::NoCurve;
 use super::program::Program;
 use super::socp::{self, Accuracy, Outcome};
-use super::{Corridor, Plan, PlanError};
-use crate::trajectory::Trajectory;
+use super::{Plan, PlanError};
 use crate::trajectory::bspline::BSpline;
+use needed::largest;
+use remedy::outwards;
+pub use remedy::{Infeasibility, Limit, Remedy};
 
 /// Most descents of a ratio; it converges faster than linearly, four are usual.
 const MOST_DESCENTS: usize = 12;
@@ -29,117 +31,6 @@ const ROOMS: [f64; 7] = [0.0, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 3e-2];
 const LONGEST: f64 = 64.0;
 /// The duration is told within this part.
 const DURATION_WITHIN: f64 = 1e-3;
-
-/// A limit exceeded by less than this part, or this many metres, is met: ten times the solver's tolerance.
-const TOUCHED: f64 = 1e-6;
-
-/// Something that bounds a flight and can be relaxed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Limit {
-    /// `bounds.speed_max_m_s`.
-    Speed,
-    /// `bounds.acceleration_max_m_s2`.
-    Acceleration,
-    /// `bounds.tilt_max_deg`.
-    Tilt,
-    /// `bounds.thrust_min_m_s2`.
-    ThrustMin,
-    /// `bounds.thrust_max_m_s2`.
-    ThrustMax,
-    /// `bounds.body_rate_max_deg_s`.
-    BodyRate,
-    /// One of `[[corridors]]`, from 0.
-    Corridor(usize),
-    /// `tolerance_m` of every waypoint between start and end.
-    Waypoints,
-    /// `duration_s`.
-    Duration,
-}
-
-/// A limit and the least value that would do instead.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Remedy {
-    /// The limit.
-    pub limit: Limit,
-    /// Its value, SI; 0 for corridors and waypoints.
-    pub given: f64,
-    /// A value that would do, SI; for corridors and waypoints how many metres more on every side.
-    pub enough: f64,
-}
-
-/// The limits that are too tight, as far as they can be told: every entry is one way out, and relaxes all it lists and
-/// nothing else. Empty if none was found.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Infeasibility {
-    /// The ways out.
-    pub ways_out: Vec<Vec<Remedy>>,
-}
-
-impl Remedy {
-    /// Whether a plan file may say so.
-    fn is_readable(&self) -> bool {
-        let most = match self.limit {
-            Limit::Tilt => 90_f64.to_radians() * (1.0 - 1e-9),
-            Limit::BodyRate => 1e6_f64.to_radians(),
-            Limit::Waypoints | Limit::Corridor(_) => 1e5,
-            _ => 1e6,
-        };
-        self.enough >= 0.0 && self.enough <= most
-    }
-}
-
-impl fmt::Display for Infeasibility {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("no curve meets the plan: ")?;
-        if self.ways_out.is_empty() {
-            return f.write_str(
-                "no values of its bounds and no duration_s were found with which one does; move waypoints, or raise spans",
-            );
-        }
-        let way = |remedies: &Vec<Remedy>| remedies.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and ");
-        write!(f, "{}; the rest kept", self.ways_out.iter().map(way).collect::<Vec<_>>().join(", or "))
-    }
-}
-
-impl fmt::Display for Remedy {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (key, [given, enough]) = match self.limit {
-            Limit::Speed => ("speed_max_m_s", [self.given, self.enough]),
-            Limit::Acceleration => ("acceleration_max_m_s2", [self.given, self.enough]),
-            Limit::Duration => {
-                let [given, enough] = [self.given, self.enough].map(|value| (value * 1e9).round() / 1e9);
-                return write!(f, "duration_s = {given} is too short (duration_s = {enough} would do)");
-            }
-            Limit::Tilt => ("tilt_max_deg", [self.given, self.enough].map(f64::to_degrees)),
-            Limit::ThrustMin => ("thrust_min_m_s2", [self.given, self.enough]),
-            Limit::ThrustMax => ("thrust_max_m_s2", [self.given, self.enough]),
-            Limit::BodyRate => ("body_rate_max_deg_s", [self.given, self.enough].map(f64::to_degrees)),
-            Limit::Corridor(index) => {
-                return write!(
-                    f,
-                    "corridor {} is too tight (every side {} m further out would do)",
-                    index + 1,
-                    self.enough
-                );
-            }
-            Limit::Waypoints => {
-                return write!(f, "the waypoints' tolerance_m is too tight ({} m more for each would do)", self.enough);
-            }
-        };
-        // Degrees from radians are a rounding off.
-        let [given, enough] = [given, enough].map(|value| (value * 1e9).round() / 1e9);
-        write!(f, "{key} = {given} is too tight ({enough} would do)")
-    }
-}
-
-/// A value to four digits, rounded away from 0.
-fn outwards(value: f64) -> f64 {
-    let digits = 3.0 - value.abs().max(1e-9).log10().floor();
-    let scale = 10_f64.powf(digits);
-    // A value of four digits is not moved by its own rounding.
-    (value.abs() * scale * (1.0 - 1e-12)).ceil() / scale * value.signum()
-}
 
 /// The diagnosis of curves one after the other of which one has `reason` not to be: the limits that are too tight, first
 /// each limit alone; if that leaves only the waypoints to give way, all bounds and corridors together, at last
@@ -266,150 +157,4 @@ fn relaxed(plan: &Plan, limits: &[Limit], budget: &Budget<'_>) -> Option<BSpline
         Outcome::Solved(values) => plan.curve(&values).ok(),
         Outcome::Infeasible | Outcome::Failed(_) | Outcome::OutOfTime => None,
     }
-}
-
-impl Plan {
-    /// Every limit of the plan.
-    fn limits(&self) -> Vec<Limit> {
-        let bounds = &self.bounds;
-        let bounded = [
-            (Limit::Speed, bounds.speed_max_m_s),
-            (Limit::Acceleration, bounds.acceleration_max_m_s2),
-            (Limit::Tilt, bounds.tilt_max_rad),
-            (Limit::ThrustMin, bounds.thrust_min_m_s2),
-            (Limit::ThrustMax, bounds.thrust_max_m_s2),
-            (Limit::BodyRate, bounds.body_rate_max_rad_s),
-        ];
-        let bounded = bounded.into_iter().filter(|(_, bound)| bound.is_some()).map(|(limit, _)| limit);
-        let corridors = (0..self.corridors.len()).map(Limit::Corridor);
-        let waypoints = (!self.inner_waypoints().is_empty()).then_some(Limit::Waypoints);
-        bounded.chain(corridors).chain(waypoints).collect()
-    }
-
-    /// Whether a curve keeps to every limit, by its control points and at the waypoints.
-    pub(super) fn kept_by(&self, curve: &BSpline) -> bool {
-        let kept = |limit| self.needed(limit, curve).is_some_and(|needed| !self.is_too_tight(limit, needed));
-        self.limits().into_iter().all(kept)
-    }
-
-    /// Whether more is needed of a limit than is given.
-    fn is_too_tight(&self, limit: Limit, needed: f64) -> bool {
-        let given = self.given(limit);
-        if limit == Limit::ThrustMin { needed < given - TOUCHED } else { needed > given * (1.0 + TOUCHED) + TOUCHED }
-    }
-
-    /// A limit and the value that it needs, with room and as it is printed; `None` if it is not too tight at all.
-    fn remedy(&self, limit: Limit, needed: f64, room: f64) -> Option<Remedy> {
-        let given = self.given(limit);
-        // Of a thrust, its distance to hover counts.
-        let hover = if matches!(limit, Limit::ThrustMin | Limit::ThrustMax) { GRAVITY_M_S2 } else { 0.0 };
-        let with_room = needed + room * (needed - hover);
-        let enough = match limit {
-            Limit::Tilt | Limit::BodyRate => outwards(with_room.to_degrees()).to_radians(),
-            // Sums with g are a rounding off.
-            _ => ((hover + outwards(with_room - hover)) * 1e9).round() / 1e9,
-        };
-        self.is_too_tight(limit, needed).then_some(Remedy { limit, given, enough })
-    }
-
-    /// The plan with remedies taken.
-    fn with(&self, remedies: &[Remedy]) -> Self {
-        let mut plan = self.clone();
-        for Remedy { limit, enough, .. } in remedies {
-            let bounds = &mut plan.bounds;
-            match *limit {
-                Limit::Speed => bounds.speed_max_m_s = Some(*enough),
-                Limit::Acceleration => bounds.acceleration_max_m_s2 = Some(*enough),
-                Limit::Tilt => bounds.tilt_max_rad = Some(*enough),
-                Limit::ThrustMin => bounds.thrust_min_m_s2 = Some(*enough),
-                Limit::ThrustMax => bounds.thrust_max_m_s2 = Some(*enough),
-                Limit::BodyRate => bounds.body_rate_max_rad_s = Some(*enough),
-                Limit::Corridor(index) => {
-                    if let Some(corridor) = plan.corridors.get_mut(index) {
-                        corridor.min_m.add_scalar_mut(-enough);
-                        corridor.max_m.add_scalar_mut(*enough);
-                    }
-                }
-                Limit::Waypoints => {
-                    let last = plan.waypoints.len().saturating_sub(1);
-                    plan.waypoints.iter_mut().take(last).skip(1).for_each(|waypoint| waypoint.tolerance_m += enough);
-                }
-                Limit::Duration => {}
-            }
-        }
-        plan
-    }
-
-    /// Value of a limit, SI; 0 where none is given, and for corridors and waypoints, which count the addition.
-    fn given(&self, limit: Limit) -> f64 {
-        let bounds = &self.bounds;
-        let bound = match limit {
-            Limit::Speed => bounds.speed_max_m_s,
-            Limit::Acceleration => bounds.acceleration_max_m_s2,
-            Limit::Tilt => bounds.tilt_max_rad,
-            Limit::ThrustMin => bounds.thrust_min_m_s2,
-            Limit::ThrustMax => bounds.thrust_max_m_s2,
-            Limit::BodyRate => bounds.body_rate_max_rad_s,
-            Limit::Corridor(_) | Limit::Waypoints | Limit::Duration => None,
-        };
-        bound.unwrap_or(0.0)
-    }
-
-    /// Size of the slack of a limit that counts as much as one of another.
-    fn slack_scale(&self, limit: Limit) -> f64 {
-        let given = self.given(limit);
-        match limit {
-            Limit::Speed | Limit::Acceleration | Limit::Duration => given,
-            Limit::Tilt => given.tan() * GRAVITY_M_S2,
-            Limit::ThrustMin | Limit::ThrustMax => (given - GRAVITY_M_S2).abs(),
-            Limit::BodyRate => given * GRAVITY_M_S2,
-            Limit::Corridor(_) | Limit::Waypoints => {
-                let legs = self.waypoints.windows(2).map(|pair| (pair[1].position_m - pair[0].position_m).norm());
-                0.1 * legs.fold(1e-2, f64::max)
-            }
-        }
-    }
-
-    /// The value of a limit that a curve needs so that the bound can be proved by control points; `None` if none can be.
-    pub(super) fn needed(&self, limit: Limit, curve: &BSpline) -> Option<f64> {
-        let gravity = Vector3::new(0.0, 0.0, GRAVITY_M_S2);
-        let thrusts = || curve.derivative_control_points(2).into_iter().map(|acceleration| acceleration + gravity);
-        match limit {
-            Limit::Speed => Some(largest(curve.derivative_control_points(1).iter().map(Vector3::norm))),
-            Limit::Acceleration => Some(largest(curve.derivative_control_points(2).iter().map(Vector3::norm))),
-            Limit::Duration => None,
-            Limit::Tilt => {
-                let tilt_rad = largest(thrusts().map(|thrust| thrust.xy().norm().atan2(thrust.z)));
-                (tilt_rad < std::f64::consts::FRAC_PI_2).then_some(tilt_rad)
-            }
-            Limit::ThrustMin => Some(-largest(thrusts().map(|thrust| -thrust.z))).filter(|least| *least >= 0.0),
-            Limit::ThrustMax => Some(largest(thrusts().map(|thrust| thrust.norm()))),
-            Limit::BodyRate => {
-                let lifts: Vec<f64> = thrusts().map(|thrust| thrust.z).collect();
-                let jerks = curve.derivative_control_points(3);
-                let rate = |span: usize| {
-                    let lift = -largest(lifts[span..span + self.degree() - 1].iter().map(|lift| -lift));
-                    let jerk = largest(jerks[span..span + self.degree() - 2].iter().map(Vector3::norm));
-                    (lift > 0.0).then_some(jerk / lift)
-                };
-                let rates: Option<Vec<f64>> = (0..self.spans()).map(rate).collect();
-                Some(largest(rates?.into_iter()))
-            }
-            Limit::Corridor(index) => self.corridors.get(index).map(|corridor| self.widening_m(corridor, curve)),
-            Limit::Waypoints => {
-                let misses = self.inner_waypoints().iter();
-                Some(largest(misses.map(|w| (curve.at(w.time_s).position_m - w.position_m).norm() - w.tolerance_m)))
-            }
-        }
-    }
-
-    /// How far control points are outside a corridor, m; 0 if they do not.
-    fn widening_m(&self, corridor: &Corridor, curve: &BSpline) -> f64 {
-        let points = &curve.control_points_m()[self.points_of(corridor)];
-        largest(points.iter().map(|p| (corridor.min_m - p).max().max((p - corridor.max_m).max()))).max(0.0)
-    }
-}
-
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(f64::NEG_INFINITY, f64::max)
 }

@@ -3,7 +3,8 @@
 use nalgebra::Vector3;
 
 use super::entries::{CorridorEntry, PlanFile, check};
-use super::{DURATIONS_S, SAME_TIME, corridors_of, free_spans};
+use super::legs::{corridors_of, free_spans};
+use super::{DURATIONS_S, SAME_TIME};
 use crate::plan::error::{PlanError, WaypointName};
 use crate::plan::times::Free;
 use crate::plan::{Bounds, Budget, MOST_SPANS, Waypoint};
