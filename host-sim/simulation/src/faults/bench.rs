@@ -1,6 +1,5 @@
 //! One flight with a fault, on a plant in air over a floor.
 
-use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{Unit, Vector3, Vector4};
@@ -10,10 +9,10 @@ use quatrack::gains::table::BuiltInCascade;
 use quatrack::supervisor::Mode;
 use quatrack::{Airframe, Quaternion, State};
 use quatrack_design::vehicle::Vehicle;
-use serde::Serialize;
 
-use super::kinds::{Fault, Signals, UnderTest};
 use super::object::Object;
+use super::row::{EndState, Row};
+use super::signals::{Fault, Signals, UnderTest};
 use super::under_guard::UnderGuard;
 use crate::flight::motor_loop::{PERIOD_S, RATE};
 use crate::plant::{
@@ -52,52 +51,6 @@ impl Crafts {
         let table = built_in.table;
         let cascade = table.flown(&airframe, RATE, &CascadeLimits::STANDARD, &table.air).ok()?;
         Some(Self { vehicle: vehicles::by_name(name).ok()?, cascade })
-    }
-}
-
-/// How a flight ended, in the supervisor's words.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct EndState(pub Mode);
-
-impl Serialize for EndState {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(&self.0)
-    }
-}
-
-impl fmt::Display for EndState {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
-    }
-}
-
-/// The result of a fault on a craft.
-#[derive(Clone, Debug, Serialize)]
-pub struct Row {
-    /// Its name.
-    pub fault: &'static str,
-    /// The craft's.
-    pub vehicle: String,
-    /// From its beginning until the supervisor bridges or does something else than flying on, ms; nothing where it never does.
-    pub detected_ms: Option<u32>,
-    /// The supervisor's mode at the end.
-    pub end_state: EndState,
-    /// From its beginning until the motors are off, ms.
-    pub motors_off_ms: Option<u32>,
-    /// Farthest from the course while it is flown, over ground from where the fault began after that, m.
-    pub farthest_m: f64,
-    /// Whether the craft came down hard or was lost.
-    pub crashed: bool,
-    /// Whether nothing may be lost.
-    pub recoverable: bool,
-    /// The answers of PX4 and of Bitcraze's firmware.
-    pub others: &'static str,
-}
-
-impl Row {
-    /// Whether it is as it should be: no craft lost by a recoverable fault, and motors off or landed otherwise.
-    pub fn is_as_promised(&self) -> bool {
-        if self.recoverable { !self.crashed } else { !self.crashed || self.motors_off_ms.is_some() }
     }
 }
 
@@ -280,56 +233,4 @@ impl Load for Hand {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::kinds;
-    use super::*;
-
-    fn flown(name: &str, vehicle: &str) -> Row {
-        let fault = kinds().into_iter().find(|fault| fault.name == name).unwrap();
-        fly(&fault, &Crafts::by_name(vehicle).unwrap()).unwrap()
-    }
-
-    #[test]
-    fn there_are_at_least_65_kinds_each_of_its_own_name() {
-        let mut names: Vec<&str> = kinds().iter().map(|fault| fault.name).collect();
-        names.sort_unstable();
-        names.dedup();
-        assert!(names.len() >= 65 && names.len() == kinds().len(), "{} of {}", names.len(), kinds().len());
-    }
-
-    #[test]
-    fn nothing_recoverable_is_lost_and_the_rest_ends_with_motors_off() {
-        for vehicle in super::super::VEHICLES {
-            let craft = Crafts::by_name(vehicle).unwrap();
-            for fault in kinds() {
-                let row = fly(&fault, &craft).unwrap();
-                assert!(row.is_as_promised(), "{row:?}");
-            }
-        }
-    }
-
-    #[test]
-    fn half_a_second_of_no_state_is_flown_through() {
-        for vehicle in super::super::VEHICLES {
-            let row = flown("state: NaN for 500 ms", vehicle);
-            assert!(!row.crashed && row.end_state == EndState(Mode::Flying), "{row:?}");
-            assert_eq!(row.detected_ms, Some(0));
-        }
-    }
-
-    #[test]
-    fn a_bad_setpoint_at_3_m_s_stops_it_within_a_metre_and_a_half() {
-        for vehicle in super::super::VEHICLES {
-            let row = flown("setpoint: NaN position at 3 m/s", vehicle);
-            assert!(!row.crashed && row.farthest_m < 1.5, "{row:?}");
-        }
-    }
-
-    #[test]
-    fn a_dead_motor_ends_with_motors_off() {
-        for vehicle in super::super::VEHICLES {
-            let row = flown("motor: one dead", vehicle);
-            assert!(row.motors_off_ms.is_some_and(|ms| ms < 8000), "{row:?}");
-        }
-    }
-}
+mod tests;

@@ -5,17 +5,23 @@
 //!
 //! ```text
 //! bench                  one flight
+//!   row                  its outcome
 //!   under_guard, object  its controller: the core's cascade under the core's supervisor; the Crazyflie object
-//!     kinds              every kind of fault: the signals it spoils, and others' answers
+//! kinds                  every kind of fault: the signals it spoils, and others' answers
+//!   signals              what a fault spoils, and what is under test
 //! ```
 
 mod bench;
 mod kinds;
 mod object;
+mod row;
+mod signals;
 mod under_guard;
 
-pub use self::bench::{Crafts, EndState, HEIGHT_M, Row, fly, fly_by, fly_object};
-pub use self::kinds::{Craft, Fault, Signals, UnderTest, kinds};
+pub use self::bench::{Crafts, HEIGHT_M, fly, fly_by, fly_object};
+pub use self::kinds::kinds;
+pub use self::row::{EndState, Row};
+pub use self::signals::{Craft, Fault, Signals, UnderTest};
 
 /// The crafts that are flown.
 pub const VEHICLES: [&str; 3] = ["crazyflie-2.1", "crazyflie-2.1-upgrade-kit", "crazyflie-2.1-brushless"];

@@ -10,7 +10,7 @@ use quatrack_crazyflie::ffi;
 use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
 
-use super::kinds::{Signals, UnderTest};
+use super::signals::{Signals, UnderTest};
 use crate::crazyflie::{Firmware, Sensors, Tune};
 
 /// Steps of 2 ms between two setpoints.

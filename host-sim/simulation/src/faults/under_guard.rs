@@ -9,7 +9,7 @@ use quatrack::{
     Controller, FifthOrderSample, FlatSample, Heading, Limits, Measured, Memory, MotorForces, Reference, Target, Tick,
 };
 
-use super::kinds::{Signals, UnderTest};
+use super::signals::{Signals, UnderTest};
 
 /// The cascade of the core under its supervisor.
 pub(super) struct UnderGuard<'a> {
