@@ -10,8 +10,9 @@ use quatrack_plan::trajectory::fifth_order::FifthOrder;
 use serde::Serialize;
 
 use super::course::Course;
-use super::firmware::{Firmware, STEPS_HZ, Sensors, Setpoints, Tune};
+use super::firmware::{Firmware, STEPS_HZ, Sensors, Tune};
 use super::recording::Recording;
+use super::setpoints::Setpoints;
 use crate::flight::motor_loop;
 use crate::flight::noise::{Noise, Source};
 use crate::plant::{Craft, Ground, RigidState};

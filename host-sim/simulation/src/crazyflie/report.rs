@@ -11,8 +11,9 @@ use quatrack_design::vehicle::Vehicle;
 use serde::Serialize;
 
 use super::course::{Course, CourseError};
-use super::firmware::{Sensors, Setpoints, Tune};
+use super::firmware::{Sensors, Tune};
 use super::flight::{Case, FlightErrors, fly};
+use super::setpoints::Setpoints;
 use crate::flight::robustness;
 
 /// Standard deviation of a gyroscope reading, rad/s: 1 degree a second and a bit.
