@@ -1,17 +1,18 @@
 //! One flight's plant: a vehicle, its surroundings and its true figures in; state, wind and ideal sensor readings out.
 
+mod converter;
+mod readings;
+mod start;
+
 use nalgebra::{Vector3, Vector4};
-use quatrack_design::vehicle::Vehicle;
 
 use super::craft::{LinearWind, STEP_MAX_S};
 use super::delay::DelayLine;
-use super::environment::{Environment, Truth};
-use super::ground_effect::GroundEffect;
 use super::kernel::{self, Figures, Step};
-use super::refused::PlantError;
-use super::supply::{ForceMap, Supply};
+use super::supply::Supply;
 use super::wind::Blowing;
-use super::{Airflow, Contact, Craft, Ground, Load, Motion, RigidBody, RigidState, RotorDrag};
+use super::{Craft, RigidState};
+use converter::{Acting, Converter};
 
 /// A craft in flight. It moves by [`Self::advance`] alone; the same vehicle, figures and seed give the same bits.
 ///
@@ -65,103 +66,7 @@ pub(super) struct SteadyStep {
     pub(super) goals_n: Vector4<f64>,
 }
 
-/// From commands to the thrusts that the motors go to.
-#[derive(Clone, Copy, Debug)]
-struct Converter {
-    /// Limits of the commands, N.
-    limits_n: [f64; 2],
-    map: Option<ForceMap>,
-    strength: [f64; 4],
-    factor: f64,
-    factor_per_s: f64,
-}
-
-/// Commands that act, N; as the map has them, of a sound motor at full voltage, 1 or N.
-#[derive(Clone, Copy, Debug)]
-struct Acting {
-    commands_n: Vector4<f64>,
-    mapped: Vector4<f64>,
-}
-
-impl Converter {
-    /// Commands within their limits, with their powers taken.
-    #[inline]
-    fn acting(&self, commands_n: &Vector4<f64>) -> Acting {
-        Acting { commands_n: *commands_n, mapped: self.mapped(commands_n) }
-    }
-
-    #[inline(always)]
-    fn mapped(&self, commands_n: &Vector4<f64>) -> Vector4<f64> {
-        let [least_n, most_n] = self.limits_n;
-        commands_n.map(|command_n| {
-            // By comparison: a NaN becomes the least, and f64::max costs five times as much.
-            let command_n = if command_n > least_n { command_n } else { least_n };
-            let command_n = if command_n < most_n { command_n } else { most_n };
-            self.map.map_or(command_n, |map| map.share(command_n / most_n))
-        })
-    }
-
-    /// Thrusts that the motors go to at a time and a voltage, N.
-    #[inline(always)]
-    fn goals_n(&self, mapped: &Vector4<f64>, time_s: f64, voltage_v: f64) -> Vector4<f64> {
-        let factor = (self.factor + self.factor_per_s * time_s).max(0.0);
-        let all = factor * self.map.map_or(1.0, |map| map.most_n(voltage_v));
-        Vector4::from_fn(|i, _| all * self.strength[i] * mapped[i])
-    }
-}
-
 impl Plant {
-    /// At the start, with the commands that keep the thrusts it starts with.
-    ///
-    /// # Errors
-    /// [`PlantError`] with the first figure that is out of range.
-    pub fn new(
-        vehicle: &Vehicle,
-        environment: &Environment,
-        truth: &Truth,
-        start: &RigidState,
-        seed: u64,
-    ) -> Result<Self, PlantError> {
-        environment.check()?;
-        truth.check()?;
-        let mut wind = Blowing::new(&environment.wind, seed);
-        let craft = craft(vehicle, environment, truth);
-        Ok(Self {
-            plain: kernel::figures(&craft),
-            craft,
-            wind_m_s: wind.at(0.0),
-            steady: truth.delay_s <= 0.0 && wind.is_steady() && matches!(truth.supply, Supply::Constant(_)),
-            wind,
-            line: DelayLine::new(truth.delay_s),
-            acting: None,
-            supply: truth.supply,
-            converter: Converter {
-                limits_n: [vehicle.motors().thrust_min_n, vehicle.motors().thrust_max_n],
-                map: truth.force_map,
-                strength: truth.motor_strength,
-                factor: truth.thrust_factor,
-                factor_per_s: truth.thrust_factor_per_s,
-            },
-            time_s: 0.0,
-            state: *start,
-            finite: start.is_finite(),
-        })
-    }
-
-    /// The same with one more load.
-    pub fn with_load(mut self, load: impl Load + 'static) -> Self {
-        self.craft = self.craft.with_load(load);
-        self.plain = kernel::figures(&self.craft);
-        self
-    }
-
-    /// The same with drag rotor by rotor, as RotorPy has it; needs [`Truth::propeller`].
-    pub fn with_rotor_drag(mut self, rotors: RotorDrag) -> Self {
-        self.craft.air = Some(Airflow { rotors: Some(rotors), ..self.craft.air.unwrap_or_default() });
-        self.plain = kernel::figures(&self.craft);
-        self
-    }
-
     /// From here on each motor gives this share of a sound one's force; none where all are off.
     pub fn set_motor_strength(&mut self, strength: [f64; 4]) {
         self.converter.strength = strength;
@@ -292,105 +197,4 @@ impl Plant {
             self.converter.goals_n(&acting.mapped, self.time_s, self.voltage_v())
         })
     }
-
-    /// Its state.
-    pub fn state(&self) -> &RigidState {
-        &self.state
-    }
-
-    /// Whether every number of its state is finite.
-    pub fn is_finite(&self) -> bool {
-        self.finite
-    }
-
-    /// Time since the start, s.
-    pub fn time_s(&self) -> f64 {
-        self.time_s
-    }
-
-    /// Velocity of the air at the craft, world frame, m/s.
-    pub fn wind_m_s(&self) -> &Vector3<f64> {
-        &self.wind_m_s
-    }
-
-    /// Root mean square of the turbulence so far, along the mean wind, across it and upwards, m/s.
-    pub fn realised_gust_rms_m_s(&self) -> Option<Vector3<f64>> {
-        self.wind.realised_rms_m_s()
-    }
-
-    /// Voltage at the motors, V; 0 where nothing depends on it.
-    #[inline]
-    pub fn voltage_v(&self) -> f64 {
-        self.supply.voltage_v(&self.state.thrusts_n)
-    }
-
-    /// Charge of the battery from 0 to 1, where there is one.
-    pub fn charge(&self) -> Option<f64> {
-        match self.supply {
-            Supply::Constant(_) => None,
-            Supply::Battery { charge, .. } => Some(charge),
-        }
-    }
-
-    /// Least and most command that a motor takes, N; others are cut to them.
-    pub fn command_limits_n(&self) -> [f64; 2] {
-        self.converter.limits_n
-    }
-
-    /// Least and most thrust that each motor can be commanded to now, N.
-    pub fn thrust_limits_n(&self) -> [Vector4<f64>; 2] {
-        self.converter.limits_n.map(|limit_n| self.goals_n(Some(self.converter.acting(&Vector4::repeat(limit_n)))))
-    }
-
-    /// The reading of an accelerometer at the centre of mass, body frame, m/s^2: that of [`Self::motion`], for less.
-    pub fn specific_force_m_s2(&mut self) -> Vector3<f64> {
-        match &self.plain {
-            Some((figures, has_air)) => kernel::felt_m_s2(figures, *has_air, &self.state, &self.wind_m_s),
-            None => self.motion().specific_force_m_s2,
-        }
-    }
-
-    /// Specific force at the centre of mass under the commands that act now.
-    pub fn motion(&mut self) -> Motion {
-        let (commands_n, _) = self.line.at(self.time_s);
-        let goals_n = self.goals_n(commands_n.map(|commands_n| self.converter.acting(&commands_n)));
-        let wind = LinearWind { from_s: self.time_s, from_m_s: self.wind_m_s, slope_m_s2: Vector3::zeros() };
-        self.craft.motion(&self.state, &goals_n, &wind, self.time_s)
-    }
-}
-
-/// The vehicle with every figure that is true of it, in its surroundings.
-fn craft(vehicle: &Vehicle, environment: &Environment, truth: &Truth) -> Craft {
-    let mut craft = Craft::new(vehicle);
-    // The inertia has been looked at.
-    craft.body = RigidBody::new(truth.mass_kg, truth.inertia_kg_m2).unwrap_or(craft.body);
-    craft.motors = craft.motors.with_lag(truth.rise_lag_s, truth.fall_lag_s).around(&truth.centre_of_mass_m);
-    craft.motors.propeller = truth.propeller;
-    craft.motors.torque_bias_n_m = truth.torque_bias_n_m;
-    for motor in &mut craft.motors.motors {
-        // The plant cuts commands, by its voltage.
-        (motor.thrust_min_n, motor.thrust_max_n) = (0.0, f64::INFINITY);
-    }
-    let air = &environment.air;
-    let mass_kg = vehicle.mass_kg();
-    if *air != (super::Air { wind_max_m_s: air.wind_max_m_s, ..super::Air::VACUUM }) {
-        craft.air = Some(Airflow {
-            drag_n_s_m: Vector3::from(air.drag_per_s) * mass_kg,
-            moment_n_s: air.moment_n_m_per_m_s,
-            lift_n_s2_m2: air.lift_per_m * mass_kg,
-            rotors: None,
-        });
-    }
-    if environment.floor {
-        craft = craft.with_load(Ground::under(vehicle));
-    }
-    if let Some(radius_m) = environment.ground_effect_radius_m {
-        let effect = GroundEffect::of(&craft.motors, radius_m);
-        craft = craft.with_load(effect);
-    }
-    for wall in &environment.walls {
-        let contact = Contact::new(*wall, &craft.motors, environment.guard_reach_m, truth.mass_kg);
-        craft = craft.with_load(contact);
-    }
-    craft
 }

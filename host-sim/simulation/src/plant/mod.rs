@@ -10,7 +10,7 @@
 //! side_by_side             several plants in the lanes of the vector unit
 //! in_flight                Plant: one flight's craft, wind, delay, battery
 //!   kernel                 the steps of plain craft, alone or side by side
-//!   environment            the surroundings of a flight and the true figures of its craft; checked once
+//!   environment, truth     the surroundings of a flight; the true figures of its craft; checked once
 //!   craft                  the equations of motion, and their steps
 //!     air, propeller       drag, moment, lift; momentum and speed of the rotors
 //!     motors, body         lag and limits; mass and inertia
@@ -37,6 +37,7 @@ mod refused;
 mod side_by_side;
 mod state;
 mod supply;
+mod truth;
 mod wind;
 
 pub use air::{Airflow, RotorDrag};
@@ -44,7 +45,7 @@ pub use body::RigidBody;
 pub use contact::{Contact, Wall};
 pub use craft::{Craft, LinearWind, Motion};
 pub use dryden::Dryden;
-pub use environment::{Air, Environment, Truth};
+pub use environment::{Air, Environment};
 pub use ground_effect::GroundEffect;
 pub use in_flight::Plant;
 pub use loads::{Ground, Load, Shove, Wrench};
@@ -55,4 +56,5 @@ pub use refused::PlantError;
 pub use side_by_side::PlantGroup;
 pub use state::RigidState;
 pub use supply::{Battery, CURVE_POINTS, ForceMap, Supply};
+pub use truth::Truth;
 pub use wind::{Gust, Wind};
