@@ -1,7 +1,8 @@
 //! The flight of a law: a craft, its deviations, a course and a law in; its motion out.
 
+mod together;
+
 use nalgebra::{Vector3, Vector4};
-use pulp::{Arch, Simd, WithSimd};
 use serde::Deserialize;
 
 use super::course::Flown;
@@ -11,7 +12,8 @@ use super::track::{SAMPLE_STEPS, STEP_S, Track};
 use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ};
 use crate::flight::closed_loop::Lost;
 use crate::flight::rigid_loop::RigidFlight;
-use crate::plant::{Plant, PlantGroup, RigidState};
+use crate::plant::{Plant, RigidState};
+pub(super) use together::together;
 
 /// Farther than this from its course a craft counts as lost, m: of a step from the line between its places, of a start beside the course
 /// by as much more as that is off.
@@ -199,50 +201,6 @@ impl<'a> Flying<'a> {
 fn stride(law_steps: u32, estimation: &Estimation) -> u32 {
     let most = if estimation.feels() { 1 } else { SAMPLE_STEPS };
     (1..=most).rev().find(|n| law_steps.is_multiple_of(*n) && SAMPLE_STEPS.is_multiple_of(*n)).unwrap_or(1)
-}
-
-/// Flies up to four that go on by as many steps at once, each with the bits that it has alone.
-pub(super) fn together(plants: Vec<Plant>, flights: &mut [Flying<'_>], keep: &mut [impl Keep]) {
-    Arch::new().dispatch(Together { group: PlantGroup::new(plants), flights, keep });
-}
-
-/// Flights side by side, compiled for the vector instructions of the processor. No multiply-add is fused.
-struct Together<'a, 'b, K> {
-    group: PlantGroup,
-    flights: &'a mut [Flying<'b>],
-    keep: &'a mut [K],
-}
-
-impl<K: Keep> WithSimd for Together<'_, '_, K> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { mut group, flights, keep } = self;
-        let mut goes_on = [false; PlantGroup::MOST];
-        goes_on.iter_mut().take(flights.len()).for_each(|goes| *goes = true);
-        let steps = flights.iter().map(|flying| flying.track.steps()).max().unwrap_or(0);
-        let Some((stride, stride_s)) = flights.first().map(|flying| (flying.stride, flying.stride_s())) else {
-            return;
-        };
-        let mut commands_n = [Vector4::zeros(); PlantGroup::MOST];
-        let mut step = 0;
-        while step <= steps {
-            for (lane, (flying, keep)) in (0..PlantGroup::MOST).zip(flights.iter_mut().zip(keep.iter_mut())) {
-                let Some(plant) = group.plant_mut(lane).filter(|_| goes_on[lane]) else { continue };
-                goes_on[lane] = step <= flying.track.steps() && flying.decide(step, plant, keep);
-                commands_n[lane] = flying.commands_n;
-                if !goes_on[lane] {
-                    group.stop(lane);
-                }
-            }
-            if goes_on.iter().all(|goes| !goes) {
-                return;
-            }
-            group.advance(&commands_n, stride_s);
-            step += stride;
-        }
-    }
 }
 
 /// The highest command at the lower limit of a motor, and the lowest at its upper one, N. Some laws cut their forces in f32 and put them out
