@@ -1,9 +1,11 @@
 //! The certificate of a table of the cascade: gains, the air that is told and a region in; every figure that a table states out.
 
+mod bounds;
+
 use nalgebra::DMatrix;
 use serde::Serialize;
 
-use super::{CascadeCertificate, CascadeChain, CascadeCraft, CascadeRegion, CascadeVariation};
+use super::{CascadeCertificate, CascadeChain, CascadeCraft, CascadeVariation};
 use crate::analysis::eigenvalues;
 use crate::certify::certificate::{SampledLoopFigures, pairs};
 use crate::certify::decrease;
@@ -12,6 +14,7 @@ use crate::certify::margins::{AllChannels, ChannelMargins, LoopMargins};
 use crate::certify::rounding::{Rounding, single_precision};
 use crate::certify::{Certificate, CertifyError, Decrease};
 use crate::vehicle::Vehicle;
+pub use bounds::{CascadeAir, CascadeBounds};
 
 /// Bisections of a lag limit: to a millionth of its last step.
 const BISECTIONS: i32 = 20;
@@ -19,43 +22,6 @@ const BISECTIONS: i32 = 20;
 const LAG_STEP: f64 = 1.05;
 /// Longest lag that is tried, s.
 const LONGEST_LAG_S: f64 = 1.0;
-
-/// How far a table of the cascade is certified, all at once.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct CascadeBounds {
-    /// Shortest and longest time constant of the motors, s.
-    pub lag_s: [f64; 2],
-    /// How much heavier or lighter than told the craft may be, as a share.
-    pub mass_share: f64,
-    /// The same of its inertia.
-    pub inertia_share: f64,
-    /// The same about yaw, where another is known of it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub yaw_inertia_share: Option<f64>,
-    /// Least and most force of a motor over its command.
-    pub force_share: [f64; 2],
-    /// Longest delay of commands, s.
-    pub delay_s: f64,
-    /// Most drag, 1/s.
-    pub drag_per_s: f64,
-    /// Most moment of the air about x and y, N s.
-    pub moment_n_s: [f64; 2],
-}
-
-/// The air of a table of the cascade.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct CascadeAir {
-    /// Drag that is told, 1/s.
-    pub drag_per_s: f64,
-    /// Moment that is told, N s.
-    pub moment_n_s: [f64; 2],
-    /// How much of the identified air that is: margins are stated in the whole of it.
-    pub share_of_identified: f64,
-    /// Share of the wind's moment that is fed forward.
-    pub gust: f64,
-    /// Whether the air is learned in flight.
-    pub learn: bool,
-}
 
 /// A table of the cascade over its region.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -66,35 +32,6 @@ pub struct CascadeRegionCertificate {
     pub seen: [CascadeCertificate; 4],
     /// The same in the seconds before, at the inertia that is told.
     pub unseen: [CascadeCertificate; 4],
-}
-
-impl CascadeBounds {
-    /// The region's grid: the ends of everything, of the lags five in even steps of ratio.
-    fn region(&self) -> CascadeRegion {
-        let around = |share: f64| if share > 0.0 { vec![1.0 - share, 1.0 + share] } else { vec![1.0] };
-        let up_to = |most: f64| if most > 0.0 { vec![0.0, most] } else { vec![0.0] };
-        let [shortest_s, longest_s] = self.lag_s;
-        let all = CascadeRegion::in_air(shortest_s, longest_s);
-        let believed = all.believed_drags_per_s.iter().copied().fold(0.0, f64::max);
-        CascadeRegion {
-            mass_factors: around(self.mass_share),
-            inertia_factors: around(self.inertia_share),
-            yaw_inertia_factors: self.yaw_inertia_share.map(around),
-            command_factors: self.force_share.to_vec(),
-            delays_s: up_to(self.delay_s),
-            drags_per_s: up_to(self.drag_per_s),
-            // Over the most, which is the craft's own here.
-            moment_factors: vec![0.0, 1.0],
-            believed_drags_per_s: up_to(believed),
-            believed_ratio_factors: vec![0.0, 1.5],
-            ..all
-        }
-    }
-
-    /// The same before the craft has learned its motors' share.
-    fn region_unseen(&self) -> CascadeRegion {
-        CascadeRegion { torque_factors: self.force_share.to_vec(), ..self.region().before_its_motors_are_seen() }
-    }
 }
 
 /// The craft of a table, with gains rounded to f32.
