@@ -2,12 +2,14 @@
 //!
 //! There is one controller in a process, as in a craft: switching another one on ends the flight of the one before.
 
+mod fields;
+
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use quatrack_crazyflie::abi::{self, Attitude, CEnum, Control, Mode, Modes, Quaternion, SensorData, Setpoint, Vector};
+use quatrack_crazyflie::abi::{self, CEnum, Control, Quaternion, SensorData, Setpoint};
 use quatrack_crazyflie::craft::Platform;
 use quatrack_crazyflie::ffi;
 use quatrack_crazyflie::shared::{AtomicF32, Parameters};
@@ -15,6 +17,7 @@ use quatrack_simulation::crazyflie::platform;
 
 use crate::error::refused;
 use crate::vehicle;
+use fields::{sensors, setpoint, state};
 
 /// How many controllers have been switched on here: the last one flies.
 static SWITCHED_ON: Mutex<u64> = Mutex::new(0);
@@ -94,74 +97,6 @@ impl CrazyflieControl {
     fn force_torque(&self) -> Option<[f32; 4]> {
         (self.mode == Control::FORCE_TORQUE).then_some(self.payload)
     }
-}
-
-fn number(of: &Bound<'_, PyAny>, field: &str) -> PyResult<f32> {
-    of.getattr(field)?.extract()
-}
-
-fn vector(of: &Bound<'_, PyAny>, field: &str) -> PyResult<Vector> {
-    let of = of.getattr(field)?;
-    Ok(Vector { timestamp: 0, x: number(&of, "x")?, y: number(&of, "y")?, z: number(&of, "z")? })
-}
-
-fn angles(of: &Bound<'_, PyAny>, field: &str) -> PyResult<Attitude> {
-    let of = of.getattr(field)?;
-    Ok(Attitude { timestamp: 0, roll: number(&of, "roll")?, pitch: number(&of, "pitch")?, yaw: number(&of, "yaw")? })
-}
-
-fn quaternion(of: &Bound<'_, PyAny>, field: &str) -> PyResult<Quaternion> {
-    let of = of.getattr(field)?;
-    Ok(Quaternion { x: number(&of, "x")?, y: number(&of, "y")?, z: number(&of, "z")?, w: number(&of, "w")? })
-}
-
-fn modes(of: &Bound<'_, PyAny>) -> PyResult<Modes> {
-    let of = of.getattr("mode")?;
-    let mode = |field: &str| of.getattr(field)?.extract().map(Mode);
-    Ok(Modes {
-        x: mode("x")?,
-        y: mode("y")?,
-        z: mode("z")?,
-        roll: mode("roll")?,
-        pitch: mode("pitch")?,
-        yaw: mode("yaw")?,
-        quat: mode("quat")?,
-    })
-}
-
-fn setpoint(of: &Bound<'_, PyAny>, tick: u32) -> PyResult<Setpoint> {
-    // The bindings of older firmware have no jerk.
-    let jerk = if of.hasattr("jerk")? { vector(of, "jerk")? } else { Vector::default() };
-    let timestamp = of.getattr_opt("timestamp")?.map_or(Ok(0), |stamp| stamp.extract())?;
-    Ok(Setpoint {
-        // One that nobody dated is new.
-        timestamp: if timestamp == 0 { tick } else { timestamp },
-        attitude: angles(of, "attitude")?,
-        attitude_rate: angles(of, "attitudeRate")?,
-        attitude_quaternion: quaternion(of, "attitudeQuaternion")?,
-        thrust: number(of, "thrust")?,
-        position: vector(of, "position")?,
-        velocity: vector(of, "velocity")?,
-        acceleration: vector(of, "acceleration")?,
-        jerk,
-        velocity_body: u8::from(of.getattr("velocity_body")?.is_truthy()?),
-        mode: modes(of)?,
-    })
-}
-
-fn state(of: &Bound<'_, PyAny>) -> PyResult<abi::State> {
-    Ok(abi::State {
-        attitude: angles(of, "attitude")?,
-        attitude_quaternion: quaternion(of, "attitudeQuaternion")?,
-        position: vector(of, "position")?,
-        velocity: vector(of, "velocity")?,
-        acc: vector(of, "acc")?,
-    })
-}
-
-fn sensors(of: &Bound<'_, PyAny>) -> PyResult<SensorData> {
-    let axis = |field: &str| vector(of, field).map(|v| [v.x, v.y, v.z]);
-    Ok(SensorData { acc: axis("acc")?, gyro: axis("gyro")?, ..SensorData::default() })
 }
 
 impl CrazyflieController {
