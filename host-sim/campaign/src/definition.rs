@@ -1,18 +1,18 @@
 //! The flights of a campaign: a scenario with distributions and laws in; the scenario of run k out.
 
-use std::path::{Path, PathBuf};
+mod read;
+
+use std::path::PathBuf;
 
 use quatrack_design::vehicle::Vehicle;
-use quatrack_plan::bounded;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::scenario::file::ScenarioFile;
-use quatrack_simulation::scenario::{CourseChoice, Law, Scenario, ScenarioError};
+use quatrack_simulation::scenario::{Law, Scenario, ScenarioError};
 use sha2::{Digest as _, Sha256};
 use toml::{Table, Value};
 
 use crate::draws::Draws;
-use crate::error::CampaignError;
-use crate::vary::{self, Varied};
+use crate::vary::Varied;
 
 /// Makes a trajectory of a name or a path.
 pub type Trajectories<'a> = &'a dyn Fn(&str) -> Result<PiecewisePolynomial, String>;
@@ -54,95 +54,6 @@ pub struct Run {
 }
 
 impl Campaign {
-    /// From a scenario's file.
-    ///
-    /// # Errors
-    /// [`CampaignError`], also for a distribution that reaches beyond a scenario's range.
-    pub fn read(path: &Path, asked: &Asked, trajectories: Trajectories<'_>) -> Result<Self, CampaignError> {
-        let origin = path.display().to_string();
-        let text =
-            bounded::read_to_string(path).map_err(|error| CampaignError::file(path, "cannot be read", &error))?;
-        // For its line numbers.
-        let file = ScenarioFile::parse(&text, &origin)?;
-        let mut whole: Table = toml::from_str(&text).map_err(|error| CampaignError::Vary {
-            origin: origin.clone(),
-            key: String::new(),
-            reason: error.message().to_owned(),
-        })?;
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let seed = asked.seed.or(file.seed).unwrap_or(1);
-        let whole_seed = i64::try_from(seed)
-            .map_err(|_| CampaignError::Asked(format!("--seed {seed}: must be at most {}", i64::MAX)))?;
-        let laws = match (asked.laws.is_empty(), &file.laws) {
-            (false, _) => asked.laws.clone(),
-            (true, Some(laws)) if !laws.is_empty() => laws.clone(),
-            (true, _) => vec![file.law.unwrap_or_default()],
-        };
-        if let Some(law) = laws.iter().enumerate().find(|(i, law)| laws[..*i].contains(law)).map(|(_, law)| law) {
-            return Err(CampaignError::Asked(format!("{}: is among the laws twice; leave one out", law.name())));
-        }
-        let files = gather(&mut whole, &folder, &origin)?;
-        let names = laws.iter().map(|law| Value::String(law.name().to_owned())).collect();
-        whole.insert("laws".to_owned(), Value::Array(names));
-        whole.insert("seed".to_owned(), Value::Integer(whole_seed));
-        whole.remove("law");
-        let text = whole.to_string();
-        let mut nominal = whole;
-        nominal.remove("laws");
-        let vary = nominal.remove("vary").and_then(|vary| vary.as_table().cloned()).unwrap_or_default();
-        let varied = vary::all(&vary, &mut nominal).map_err(|(key, reason)| CampaignError::Vary {
-            origin: origin.clone(),
-            key,
-            reason,
-        })?;
-        let mut campaign =
-            Self { text, files, origin, folder, nominal, varied, laws, seed, trajectory: None, vehicle: None };
-        // Where its file lies now, under its own name.
-        let of_vehicle = ScenarioFile::of_vehicle(&file.vehicle);
-        campaign.vehicle = Some(Scenario::checked(&of_vehicle, &campaign.origin, &campaign.folder)?.vehicle);
-        campaign.nominal()?;
-        campaign.look_at_bounds()?;
-        campaign.look_at_laws(trajectories, &file)?;
-        Ok(campaign)
-    }
-
-    /// Every figure at both its ends, the others as they are: so that every drawn figure is one that a scenario takes.
-    fn look_at_bounds(&self) -> Result<(), CampaignError> {
-        for varied in &self.varied {
-            for end in varied.kind.bounds() {
-                let mut table = self.nominal.clone();
-                let refused =
-                    |reason: String| CampaignError::Vary { origin: self.origin.clone(), key: varied.name(), reason };
-                varied.put(&mut table, end).map_err(refused)?;
-                self.checked(table).map_err(|error| {
-                    let line = error.to_string();
-                    let why = line.strip_prefix(&format!("{}: ", self.origin)).unwrap_or(&line);
-                    refused(format!("can draw {end}: {why}; narrow the distribution, or give it min and max"))
-                })?;
-            }
-        }
-        Ok(())
-    }
-
-    fn look_at_laws(&mut self, trajectories: Trajectories<'_>, file: &ScenarioFile) -> Result<(), CampaignError> {
-        let scenario = self.checked(self.nominal.clone())?;
-        if let CourseChoice::Trajectory(_) = &scenario.course {
-            // As it was written, where it lies now.
-            let name = file.course.clone().unwrap_or_default();
-            let path = if CourseChoice::NAMES.contains(&name.as_str()) {
-                name.clone()
-            } else {
-                self.folder.join(&name).display().to_string()
-            };
-            let made = trajectories(&path);
-            self.trajectory = Some(made.map_err(|reason| CampaignError::Trajectory { name, reason })?);
-        }
-        for law in &self.laws {
-            law.start(&scenario.vehicle, &scenario.told)?;
-        }
-        Ok(())
-    }
-
     fn checked(&self, table: Table) -> Result<Scenario, ScenarioError> {
         let file: ScenarioFile = Value::Table(table).try_into().map_err(|error: toml::de::Error| {
             let words: Vec<&str> = error.message().split_whitespace().collect();
@@ -224,32 +135,6 @@ impl Campaign {
         }
         hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
-}
-
-/// The files that a scenario names, under names of their own beside it: a campaign's folder can be taken elsewhere.
-fn gather(whole: &mut Table, folder: &Path, origin: &str) -> Result<Vec<(String, Vec<u8>)>, CampaignError> {
-    let mut files = Vec::new();
-    let mut take = |whole: &mut Table, key: &'static str, stem: &str| {
-        let Some(name) = whole.get(key).and_then(Value::as_str).map(str::to_owned) else { return Ok(()) };
-        let path = folder.join(&name);
-        let bytes = bounded::read(&path).map_err(|error| ScenarioError::Named {
-            origin: origin.to_owned(),
-            key,
-            reason: format!("{name}: cannot be read ({error})"),
-        })?;
-        let end = path.extension().map_or_else(String::new, |end| format!(".{}", end.display()));
-        let own = format!("{stem}{end}");
-        whole.insert(key.to_owned(), Value::String(own.clone()));
-        files.push((own, bytes));
-        Ok::<(), ScenarioError>(())
-    };
-    if whole.get("vehicle").and_then(Value::as_str).is_some_and(|name| name.ends_with(".toml")) {
-        take(whole, "vehicle", "vehicle")?;
-    }
-    if whole.get("course").and_then(Value::as_str).is_some_and(|name| !CourseChoice::NAMES.contains(&name)) {
-        take(whole, "course", "course")?;
-    }
-    Ok(files)
 }
 
 #[cfg(test)]

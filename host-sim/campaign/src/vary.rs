@@ -10,16 +10,17 @@
 //! air.wind_m_s = [{ uniform = [-1.0, 1.0] }, { uniform = [-1.0, 1.0] }, 0.0]
 //! ```
 
+mod written;
+
 use toml::{Table, Value};
 
 use crate::draws::Draws;
+use written::{EXAMPLE, distribution, finite, is_distribution};
 
 /// Farthest that a normal draw lies from its mean, in deviations; a draw beyond, two in a billion, is taken again.
 const FARTHEST: f64 = 6.0;
 /// How often a draw beyond its bounds is repeated before it is put on the nearer one.
 const TRIES: u32 = 1000;
-/// Names of the distributions.
-const KINDS: [&str; 4] = ["uniform", "normal", "log_normal", "choice"];
 
 /// A distribution.
 #[derive(Clone, Debug, PartialEq)]
@@ -197,76 +198,6 @@ fn walk(
         path.truncate(depth);
     }
     Ok(())
-}
-
-const EXAMPLE: &str = "write { uniform = [least, most] }, { normal = [mean, deviation] }, { log_normal = [median, deviation \
-                       of the logarithm] } or { choice = [...] }";
-
-fn is_distribution(table: &Table) -> bool {
-    table.keys().any(|key| KINDS.contains(&key.as_str())) || table.contains_key("relative")
-}
-
-fn finite(value: &Value) -> Result<f64, String> {
-    let number = value.as_float().or(value.as_integer().map(|whole| whole as f64));
-    number.filter(|number| number.is_finite()).ok_or_else(|| format!("{value} is no finite number"))
-}
-
-fn distribution(table: &Table) -> Result<(Kind, bool), String> {
-    let known = |key: &str| KINDS.contains(&key) || ["min", "max", "relative"].contains(&key);
-    if let Some(key) = table.keys().find(|key| !known(key)) {
-        return Err(format!("unknown key {key}; {EXAMPLE}, with min, max or relative = true"));
-    }
-    let kinds: Vec<&str> = KINDS.into_iter().filter(|kind| table.contains_key(*kind)).collect();
-    let [kind] = kinds[..] else { return Err(format!("must be one distribution; {EXAMPLE}")) };
-    let numbers: Vec<f64> = match &table[kind] {
-        Value::Array(list) => list.iter().map(finite).collect::<Result<_, _>>()?,
-        other => return Err(format!("{kind} = {other}: must be a list of numbers")),
-    };
-    let relative = match table.get("relative") {
-        None => false,
-        Some(value) => value.as_bool().ok_or_else(|| format!("relative = {value}: must be true or false"))?,
-    };
-    let bound = |key: &str| table.get(key).map(finite).transpose();
-    let (min, max) = (bound("min")?, bound("max")?);
-    let two = || <[f64; 2]>::try_from(numbers.clone()).map_err(|_| format!("{kind} takes two numbers; {EXAMPLE}"));
-    let bounds = |[least, most]: [f64; 2]| {
-        let bounds = [min.unwrap_or(least).max(least), max.unwrap_or(most).min(most)];
-        if bounds[0] <= bounds[1] {
-            Ok(bounds)
-        } else {
-            Err("min and max leave nothing to draw; widen them".to_owned())
-        }
-    };
-    let kind = match kind {
-        "normal" | "log_normal" => {
-            let [middle, deviation] = two()?;
-            if deviation < 0.0 || kind == "log_normal" && middle <= 0.0 {
-                return Err(format!(
-                    "{kind} = [{middle}, {deviation}]: a deviation is not negative, a median positive"
-                ));
-            }
-            if kind == "normal" {
-                let far = FARTHEST * deviation;
-                Kind::Normal([middle, deviation], bounds([middle - far, middle + far])?)
-            } else {
-                let far = (FARTHEST * deviation).exp();
-                Kind::LogNormal([middle, deviation], bounds([middle / far, middle * far])?)
-            }
-        }
-        _ if min.is_some() || max.is_some() => {
-            return Err(format!("min and max belong to normal and log_normal; {kind} has its own ends"));
-        }
-        "uniform" => {
-            let [least, most] = two()?;
-            if least > most {
-                return Err(format!("uniform = [{least}, {most}]: the least comes first"));
-            }
-            Kind::Uniform([least, most])
-        }
-        _ if numbers.is_empty() => return Err("choice = []: nothing to choose from".to_owned()),
-        _ => Kind::Choice(numbers),
-    };
-    Ok((kind, relative))
 }
 
 #[cfg(test)]
