@@ -4,27 +4,22 @@
 //! The craft takes off from the floor with motors that do not turn, as one that has just been armed. The paper's law goes
 //! through the body-rate loop and the mixer, which it only survives where the motors are quick: it is given such ones.
 
+mod host;
+mod report;
+
 use std::collections::BTreeMap;
 use std::fmt;
 
 use nalgebra::{Vector3, Vector4};
-use quatrack::cascade::CascadeLimits;
-use quatrack::gains::cascade::CRAZYFLIE_2_1_DEFAULT;
-use quatrack::gains::paper;
 use quatrack::link::{LawChoice, LimitsSetting, Parameter, Table, ToBoard, TrajectoryCommand};
-use quatrack::{
-    Actuation, Airframe, BodyRateLoop, Cascade, Controller, Equilibrium, Heading, Leash, Limits, Measured, Memory,
-    MotorForces, Player, Quaternion, Rate, RigidState, State, Target,
-};
+use quatrack::{Leash, Quaternion, RigidState, State};
 use quatrack_design::model::position;
 use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::plan::paper::PaperTrajectory;
-use quatrack_plan::plan::stored;
 use quatrack_simulation::flight::closed_loop::SAMPLE_PERIOD_S;
 use quatrack_simulation::flight::motor_laws::body_rate_bandwidth_rad_s;
 use quatrack_simulation::flight::reference::{Exact, Reference as _};
 use quatrack_simulation::plant::{Craft, Ground, RigidState as PlantState};
-use quatrack_simulation::reproduction::report::digits;
 use quatrack_simulation::vehicles;
 use serde::Serialize;
 
@@ -32,6 +27,8 @@ use super::PilError;
 use super::bits::Fnv1a;
 use super::client::Client;
 use super::flights::{COURSES, PATIENCE_TICKS, Plans, RATE_HZ, share, trajectory_id};
+use host::HostCore;
+pub use report::{MotorDifference, MotorReport};
 
 /// Control steps a sample of the position error.
 const STEPS_A_SAMPLE: u32 = RATE_HZ / 100;
@@ -78,83 +75,6 @@ impl fmt::Display for MotorFlight {
             Self::LqrE => "LQR-E",
             Self::Cascade => "cascade",
         })
-    }
-}
-
-/// The result of all flights down to the motors.
-#[derive(Clone, Debug, Serialize)]
-pub struct MotorReport {
-    /// IAE of the flights that the target drove, m s; nothing for a flight that was cut short.
-    pub iae: BTreeMap<PaperTrajectory, BTreeMap<MotorFlight, Option<f64>>>,
-    /// Whether every force had the host's bits.
-    pub bit_exact: bool,
-    /// Steps compared.
-    pub steps: u64,
-    /// FNV-1a of all forces, in the order of flight.
-    pub hash: String,
-    /// The first forces that differed.
-    #[serde(skip)]
-    pub difference: Option<MotorDifference>,
-}
-
-/// Two sets of forces for one state that are not the same.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MotorDifference {
-    course: PaperTrajectory,
-    flight: MotorFlight,
-    step: u32,
-    state: RigidState,
-    host: MotorForces,
-    target: MotorForces,
-}
-
-/// The core on the host with the board's tables.
-struct HostCore {
-    flight: MotorFlight,
-    limits: Limits,
-    actuation: Actuation,
-    cascade: Cascade,
-    player: Player<'static>,
-    memory: Memory,
-}
-
-impl HostCore {
-    fn new(course: PaperTrajectory, flight: MotorFlight, vehicle: &Vehicle) -> Result<Self, PilError> {
-        let refused = |error: &dyn fmt::Display| PilError::Answer(format!("{course:?}, {flight}: {error}"));
-        let airframe = Airframe::CRAZYFLIE_2_1;
-        let rate = Rate::from_hz(RATE_HZ).ok_or_else(|| refused(&"no such rate"))?;
-        let trajectory = quatrack::Trajectory::new(stored::pieces(course)).map_err(|error| refused(&error))?;
-        let body_rates =
-            BodyRateLoop::new(&airframe, flight.bandwidth_rad_s(vehicle)).map_err(|error| refused(&error))?;
-        let actuation = Actuation::new(&airframe, rate).map_err(|error| refused(&error))?;
-        let of = &CRAZYFLIE_2_1_DEFAULT.table;
-        let cascade = of.flown(&airframe, rate, &CascadeLimits::STANDARD, &of.air).map_err(|error| refused(&error))?;
-        Ok(Self {
-            flight,
-            limits: vehicles::limits(vehicle).map_err(|error| refused(&error))?,
-            actuation: actuation.with_body_rates(body_rates),
-            cascade,
-            player: Player::new(trajectory, rate),
-            memory: Memory::at_rest(),
-        })
-    }
-
-    fn step(&mut self, tick: u32, state: &RigidState) -> Result<MotorForces, String> {
-        let (memory, measured) = (&mut self.memory, Measured::from(state));
-        let step = match self.flight {
-            MotorFlight::LqrE => {
-                let reference = self.player.reference(tick).map_err(|error| error.to_string())?;
-                let controller = Controller::new(Equilibrium::new(&paper::LQR_E), self.limits);
-                let controller = controller.with_actuation(&self.actuation);
-                controller.step_to_motors(memory, measured, Target::new(&reference))
-            }
-            MotorFlight::Cascade => {
-                let sample = self.player.at_fifth_order(tick);
-                let target = Target::with_sample(&sample, Heading::from_angle(sample.flat.heading_rad));
-                Controller::new(&self.cascade, self.limits).step_to_motors(memory, measured, target)
-            }
-        };
-        Ok(step.map_err(|error| error.to_string())?.forces_n)
     }
 }
 
@@ -262,42 +182,5 @@ fn core_state(state: &PlantState) -> RigidState {
             velocity_m_s: state.velocity_m_s.map(|value| value as f32),
         },
         body_rates_rad_s: state.body_rates_rad_s.map(|value| value as f32),
-    }
-}
-
-impl fmt::Display for MotorDifference {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { course, flight, step, state, host, target } = self;
-        writeln!(f, "first difference: {course:?}, {flight}, step {step}")?;
-        writeln!(f, "  state   {state:?}")?;
-        for (name, forces) in [("host", host), ("target", target)] {
-            writeln!(f, "  {name:<7} {forces:?} N")?;
-            writeln!(f, "          {:08x?}", forces.map(f32::to_bits))?;
-        }
-        Ok(())
-    }
-}
-
-impl fmt::Display for MotorReport {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "IAE (23) of the position, m s, down to the motors, from the floor")?;
-        for (course, row) in &self.iae {
-            write!(f, "\n{:<14}", "")?;
-            for flight in row.keys() {
-                write!(f, "{flight:>16}")?;
-            }
-            write!(f, "\n{:<14}", format!("{course:?}"))?;
-            for iae in row.values() {
-                let text = iae.map_or_else(|| "-".to_owned(), |iae| digits(Some(iae)));
-                write!(f, "{text:>16}")?;
-            }
-            writeln!(f)?;
-        }
-        let verdict = if self.bit_exact { "every bit as on the host" } else { "NOT as on the host" };
-        writeln!(f, "\n{} times four forces, {verdict}; hash {}", self.steps, self.hash)?;
-        if let Some(difference) = &self.difference {
-            write!(f, "{difference}")?;
-        }
-        Ok(())
     }
 }
