@@ -1,38 +1,31 @@
 //! `quatrack fly`: a scenario; or a controller or a gain table, a trajectory and a rate in; the figures of one flight, and its
 //! log, out.
 
+mod course;
+mod paper;
 mod picture;
+mod report;
 pub(super) mod scenario;
 pub(super) mod table;
 
-use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::ValueEnum;
-use quatrack::{Equilibrium, ErrorForm, FeedForward, FlatOutput, Law as CoreLaw, Limits, Rate};
-use quatrack_design::design::DesignError;
-use quatrack_design::design::codegen::rounded;
-use quatrack_design::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
-use quatrack_plan::plan;
-use quatrack_plan::trajectory::Trajectory;
-use quatrack_plan::trajectory::bspline::BSpline;
-use quatrack_plan::trajectory::file::{self, TrajectoryFile};
-use quatrack_plan::trajectory::on_board::{self, OnBoardError};
+use quatrack::{ErrorForm, FeedForward, Law as CoreLaw, Limits, Rate};
+use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
-use quatrack_simulation::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
-use quatrack_simulation::flight::core_loop::{self, CoreLoop};
-use quatrack_simulation::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
-use quatrack_simulation::flight::log;
-use quatrack_simulation::flight::metrics::Metrics;
-use quatrack_simulation::flight::reference::{Exact, Reference};
-use quatrack_simulation::flight::reference_check::ReferenceCheck;
-use quatrack_simulation::integrator::Method;
-use serde::Serialize;
+use quatrack_simulation::flight::closed_loop::{Flight, fly_sampled};
+use quatrack_simulation::flight::core_loop::CoreLoop;
+use quatrack_simulation::flight::reference::Exact;
 
+use super::Failure;
 use super::limits::LimitsChoice;
 use super::scenario::ScenarioArgs;
 use super::transform::TransformArgs;
-use super::{Failure, output};
+use course::load;
+pub(super) use course::{not_on_board, trajectory, transformed};
+use paper::{Controller, fly_paper};
+use report::{DescribedFlight, report};
 
 /// Flies a scenario with its law, or one trajectory with one controller or gain table.
 ///
@@ -110,19 +103,6 @@ pub(crate) struct Args {
     scenario: ScenarioArgs,
 }
 
-/// The controllers of the paper.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Controller {
-    /// Lyapunov design on the flat chain.
-    LyapF,
-    /// Lyapunov design at the hover equilibrium.
-    LyapE,
-    /// LQR on the flat chain.
-    LqrF,
-    /// LQR at the hover equilibrium.
-    LqrE,
-}
-
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Precision {
     F32,
@@ -133,48 +113,6 @@ enum Precision {
 enum Form {
     Heading,
     Paper,
-}
-
-impl fmt::Display for Controller {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::LyapF => "LYAP-F",
-            Self::LyapE => "LYAP-E",
-            Self::LqrF => "LQR-F",
-            Self::LqrE => "LQR-E",
-        })
-    }
-}
-
-/// The flight as it is written to a file: figures, and when and why it was lost.
-#[derive(Serialize)]
-struct FlightReport {
-    /// None where it was lost before anything was measured.
-    #[serde(flatten)]
-    metrics: Option<Metrics>,
-    lost: Option<String>,
-    /// The parts of the reference that no law can follow.
-    reference: Option<String>,
-}
-
-/// A gain of either law, in f64.
-enum Gain {
-    Equilibrium(Box<EquilibriumGain>),
-    FlatOutput(Box<FlatOutputGain>),
-}
-
-/// A flight, with the words that describe how it was flown.
-struct DescribedFlight {
-    /// The law and its gains.
-    law: String,
-    /// The arithmetic and the rate.
-    clock: String,
-    /// The limits, in words.
-    limits: String,
-    duration_s: f64,
-    flight: Flight,
-    /// The parts of the reference that no law can follow.
-    reference: Option<String>,
 }
 
 /// Said where no law is asked for.
@@ -196,33 +134,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     report(args, &flown)
 }
 
-fn fly_paper(args: &Args, controller: Controller, rate: Option<Rate>) -> Result<DescribedFlight, Failure> {
-    let gain = design(args, controller)?;
-    let trajectory = load(args)?;
-    let limits = args.limits.clone().unwrap_or_else(LimitsChoice::none);
-    let reference = ReferenceCheck::of(&trajectory, &limits.limits).line();
-    let (flight, clock) = match (args.precision, rate) {
-        (Precision::F32, rate) => {
-            let rate = rate.map_or_else(default_rate, Ok)?;
-            (fly_core(args, &gain, &trajectory, rate, limits.limits)?, format!("f32 core, {} Hz hold", rate.hz()))
-        }
-        (Precision::F64, Some(rate)) => {
-            (fly_f64_sampled(args, &gain, &trajectory, rate, limits.limits), format!("f64, {} Hz hold", rate.hz()))
-        }
-        (Precision::F64, None) => {
-            (fly_f64_continuous(args, &gain, &trajectory, &limits)?, "f64, continuous".to_owned())
-        }
-    };
-    Ok(DescribedFlight {
-        law: controller.to_string(),
-        clock,
-        limits: limits.name,
-        duration_s: trajectory.duration_s(),
-        flight,
-        reference,
-    })
-}
-
 fn checked_rate(hz: f64) -> Result<Rate, Failure> {
     let whole = (hz.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&hz)).then_some(hz as u32);
     whole.and_then(Rate::from_hz).ok_or_else(|| {
@@ -238,72 +149,6 @@ fn default_rate() -> Result<Rate, Failure> {
     checked_rate(500.0)
 }
 
-fn design(args: &Args, controller: Controller) -> Result<Gain, Failure> {
-    let mu = args.mu.unwrap_or(PAPER_MU);
-    if matches!(controller, Controller::LqrE | Controller::LqrF) && args.mu.is_some() {
-        return Err(Failure::input("--mu belongs to the Lyapunov designs; leave it out or choose lyap-e or lyap-f"));
-    }
-    let gain = match controller {
-        Controller::LyapF => synthesis::lyapunov_flat(mu).map(|design| Gain::FlatOutput(design.gain.into())),
-        Controller::LyapE => synthesis::lyapunov_equilibrium(mu).map(|design| Gain::Equilibrium(design.gain.into())),
-        Controller::LqrF => {
-            synthesis::lqr_flat(&FlatWeights::paper()).map(|design| Gain::FlatOutput(design.gain.into()))
-        }
-        Controller::LqrE => {
-            synthesis::lqr_equilibrium(&EquilibriumWeights::paper()).map(|design| Gain::Equilibrium(design.gain.into()))
-        }
-    };
-    gain.map_err(|error| match error {
-        DesignError::Inaccurate { equation, .. } => {
-            let remedy = "take a decay rate from 0.001 to 1000 1/s";
-            Failure::input(format!("--mu {mu}: {equation} was not solved to working precision; {remedy}"))
-        }
-        error => Failure::input(format!("--mu {mu}: {error}")),
-    })
-}
-
-/// The trajectory by name or from a file, as the pieces that the board flies; and the folder for the log.
-fn load(args: &Args) -> Result<PiecewisePolynomial, Failure> {
-    let trajectory = transformed(&args.trajectory, &args.transform)?;
-    args.out.as_deref().map_or(Ok(()), output::create_dir)?;
-    Ok(trajectory)
-}
-
-/// The same flown slower, backwards, elsewhere, turned or larger.
-pub(super) fn transformed(name: &str, args: &TransformArgs) -> Result<PiecewisePolynomial, Failure> {
-    let transform = args.transform()?;
-    transform.apply(&trajectory(name)?).map_err(|error| Failure::input(format!("{name}: {error}")))
-}
-
-/// A trajectory by name or from a file, as the pieces that the board flies.
-pub(super) fn trajectory(name: &str) -> Result<PiecewisePolynomial, Failure> {
-    let from_spline = |spline: &BSpline| {
-        PiecewisePolynomial::from_bspline(spline).map_err(|error| Failure::input(format!("{name}: {error}")))
-    };
-    let planned = |text: &str| {
-        let flight = super::plan::of_text(Path::new(name), text)?;
-        flight.pieces().map_err(|error| Failure::input(format!("{name}: {error}")))
-    };
-    match name {
-        "mild" => planned(plan::paper::MILD_TOML),
-        "aggressive" => planned(plan::paper::AGGRESSIVE_TOML),
-        path => match file::read(Path::new(path)).map_err(Failure::input)? {
-            TrajectoryFile::Pieces(pieces) => Ok(pieces),
-            TrajectoryFile::Spline(spline) => from_spline(&spline),
-            TrajectoryFile::Plan(text) => planned(&text),
-        },
-    }
-}
-
-fn feedback<'a>(args: &Args, gain: &'a Gain) -> Feedback<'a> {
-    let law = match (gain, args.error_form) {
-        (Gain::Equilibrium(gain), Form::Paper) => Law::EquilibriumPaper(gain),
-        (Gain::Equilibrium(gain), Form::Heading) => Law::EquilibriumHeading(gain),
-        (Gain::FlatOutput(gain), _) => Law::FlatOutput(gain),
-    };
-    Feedback { law, feed_forward: args.feed_forward }
-}
-
 impl Args {
     fn feed_forward(&self) -> FeedForward {
         if self.feed_forward { FeedForward::With } else { FeedForward::Without }
@@ -315,34 +160,6 @@ impl Args {
             Form::Paper => ErrorForm::Paper,
         }
     }
-}
-
-fn fly_core(
-    args: &Args,
-    gain: &Gain,
-    trajectory: &PiecewisePolynomial,
-    rate: Rate,
-    limits: Limits,
-) -> Result<Flight, Failure> {
-    let (feed_forward, error_form) = (args.feed_forward(), args.error_form());
-    let (equilibrium_gain, flat_gain);
-    let law: CoreLaw<'_> = match gain {
-        Gain::Equilibrium(gain) => {
-            equilibrium_gain = quatrack::law::EquilibriumGain::new(rounded(gain)).map_err(Failure::input)?;
-            Equilibrium { gain: &equilibrium_gain, error_form, feed_forward }.into()
-        }
-        Gain::FlatOutput(gain) => {
-            flat_gain = quatrack::law::FlatOutputGain::new(rounded(gain)).map_err(Failure::input)?;
-            FlatOutput { gain: &flat_gain, feed_forward }.into()
-        }
-    };
-    fly_law(args, law, trajectory, rate, limits)
-}
-
-/// Names the fault for which a board does not fly it; a start elsewhere is one way on.
-pub(super) fn not_on_board(name: &str, error: &OnBoardError) -> Failure {
-    let how = if matches!(error, OnBoardError::Coarse { .. }) { " by --start 0,0,0" } else { "" };
-    Failure::input(format!("{name}: {error}{how}"))
 }
 
 /// Flies a law of the core.
@@ -357,84 +174,4 @@ fn fly_law(
     let mut core = CoreLoop::new(&pieces, rate, law, limits)
         .map_err(|error| Failure::input(format!("{}: {error}", args.trajectory)))?;
     Ok(fly_sampled(&Exact(trajectory), rate.hz(), |tick, _, x| core.step(tick, x)))
-}
-
-fn fly_f64_sampled(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial, rate: Rate, limits: Limits) -> Flight {
-    let (reference, feedback) = (Exact(trajectory), feedback(args, gain));
-    fly_sampled(&reference, rate.hz(), |_, t_s, x| {
-        let input = feedback.input(x, &reference.at(t_s));
-        let (input, limited) =
-            core_loop::saturate(&input, &limits).ok_or_else(|| "the law has no finite command".to_owned())?;
-        Ok(HeldCommand { input, limited })
-    })
-}
-
-/// In continuous time nothing counts steps, so limits would go unreported: they are refused.
-fn fly_f64_continuous(
-    args: &Args,
-    gain: &Gain,
-    trajectory: &PiecewisePolynomial,
-    limits: &LimitsChoice,
-) -> Result<Flight, Failure> {
-    if limits.name != "none" {
-        return Err(Failure::input(format!(
-            "--limits {}: continuous time has no steps to limit; add --rate-hz",
-            limits.name
-        )));
-    }
-    let feedback = feedback(args, gain);
-    let solver = Solver::Fixed { method: Method::RungeKutta4, substeps: 2 };
-    Ok(fly_continuous(&Exact(trajectory), |x, target| feedback.input(x, target), solver))
-}
-
-fn report(args: &Args, flown: &DescribedFlight) -> Result<(), Failure> {
-    let DescribedFlight { law, clock, limits, duration_s, flight, reference } = flown;
-    // One sample is the start, before anything was flown.
-    let metrics = (flight.samples.len() > 1 || flight.lost.is_none()).then(|| Metrics::of(flight));
-    let feed = if args.feed_forward { ", feed-forward" } else { "" };
-    let trajectory = &args.trajectory;
-    output::print(&format!("{law} on {trajectory}, {duration_s:.2} s, {clock}{feed}, limits {limits}\n"))?;
-    if let Some(metrics) = &metrics {
-        output::print(&figures(metrics))?;
-    }
-    if let Some(reference) = reference {
-        output::print(&format!("  note: {reference}\n"))?;
-    }
-    if let Some(dir) = &args.out {
-        let path = dir.join("flight.csv");
-        output::write(&path, log::to_csv(flight).as_bytes())?;
-        output::print(&format!("wrote {}\n", path.display()))?;
-    }
-    let lost = flight.lost.as_ref().map(|lost| format!("{:.2} s: {}", lost.time_s, lost.reason));
-    if let Some(path) = &args.json {
-        let report = FlightReport { metrics, lost: lost.clone(), reference: reference.clone() };
-        output::write_json(path, &output::Named::new("fly-trajectory", &report))?;
-        output::print(&format!("wrote {}\n", path.display()))?;
-    }
-    lost.map_or(Ok(()), |lost| Err(Failure::lost(format!("{law} was lost at {lost}"))))
-}
-
-fn figures(metrics: &Metrics) -> String {
-    let iae = |v: Option<f64>| v.map_or_else(|| "none: the flight was lost".to_owned(), |v| format!("{v:.6} m s"));
-    format!(
-        "\x20 IAE, sum (23) times T_s   {}\n\
-         \x20 IAE, integral (22)        {}\n\
-         \x20 largest position error    {:.6} m\n\
-         \x20 RMS position error        {:.6} m\n\
-         \x20 lowest z                  {:.4} m at {:.2} s\n\
-         \x20 largest tilt              {:.2} deg\n\
-         \x20 peak thrust               {:.3} m/s^2\n\
-         \x20 peak body rate            {:.3} rad/s\n\
-         \x20 saturated steps           {}\n",
-        iae(metrics.iae_m_s),
-        iae(metrics.iae_integral_m_s),
-        metrics.max_error_m,
-        metrics.rms_error_m,
-        metrics.min_z_m,
-        metrics.min_z_time_s,
-        metrics.max_tilt_deg,
-        metrics.max_thrust_m_s2,
-        metrics.max_body_rate_rad_s,
-        metrics.saturated_steps,
-    )
 }

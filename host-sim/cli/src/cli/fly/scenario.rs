@@ -1,6 +1,6 @@
 //! The flight of a scenario: its law on its craft; figures, the log as CSV and a picture out.
 
-use std::path::Path;
+mod outputs;
 
 use quatrack_design::vehicle::Vehicle;
 use quatrack_plan::trajectory::on_board;
@@ -12,9 +12,10 @@ use quatrack_simulation::scenario::{Recording, Scenario};
 use quatrack_simulation::vehicles;
 use serde::Serialize;
 
-use super::{Args, NOTHING, Precision, not_on_board, picture, table, transformed};
+use super::{Args, NOTHING, Precision, not_on_board, table, transformed};
 use crate::cli::transform::TransformArgs;
 use crate::cli::{Failure, output};
+pub(in crate::cli) use outputs::Outputs;
 
 /// The schema that the figures' file states.
 const SCHEMA: &str = "quatrack/fly/1";
@@ -109,32 +110,6 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         mcap: args.mcap.as_deref(),
     };
     outputs.write(&scenario, figures, &recording)
-}
-
-/// The files of a flight.
-pub(in crate::cli) struct Outputs<'a> {
-    /// The log's folder, which is there.
-    pub(in crate::cli) dir: Option<&'a Path>,
-    /// The figures.
-    pub(in crate::cli) json: Option<&'a Path>,
-    /// The picture.
-    pub(in crate::cli) plot: Option<&'a Path>,
-    /// A log as a craft records it, CSV.
-    pub(in crate::cli) log: Option<&'a Path>,
-    /// The flight for Foxglove and PlotJuggler.
-    pub(in crate::cli) mcap: Option<&'a Path>,
-}
-
-/// A flight as an MCAP file, in a command that was built with it.
-#[cfg(feature = "mcap")]
-fn mcap_file(scenario: &Scenario, law: &str, recording: &Recording) -> Result<Vec<u8>, Failure> {
-    let half_arm_m = scenario.vehicle.motors().half_arm_m();
-    quatrack_campaign::mcap::file(recording, law, half_arm_m).map_err(Failure::verdict)
-}
-
-#[cfg(not(feature = "mcap"))]
-fn mcap_file(_: &Scenario, _: &str, _: &Recording) -> Result<Vec<u8>, Failure> {
-    Err(Failure::input("--mcap: this command was built without it; build it by cargo build --release --features mcap"))
 }
 
 /// The trajectory of a scenario whose course is one, looked at before it is flown.
@@ -232,40 +207,4 @@ fn text(scenario: &Scenario, figures: &Report) -> String {
         figures.saturated_steps,
         figures.lost.as_deref().unwrap_or("no"),
     )
-}
-
-impl Outputs<'_> {
-    /// Writes the files asked for; exit code 3 for a craft that was lost.
-    pub(in crate::cli) fn write(
-        &self,
-        scenario: &Scenario,
-        figures: Report,
-        recording: &Recording,
-    ) -> Result<(), Failure> {
-        if let Some(dir) = self.dir {
-            let path = dir.join("flight.csv");
-            output::write(&path, recording.to_csv().as_bytes())?;
-            output::print(&format!("wrote {}\n", path.display()))?;
-        }
-        if let Some(path) = self.log {
-            output::write(path, recording.to_log(scenario.vehicle.motors().thrust_max_n).as_bytes())?;
-            output::print(&format!("wrote {}\n", path.display()))?;
-        }
-        if let Some(path) = self.plot {
-            if recording.flight.samples.len() > 1 {
-                picture::write(path, &scenario.to_string(), &figures.law, recording)?;
-            } else {
-                output::print("no picture: the craft was lost before anything was measured\n")?;
-            }
-        }
-        if let Some(path) = self.mcap {
-            output::write(path, &mcap_file(scenario, &figures.law, recording)?)?;
-            output::print(&format!("wrote {}\n", path.display()))?;
-        }
-        if let Some(path) = self.json {
-            output::write_json(path, &figures)?;
-            output::print(&format!("wrote {}\n", path.display()))?;
-        }
-        figures.outcome()
-    }
 }
