@@ -126,6 +126,28 @@ fn a_flight_of_a_campaign_is_flown_again() {
 }
 
 #[test]
+fn a_flight_that_is_lost_before_it_is_measured_has_a_picture() {
+    let bench = Bench::new("campaign-early");
+    let [scenario, out, plot] = ["early.toml", "out", "early.svg"].map(|name| bench.path(name));
+    // With half of its weight for thrust at most it falls 5 m in the 2 s of hover before anything is measured.
+    let weak = "vehicle = \"crazyflie-2.1\"\ncourse = \"hover\"\nlaw = \"lee\"\n[errors]\nthrust_factor = 0.5\n[vary]\n\
+                errors.mass_factor = { uniform = [1.9, 2.0] }\n";
+    fs::write(&scenario, weak).unwrap();
+    flown(&["campaign", &scenario, "--runs", "1", "--out", &out]);
+    let replay = quatrack(&["campaign", "replay", &out, "--run", "0", "--plot", &plot]);
+    let (printed, said) = (String::from_utf8(replay.stdout).unwrap(), String::from_utf8(replay.stderr).unwrap());
+    assert_eq!(replay.status.code(), Some(3), "{said}");
+    assert!(printed.contains("early.svg") && !printed.contains("no picture"), "{printed}");
+    let svg = String::from_utf8(bench.bytes("early.svg")).unwrap();
+    // Flight, course and its shadow; 3 errors, 1 tilt, 4 thrusts with 2 limits.
+    assert_eq!(svg.matches("<polyline").count(), 3 + 3 + 1 + 4 + 2);
+    // Its row is the same flight: the eighth cell is when it was lost.
+    let rows = String::from_utf8(bench.bytes("out/rows.csv")).unwrap();
+    let lost_s: f64 = rows.lines().nth(1).unwrap().split(',').nth(7).unwrap().parse().unwrap();
+    assert!((0.5..2.0).contains(&lost_s) && said.contains(&format!("at {lost_s:.2} s")), "{said}{rows}");
+}
+
+#[test]
 fn a_lost_shard_is_named() {
     let bench = Bench::new("campaign-lost");
     let [scenario, out] = ["s.toml", "out"].map(|name| bench.path(name));

@@ -141,12 +141,12 @@ impl<'a> Flying<'a> {
         let measured = step >= self.measured_from;
         let (law_s_turn, row_s_turn) = (
             self.stride == self.law_steps || step.is_multiple_of(self.law_steps),
-            step.is_multiple_of(SAMPLE_STEPS) && measured,
+            step.is_multiple_of(SAMPLE_STEPS) && (measured || K::SEES_ALL),
         );
         // An estimate that nobody looks at is left out where that changes none after it.
-        if K::SEES_ESTIMATES || law_s_turn || self.draws {
+        if K::SEES_ALL || law_s_turn || self.draws {
             let known = &mut self.told.estimate;
-            let estimated = if K::SEES_ESTIMATES || self.feels {
+            let estimated = if K::SEES_ALL || self.feels {
                 let felt_m_s2 = plant.specific_force_m_s2();
                 self.estimation.estimate(plant.state(), Some(&felt_m_s2), known)
             } else {
@@ -172,6 +172,9 @@ impl<'a> Flying<'a> {
         }
         if row_s_turn {
             keep.row(time_s, plant, &self.commands_n, &self.track.target_m(step), &self.told.estimate);
+            if K::SEES_ALL && !measured {
+                keep.set_aside();
+            }
         }
         if self.draws {
             self.estimation.pass_over(self.stride - 1);

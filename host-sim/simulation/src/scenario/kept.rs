@@ -10,11 +10,14 @@ use crate::plant::Plant;
 
 /// Takes the rows of a flight.
 pub(super) trait Keep {
-    /// Whether estimates are part of the record.
-    const SEES_ESTIMATES: bool;
+    /// Whether estimates, and the rows before anything is measured, are part of the record.
+    const SEES_ALL: bool;
 
     /// One row.
     fn row(&mut self, time_s: f64, plant: &Plant, commands_n: &Vector4<f64>, target_m: &Vector3<f64>, known: &Estimate);
+
+    /// The last row is from before anything is measured.
+    fn set_aside(&mut self) {}
 }
 
 /// Everything.
@@ -22,10 +25,12 @@ pub(super) trait Keep {
 pub(super) struct Rows {
     pub(super) samples: Vec<RigidSample>,
     pub(super) around: Vec<Around>,
+    /// Those from before anything is measured.
+    pub(super) before: Vec<(RigidSample, Around)>,
 }
 
 impl Keep for Rows {
-    const SEES_ESTIMATES: bool = true;
+    const SEES_ALL: bool = true;
 
     fn row(
         &mut self,
@@ -38,6 +43,10 @@ impl Keep for Rows {
         self.around.push(Around::of(plant, *known));
         self.samples.push(RigidSample { time_s, state: *plant.state(), commands_n: *commands_n, target_m: *target_m });
     }
+
+    fn set_aside(&mut self) {
+        self.before.extend(self.samples.pop().zip(self.around.pop()));
+    }
 }
 
 /// Sums over the position errors of the rows, in the order in which they came.
@@ -48,7 +57,7 @@ pub(super) struct Errors {
 }
 
 impl Keep for Errors {
-    const SEES_ESTIMATES: bool = false;
+    const SEES_ALL: bool = false;
 
     fn row(&mut self, _: f64, plant: &Plant, _: &Vector4<f64>, target_m: &Vector3<f64>, _: &Estimate) {
         let error_m = (plant.state().position_m - target_m).norm();

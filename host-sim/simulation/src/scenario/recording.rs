@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use nalgebra::{UnitQuaternion, Vector3, Vector4};
 
 use crate::control_law::Estimate;
-use crate::flight::rigid_loop::RigidFlight;
+use crate::flight::rigid_loop::{RigidFlight, RigidSample};
 use crate::plant::Plant;
 
 /// Surroundings of a craft and its law's estimate, as a row was taken.
@@ -43,6 +43,8 @@ pub struct Recording {
     /// Root mean square of the turbulence that came of the flight's gusts, along the mean wind, across it and upwards, m/s;
     /// absent without gusts.
     pub gust_rms_m_s: Option<Vector3<f64>>,
+    /// Of a flight that was lost before anything was measured, the rows from its start until then; of any other none.
+    pub before: Vec<(RigidSample, Around)>,
 }
 
 /// Names of position, velocity, attitude and body rates.
@@ -50,6 +52,12 @@ const STATE: [&str; 13] =
     ["x_m", "y_m", "z_m", "v_x_m_s", "v_y_m_s", "v_z_m_s", "q_w", "q_x", "q_y", "q_z", "p_rad_s", "q_rad_s", "r_rad_s"];
 
 impl Recording {
+    /// The rows that a picture shows: those that were measured, or all until the craft was lost where nothing was.
+    pub fn shown(&self) -> Vec<(RigidSample, Around)> {
+        let measured = self.flight.samples.iter().copied().zip(self.around.iter().copied());
+        self.before.iter().copied().chain(measured).collect()
+    }
+
     /// As CSV: time, where the craft was to be (`ref_...`), where it was, its law's estimate (`est_...`), commands and
     /// thrusts of the motors with the thrusts' limits, and the wind.
     pub fn to_csv(&self) -> String {

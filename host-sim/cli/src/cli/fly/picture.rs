@@ -1,19 +1,20 @@
-//! A recorded flight in; its path, errors, tilt, motor forces with their limits, and wind where some blows, as a picture out.
+//! Rows of a flight in; its path, errors, tilt, motor forces with their limits, and wind where some blows, as a picture out.
 
 use std::path::Path;
 
 use nalgebra::Vector3;
 use quatrack_cli::figures::{Curve, FlightFigure, Quantity, Trace, TrackingFigure};
 use quatrack_simulation::flight::rigid_loop::RigidSample;
-use quatrack_simulation::scenario::{Around, Recording};
+use quatrack_simulation::scenario::Around;
 
 use crate::cli::{Failure, output};
 
 /// Writes it, .svg or .png.
-pub(super) fn write(path: &Path, title: &str, law: &str, recording: &Recording) -> Result<(), Failure> {
-    let samples = &recording.flight.samples;
-    let of = |value: &dyn Fn(&RigidSample) -> f64| -> Vec<f64> { samples.iter().map(value).collect() };
-    let around = |value: &dyn Fn(&Around) -> f64| -> Vec<f64> { recording.around.iter().map(value).collect() };
+pub(super) fn write(path: &Path, title: &str, law: &str, rows: &[(RigidSample, Around)]) -> Result<(), Failure> {
+    let of =
+        |value: &dyn Fn(&RigidSample) -> f64| -> Vec<f64> { rows.iter().map(|(sample, _)| value(sample)).collect() };
+    let around =
+        |value: &dyn Fn(&Around) -> f64| -> Vec<f64> { rows.iter().map(|(_, around)| value(around)).collect() };
     let line = |label, values| Trace { label, values, limit: false };
     let axes = ["x", "y", "z"];
     let motors = ["motor 1", "motor 2", "motor 3", "motor 4"];
@@ -34,7 +35,7 @@ pub(super) fn write(path: &Path, title: &str, law: &str, recording: &Recording) 
         },
     ];
     // Still air needs no panel.
-    if recording.around.iter().any(|around| around.wind_m_s != Vector3::zeros()) {
+    if rows.iter().any(|(_, around)| around.wind_m_s != Vector3::zeros()) {
         quantities.push(Quantity {
             name: "wind (m/s)",
             shortest: 0.1,
@@ -43,8 +44,8 @@ pub(super) fn write(path: &Path, title: &str, law: &str, recording: &Recording) 
     }
     let time_s = of(&|sample| sample.time_s);
     let [places, targets]: [Vec<Vector3<f64>>; 2] = [
-        samples.iter().map(|sample| sample.state.position_m).collect(),
-        samples.iter().map(|sample| sample.target_m).collect(),
+        rows.iter().map(|(sample, _)| sample.state.position_m).collect(),
+        rows.iter().map(|(sample, _)| sample.target_m).collect(),
     ];
     let tracking = TrackingFigure {
         title,

@@ -56,7 +56,10 @@ impl Scenario {
         flying.fly(&mut plant, &mut rows);
         let (saturated_steps, lost) = (flying.saturated_steps, flying.lost);
         let flight = RigidFlight { samples: rows.samples, saturated_steps, lost };
-        Ok(Recording { flight, around: rows.around, gust_rms_m_s: plant.realised_gust_rms_m_s() })
+        // The row of its loss says nothing alone.
+        let is_early = flight.lost.is_some() && flight.samples.len() <= 1;
+        let before = if is_early { rows.before } else { Vec::new() };
+        Ok(Recording { flight, around: rows.around, gust_rms_m_s: plant.realised_gust_rms_m_s(), before })
     }
 
     /// The craft at the start of a course, and where its law's estimate comes from.

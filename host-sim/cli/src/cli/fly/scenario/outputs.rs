@@ -52,10 +52,11 @@ impl Outputs<'_> {
             output::print(&format!("wrote {}\n", path.display()))?;
         }
         if let Some(path) = self.plot {
-            if recording.flight.samples.len() > 1 {
-                picture::write(path, &scenario.to_string(), &figures.law, recording)?;
+            let rows = recording.shown();
+            if rows.len() > 1 {
+                picture::write(path, &scenario.to_string(), &figures.law, &rows)?;
             } else {
-                output::print("no picture: the craft was lost before anything was measured\n")?;
+                output::print("no picture: the craft was lost at its start\n")?;
             }
         }
         if let Some(path) = self.mcap {
