@@ -17,12 +17,25 @@ impl Campaign {
     /// # Errors
     /// [`CampaignError`], also for a distribution that reaches beyond a scenario's range.
     pub fn read(path: &Path, asked: &Asked, trajectories: Trajectories<'_>) -> Result<Self, CampaignError> {
-        let origin = path.display().to_string();
         let text =
             bounded::read_to_string(path).map_err(|error| CampaignError::file(path, "cannot be read", &error))?;
+        Self::of_text(&text, path, asked, trajectories)
+    }
+
+    /// The same from the text of such a file; the path says where it lies.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn of_text(
+        text: &str,
+        path: &Path,
+        asked: &Asked,
+        trajectories: Trajectories<'_>,
+    ) -> Result<Self, CampaignError> {
+        let origin = path.display().to_string();
         // For its line numbers.
-        let file = ScenarioFile::parse(&text, &origin)?;
-        let mut whole: Table = toml::from_str(&text).map_err(|error| CampaignError::Vary {
+        let file = ScenarioFile::parse(text, &origin)?;
+        let mut whole: Table = toml::from_str(text).map_err(|error| CampaignError::Vary {
             origin: origin.clone(),
             key: String::new(),
             reason: error.message().to_owned(),

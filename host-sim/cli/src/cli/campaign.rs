@@ -11,6 +11,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use quatrack_campaign::definition::Asked;
 use quatrack_campaign::{Campaign, CampaignError, Folder, Shard, fly};
+use quatrack_plan::bounded;
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::scenario::Law;
@@ -85,11 +86,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Refuses a course that is a slip of the keyboard before anything is made of it.
-fn existing_course_of(path: &Path) -> Result<(), Failure> {
-    let file = ScenarioFile::read(path).map_err(Failure::input)?;
+fn existing_course_of(text: &str, path: &Path) -> Result<(), Failure> {
+    let origin = path.display().to_string();
+    let file = ScenarioFile::parse(text, &origin).map_err(Failure::input)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let written = file.course.as_deref().unwrap_or("eight");
-    existing_course(&path.display().to_string(), written, &folder.join(written))
+    existing_course(&origin, written, &folder.join(written))
 }
 
 fn fly_all(args: &Args, scenario: &Path, runs: u64) -> Result<(), Failure> {
@@ -97,8 +99,11 @@ fn fly_all(args: &Args, scenario: &Path, runs: u64) -> Result<(), Failure> {
         return Err(Failure::input("--runs and --threads: must be at least 1"));
     }
     let asked = Asked { seed: args.seed, laws: args.laws.clone() };
-    existing_course_of(scenario)?;
-    let campaign = Campaign::read(scenario, &asked, &trajectories).map_err(refused)?;
+    // Read once: a pipe has its text once.
+    let text = bounded::read_to_string(scenario)
+        .map_err(|error| Failure::input(format!("{}: cannot be read ({error})", scenario.display())))?;
+    existing_course_of(&text, scenario)?;
+    let campaign = Campaign::of_text(&text, scenario, &asked, &trajectories).map_err(refused)?;
     if let (Some(trajectory), Ok(nominal)) = (campaign.trajectory(), campaign.nominal())
         && let Some(note) = reference_note(&nominal.vehicle, trajectory)?
     {

@@ -147,6 +147,22 @@ fn a_flight_that_is_lost_before_it_is_measured_has_a_picture() {
     assert!((0.5..2.0).contains(&lost_s) && said.contains(&format!("at {lost_s:.2} s")), "{said}{rows}");
 }
 
+#[cfg(unix)]
+#[test]
+fn a_scenario_is_read_once() {
+    use std::io::Write as _;
+    use std::process::Stdio;
+    let bench = Bench::new("campaign-pipe");
+    let arguments = ["campaign", "/dev/stdin", "--runs", "1", "--out", &bench.path("out")];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_quatrack"));
+    let mut flying = command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::null()).spawn().unwrap();
+    flying.stdin.take().unwrap().write_all(SCENARIO.as_bytes()).unwrap();
+    assert!(flying.wait().unwrap().success());
+    let [scenario, out] = ["s.toml", "again"].map(|name| bench.path(name));
+    flown(&["campaign", &scenario, "--runs", "1", "--out", &out]);
+    assert_eq!(bench.bytes("out/rows.csv"), bench.bytes("again/rows.csv"));
+}
+
 #[test]
 fn a_lost_shard_is_named() {
     let bench = Bench::new("campaign-lost");
