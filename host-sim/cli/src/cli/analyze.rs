@@ -2,8 +2,6 @@
 
 mod text;
 
-use std::path::PathBuf;
-
 use nalgebra::DMatrix;
 use quatrack_design::analysis::{
     Claim, JordanStructure, ModelAnalysis, NumericalRank, PbhTest, SectionThree, UncontrollableMode,
@@ -23,7 +21,7 @@ use text::text;
 pub(crate) struct Args {
     /// Also write everything to this file as JSON
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
 }
 
 /// Runs the command.

@@ -34,10 +34,10 @@ pub(crate) struct Args {
     gains: Option<PathBuf>,
     /// Write the table as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
     /// Write a picture of the first four laws, .svg or .png.
     #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
+    picture: Option<output::File>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {

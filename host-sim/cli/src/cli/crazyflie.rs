@@ -1,7 +1,5 @@
 //! `quatrack crazyflie`: the controller as the Crazyflie's firmware calls it, flown and counted.
 
-use std::path::PathBuf;
-
 use quatrack_cli::pil::crazyflie::count;
 use quatrack_cli::pil::image;
 use quatrack_simulation::crazyflie::{CrazyflieReport, knows};
@@ -30,7 +28,7 @@ pub(crate) struct Args {
     count: bool,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {

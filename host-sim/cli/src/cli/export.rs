@@ -1,6 +1,6 @@
 //! `quatrack export`: a design in; its matrices for other tools out, as JSON or CSV.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use clap::ValueEnum;
 use quatrack_simulation::gains::{Design, Export};
@@ -24,7 +24,7 @@ pub(crate) struct Args {
     format: Format,
     /// Write to this file instead of standard output.
     #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    out: Option<output::File>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -1,7 +1,6 @@
 //! `quatrack faults`: every kind of fault on three crafts in; the end of each flight, in one table, out.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 use quatrack_cli::pil::emulated::{self, Equipment, Transport};
 use quatrack_cli::pil::interrupt::Interrupt;
@@ -34,7 +33,7 @@ pub(crate) struct Args {
     emulator: bool,
     /// Write the table as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
 }
 
 #[derive(Serialize)]

@@ -18,10 +18,10 @@ use quatrack_simulation::flight::closed_loop::{Flight, fly_sampled};
 use quatrack_simulation::flight::core_loop::CoreLoop;
 use quatrack_simulation::flight::reference::Exact;
 
-use super::Failure;
 use super::limits::LimitsChoice;
 use super::scenario::ScenarioArgs;
 use super::transform::TransformArgs;
+use super::{Failure, output};
 use course::load;
 pub(super) use course::{not_on_board, trajectory, transformed};
 use paper::{Controller, fly_paper};
@@ -87,16 +87,16 @@ pub(crate) struct Args {
     out: Option<PathBuf>,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
     /// Of a scenario: write a picture of the flight, its errors, tilt, motor forces and wind, .svg or .png.
     #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
+    plot: Option<output::File>,
     /// Of a scenario: write a log as a craft records it, which `quatrack identify` reads (CSV, the columns of cflib).
     #[arg(long, value_name = "FILE")]
-    log: Option<PathBuf>,
+    log: Option<output::File>,
     /// Of a scenario: write the flight for Foxglove and PlotJuggler, .mcap. Needs a command built with --features mcap.
     #[arg(long, value_name = "FILE")]
-    mcap: Option<PathBuf>,
+    mcap: Option<output::File>,
     #[command(flatten)]
     transform: TransformArgs,
     #[command(flatten)]

@@ -13,7 +13,7 @@ use clap::Subcommand;
 use quatrack_plan::bounded;
 use quatrack_simulation::gains::GainsError;
 
-use super::Failure;
+use super::{Failure, output};
 use check::{check, generate};
 use design::{certified, craft, design, figures};
 use list::list;
@@ -45,7 +45,7 @@ enum Command {
         out: Option<PathBuf>,
         /// Write the figures that a design can ask for, as JSON.
         #[arg(long, value_name = "FILE")]
-        json: Option<PathBuf>,
+        json: Option<output::File>,
     },
     /// Writes every generated file that differs from its design's output: the tables of a folder and, in a checkout, the
     /// sources made of them: core/src/gains/paper.rs and cascade.rs, crazyflie/src/builtin/paper_limits.rs, plans/*.rs.
@@ -66,7 +66,7 @@ enum Command {
         paths: Vec<PathBuf>,
         /// Write the differences, as JSON.
         #[arg(long, value_name = "FILE")]
-        json: Option<PathBuf>,
+        json: Option<output::File>,
     },
     /// Prints a table and its certificate.
     Show {
@@ -75,7 +75,7 @@ enum Command {
         file: PathBuf,
         /// Write all of it as JSON.
         #[arg(long, value_name = "FILE")]
-        json: Option<PathBuf>,
+        json: Option<output::File>,
         /// Of a design of the cascade: draw loop gain, sensitivity with the disk margin, and steps into a folder, as SVG and
         /// PNG.
         #[arg(long, value_name = "DIR")]
@@ -92,7 +92,7 @@ enum Command {
         /// The header to write; with the ending .bin a file that crazyflie/tools/upload.py sends to a craft
         /// [default: quatrack_craft.h]
         #[arg(long, value_name = "FILE", default_value = "quatrack_craft.h", hide_default_value = true)]
-        out: PathBuf,
+        out: output::File,
     },
     /// Signs tables, for boards that take signed ones alone: NAME.bin becomes NAME.signed.bin.
     Sign {
@@ -113,7 +113,7 @@ enum Command {
         folder: Option<PathBuf>,
         /// Write the list as JSON.
         #[arg(long, value_name = "FILE")]
-        json: Option<PathBuf>,
+        json: Option<output::File>,
     },
 }
 

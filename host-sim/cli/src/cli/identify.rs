@@ -41,13 +41,13 @@ pub(crate) struct Args {
     vehicle: Option<VehicleChoice>,
     /// Write the figures as a vehicle file, with intervals and sources.
     #[arg(long, value_name = "VEHICLE.toml")]
-    out: Option<PathBuf>,
+    out: Option<output::File>,
     /// Folder for pictures, created where it is missing: prediction against flight, residuals, lag curve.
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {

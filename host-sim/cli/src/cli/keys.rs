@@ -34,7 +34,7 @@ enum Command {
         image: PathBuf,
         /// The image to write. A reader of it has the keys.
         #[arg(long, value_name = "FILE")]
-        out: PathBuf,
+        out: output::File,
         /// The file of the link's key.
         #[arg(long, value_name = "FILE")]
         link: Option<PathBuf>,

@@ -29,7 +29,7 @@ pub(crate) struct Args {
     out: Option<PathBuf>,
     /// Write the figures of every flight as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
 }
 
 #[derive(Serialize)]

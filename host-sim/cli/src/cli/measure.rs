@@ -24,7 +24,7 @@ pub(crate) struct Args {
     image: Option<PathBuf>,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {

@@ -101,7 +101,6 @@ pub(crate) fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(error) => return output::argument_error(&error),
     };
-    output::take_for_file(std::env::args_os().skip(1));
     let outcome: Result<(), Failure> = match &arguments.command {
         Command::Analyze(args) => analyze::run(args),
         Command::Campaign(args) => campaign::run(args),

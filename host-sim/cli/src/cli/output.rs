@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::fs;
 use std::io::{self, Write as _};
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -21,10 +22,27 @@ pub(crate) fn argument_error(error: &clap::Error) -> ExitCode {
 /// Whether a file goes to standard output.
 static IS_TAKEN: AtomicBool = AtomicBool::new(false);
 
-/// Standard output is that file alone where an argument names `-` as the place of one: what is printed beside it goes to standard error.
-pub(crate) fn take_for_file(arguments: impl IntoIterator<Item = OsString>) {
-    let names = |argument: OsString| argument == "-" || argument.to_string_lossy().ends_with("=-");
-    IS_TAKEN.store(arguments.into_iter().any(names), Relaxed);
+/// A file to write, as an argument names it. `-` is standard output, which then is that file alone: what is printed beside
+/// it goes to standard error.
+#[derive(Clone, Debug)]
+pub(crate) struct File(PathBuf);
+
+impl From<OsString> for File {
+    /// Of a command's arguments: no other argument takes standard output, so that `-` elsewhere means what it does there.
+    fn from(name: OsString) -> Self {
+        if name == "-" {
+            IS_TAKEN.store(true, Relaxed);
+        }
+        Self(name.into())
+    }
+}
+
+impl Deref for File {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.0
+    }
 }
 
 /// Prints a text as it is. A reader that has seen enough and closed the pipe is no failure.

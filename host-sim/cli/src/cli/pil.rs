@@ -53,7 +53,7 @@ pub(crate) struct Args {
     flash: Option<PathBuf>,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

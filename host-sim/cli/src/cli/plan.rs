@@ -36,16 +36,16 @@ pub(crate) struct Args {
     plan: PathBuf,
     /// Write degree, duration and control points as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
     /// Write degree, duration and control points as TOML.
     #[arg(long, value_name = "FILE")]
-    toml: Option<PathBuf>,
+    toml: Option<output::File>,
     /// Write the pieces in the uav_trajectories form.
     #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
+    csv: Option<output::File>,
     /// Write the pieces that a board stores, as a Rust constant with the name of the plan file.
     #[arg(long, value_name = "FILE")]
-    rust: Option<PathBuf>,
+    rust: Option<output::File>,
     /// End the search after this time, s.
     #[arg(long, value_name = "X", default_value_t = TIME_LIMIT_S, allow_negative_numbers = true)]
     time_limit_s: f64,

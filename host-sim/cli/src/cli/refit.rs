@@ -3,7 +3,6 @@
 mod report;
 
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
 
 use clap::builder::RangedU64ValueParser;
 use quatrack::law::EquilibriumGain;
@@ -60,10 +59,10 @@ pub(crate) struct Args {
     tolerance_m: Option<f64>,
     /// Write the pieces as they are stored, in the uav_trajectories form that Bitcraze's tools read.
     #[arg(long, value_name = "FILE")]
-    csv: Option<PathBuf>,
+    csv: Option<output::File>,
     /// Write the pieces in Bitcraze's compressed form: control points of 1 mm and 0.1 degrees, in 2 bytes each.
     #[arg(long, value_name = "FILE")]
-    compressed: Option<PathBuf>,
+    compressed: Option<output::File>,
     /// Limits that the reference is compared with: those of a vehicle, none, or THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2
     /// and rad/s.
     #[arg(long, value_name = "V", allow_hyphen_values = true, default_value = "crazyflie-2.1")]
@@ -72,7 +71,7 @@ pub(crate) struct Args {
     transform: TransformArgs,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
 }
 
 fn pieces_parser() -> RangedU64ValueParser<usize> {

@@ -1,6 +1,6 @@
 //! `quatrack report`: a campaign's folder in; one HTML page that needs nothing else out.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use quatrack_campaign::report::{Paper, page};
 use quatrack_campaign::summary::View;
@@ -22,7 +22,7 @@ pub(crate) struct Args {
     folder: PathBuf,
     /// The page; report.html in the folder where absent.
     #[arg(long, value_name = "FILE")]
-    out: Option<PathBuf>,
+    out: Option<output::File>,
     /// A flight succeeds with at most this position error, m; by default whenever it is not lost.
     #[arg(long, value_name = "X")]
     within_m: Option<f64>,
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let paper = if args.without_paper { None } else { Some(reproduced()?) };
     let view = View { within_m: args.within_m, worst: args.worst };
     let html = page(&folder, &campaign, &view, paper.as_ref()).map_err(refused)?;
-    let path = args.out.clone().unwrap_or_else(|| args.folder.join("report.html"));
+    let path = args.out.as_deref().map_or_else(|| args.folder.join("report.html"), Path::to_path_buf);
     output::write(&path, html.as_bytes())?;
     output::print(&format!("wrote {}: {} kB, open it in a browser\n", path.display(), html.len() / 1000))
 }

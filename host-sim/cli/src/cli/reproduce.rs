@@ -30,7 +30,7 @@ pub(crate) struct Args {
     /// feed_forward} in m s, and min_z of the flights at mu = 1 in m; with --beyond also beyond.{mild,aggressive}.METHOD.HZ.
     /// {feedback, feed_forward, half_period_ahead} in m s.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
     /// Go past the paper as well: sampled LQR, LQI and time-varying LQR beside the paper's designs, flown by the f32 core at
     /// 25, 100 and 500 Hz with feedback alone ("feedback"), with the reference's input fed forward ("+ input"), and with the
     /// input of half a period later ("+ ahead"), which is that of the middle of the time a command is held.

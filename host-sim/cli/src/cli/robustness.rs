@@ -3,7 +3,6 @@
 mod scenario;
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 use quatrack_simulation::flight::robustness::{self, CASES, RobustnessReport, Row};
 use serde::Serialize;
@@ -24,7 +23,7 @@ pub(crate) struct Args {
     scenario: ScenarioArgs,
     /// Write the table as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
 }
 
 #[derive(Serialize)]

@@ -236,6 +236,12 @@ fn standard_output_is_the_json_alone_where_it_is_written_there() {
     assert_eq!(figures["schema"], "quatrack/fly/1");
     let said = String::from_utf8(flown.stderr).unwrap();
     assert!(flown.status.success() && said.contains("largest position error") && said.contains("wrote -"), "{said}");
+    // A folder of that name is a folder.
+    let (folder, path) = scenario("fly-dash", "vehicle = \"crazyflie-2.1\"\ncourse = \"hover\"\nduration_s = 0.2\n");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_quatrack"));
+    let flown = command.args(["fly", "--scenario", &path, "--out", "-"]).current_dir(&folder).output().unwrap();
+    let printed = String::from_utf8(flown.stdout).unwrap();
+    assert!(printed.contains("largest position error") && folder.join("-/flight.csv").is_file(), "{printed}");
 }
 
 /// Two pieces of 1 s along x, by their coefficients.

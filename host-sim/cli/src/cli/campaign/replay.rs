@@ -27,17 +27,17 @@ pub(super) struct Args {
     out: Option<PathBuf>,
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
     /// Write a picture of the flight, .svg or .png.
     #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
+    plot: Option<output::File>,
     /// Write the flight for Foxglove and PlotJuggler, .mcap. Needs a command built with --features mcap.
     #[arg(long, value_name = "FILE")]
-    mcap: Option<PathBuf>,
+    mcap: Option<output::File>,
     /// Write the run's scenario, with every figure as it was drawn, for `fly --scenario` and others. It names files beside it
     /// as the campaign's folder has them.
     #[arg(long, value_name = "FILE")]
-    scenario_out: Option<PathBuf>,
+    scenario_out: Option<output::File>,
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {

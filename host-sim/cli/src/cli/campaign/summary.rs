@@ -24,10 +24,10 @@ pub(super) struct Args {
     worst: usize,
     /// Write a picture of the share of successes over each drawn figure, .svg.
     #[arg(long, value_name = "FILE")]
-    picture: Option<PathBuf>,
+    picture: Option<output::File>,
     /// Write all of it as JSON.
     #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    json: Option<output::File>,
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
