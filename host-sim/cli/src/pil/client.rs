@@ -1,10 +1,12 @@
 //! A board behind its line: requests and states in; answers and commands out, or why there are none.
 
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+mod connection;
+
+use std::time::{Duration, Instant};
 
 use quatrack::link::{
-    CommandOut, FRAME_BYTES, FaultReport, ForcesOut, FromBoard, HostSession, Identity, Key, Nonce, Parameter,
-    Protection, Refusal, RigidStateIn, StateIn, Telemetry, ToBoard,
+    CommandOut, FRAME_BYTES, FaultReport, ForcesOut, FromBoard, HostSession, Identity, Key, Parameter, RigidStateIn,
+    StateIn, Telemetry, ToBoard,
 };
 use quatrack::{RigidState, State};
 
@@ -35,57 +37,6 @@ pub struct Client {
 }
 
 impl Client {
-    /// Opens a session, with the board's key where it has one. The emulator, where there is one, lives as long as the connection.
-    ///
-    /// # Errors
-    /// [`PilError::Silent`] where nobody answers in the protocol's version, or with this key; [`PilError::Refused`] where the
-    /// board has a key and none is given.
-    pub fn connect(
-        line: Line,
-        emulator: Option<Emulator>,
-        key: Option<Key>,
-        interrupt: Interrupt,
-    ) -> Result<Self, PilError> {
-        // Later than any session before it, as the board wants it.
-        let session = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs() as u32;
-        Self::open(session, line, emulator, key, interrupt)
-    }
-
-    fn open(
-        number: u32,
-        line: Line,
-        emulator: Option<Emulator>,
-        key: Option<Key>,
-        interrupt: Interrupt,
-    ) -> Result<Self, PilError> {
-        let session = match key.clone() {
-            Some(key) => HostSession::keyed(number, key, nonce()?),
-            None => HostSession::new(number),
-        };
-        let mut client =
-            Self { line, emulator, interrupt, session, key, received: Vec::new(), identity: NOBODY, fault: None };
-        // Ends any noise before it.
-        client.line.send(&[quatrack::link::DELIMITER])?;
-        let hello = client.session.hello();
-        let answer = client.exchange(&hello, "the board does not say hello", |answer, _| match answer {
-            FromBoard::Hello(identity) => Some(Ok(*identity)),
-            FromBoard::Nack { reason: reason @ (Refusal::Key | Refusal::NoNonce), .. } => Some(Err(*reason)),
-            _ => None,
-        })?;
-        client.identity = answer
-            .map_err(|reason| PilError::Refused { request: "the hello".to_owned(), reason: reason.to_string() })?;
-        Ok(client)
-    }
-
-    /// Opens a new session with the same board, which may have restarted.
-    ///
-    /// # Errors
-    /// As [`Client::connect`].
-    pub fn reconnect(self) -> Result<Self, PilError> {
-        let number = self.session.session().wrapping_add(1);
-        Self::open(number, self.line, self.emulator, self.key, self.interrupt)
-    }
-
     /// The identity of the board that answered.
     pub fn identity(&self) -> &Identity {
         &self.identity
@@ -242,23 +193,4 @@ impl Client {
         let frame = self.session.encode(message, &mut buffer).map_err(|error| PilError::Answer(error.to_string()))?;
         self.line.send(frame)
     }
-}
-
-/// The identity of a board that has not answered yet.
-const NOBODY: Identity = Identity {
-    firmware: quatrack::link::Version { major: 0, minor: 0, patch: 0 },
-    control_image: 0,
-    tick_rate_hz: 0,
-    decimation: 0,
-    trajectory_pieces: 0,
-    protection: Protection::CableOnly,
-    signed_tables: false,
-    nonce: Nonce::NONE,
-};
-
-/// Sixteen bytes of the system's random numbers.
-fn nonce() -> Result<Nonce, PilError> {
-    let mut bytes = [0; 16];
-    getrandom::fill(&mut bytes).map_err(|error| PilError::io("taking random numbers")(error.into()))?;
-    Ok(Nonce(bytes))
 }
