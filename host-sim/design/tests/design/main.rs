@@ -4,6 +4,7 @@ mod analysis_section_three;
 mod analysis_structure;
 mod carex;
 mod certify;
+mod certify_gains;
 mod far_apart;
 mod lyapunov;
 mod paper;

@@ -16,4 +16,5 @@ mod robustness;
 mod sampled_along;
 mod scenario_files;
 mod trajectory_refit;
+mod trajectory_stored;
 mod vehicle;
