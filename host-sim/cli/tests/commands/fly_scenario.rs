@@ -4,11 +4,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-fn quatrack(arguments: &[&str]) -> Output {
+pub(crate) fn quatrack(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_quatrack")).args(arguments).output().expect("the command starts")
 }
 
-fn scenario(name: &str, text: &str) -> (PathBuf, String) {
+pub(crate) fn scenario(name: &str, text: &str) -> (PathBuf, String) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
@@ -111,7 +111,7 @@ fn a_lost_craft_is_said_with_exit_code_3() {
 }
 
 /// Lines of a message; the parser of arguments lists missing ones below it, and a way to help.
-fn message(said: &str) -> usize {
+pub(crate) fn message(said: &str) -> usize {
     let lines = said.split("\n\n").next().unwrap_or_default().lines();
     lines.filter(|line| !line.starts_with("  --")).count()
 }
@@ -242,90 +242,6 @@ fn standard_output_is_the_json_alone_where_it_is_written_there() {
     let flown = command.args(["fly", "--scenario", &path, "--out", "-"]).current_dir(&folder).output().unwrap();
     let printed = String::from_utf8(flown.stdout).unwrap();
     assert!(printed.contains("largest position error") && folder.join("-/flight.csv").is_file(), "{printed}");
-}
-
-/// Two pieces of 1 s along x, by their coefficients.
-fn pieces(folder: &Path, name: &str, [a, b]: [[f64; 3]; 2]) -> String {
-    let axis = |c: &str| (0..8).map(|power| format!("{c}^{power}")).collect::<Vec<_>>().join(",");
-    let row = |[p, v, half_a]: [f64; 3]| format!("1.0,{p},{v},{half_a}{}\n", ",0".repeat(29));
-    let header = format!("duration,{},{},{},{}\n", axis("x"), axis("y"), axis("z"), axis("yaw"));
-    let path = folder.join(name);
-    fs::write(&path, format!("{header}{}{}", row(a), row(b))).unwrap();
-    path.to_str().unwrap().to_owned()
-}
-
-#[test]
-fn a_course_of_ones_own_is_looked_at_before_it_is_flown() {
-    let (folder, _) = scenario("fly-course", "");
-    // 1 m/s from its start; 0.5 m/s more from 1 s on.
-    let jumping = pieces(&folder, "jumping.csv", [[0.0, 1.0, 0.0], [1.0, 1.5, 0.0]]);
-    let found =
-        "note: the reference itself starts in motion, at 1.00 m/s, jumps by 0.500 m/s behind piece 1, at 1.00 s";
-    let on_course = ["--vehicle", "crazyflie-2.1", "--course", &jumping];
-    for command in [&["fly"][..], &["compare", "--laws", "quatrack"], &["robustness", "--law", "quatrack"]] {
-        let flown = quatrack(&[command, &on_course].concat());
-        let printed = String::from_utf8(flown.stdout).unwrap();
-        assert!(flown.status.success() && printed.contains(found), "{command:?}: {printed}");
-    }
-    let flown = quatrack(&[&["fly", "--json", "-"], &on_course[..]].concat());
-    let figures: serde_json::Value = serde_json::from_slice(&flown.stdout).unwrap();
-    assert_eq!(format!("note: {}", figures["reference"].as_str().unwrap()), found);
-
-    // 50 km away numbers of 32 bits are 1/256 m apart: 0.45 of that is lost of the start and of the way, and their sum is not.
-    let far = pieces(&folder, "far.csv", [[50_000.001_758, 0.302_539, 0.0], [50_000.304_297, 0.302_539, 0.0]]);
-    let refused = quatrack(&["fly", "--vehicle", "crazyflie-2.1", "--course", &far]);
-    let said = String::from_utf8(refused.stderr).unwrap();
-    assert!(
-        refused.status.code() == Some(2) && said.contains("far.csv: x is 50000 m") && said.contains("--start 0,0,0"),
-        "{said}"
-    );
-}
-
-#[test]
-fn a_slip_in_the_name_of_a_course_is_named_with_its_file_and_the_courses() {
-    let (folder, path) = scenario("fly-slip", "vehicle = \"crazyflie-2.1\"\ncourse = \"eigth\"\n");
-    let out = folder.join("out").to_str().unwrap().to_owned();
-    let campaign = ["campaign", &path, "--runs", "2", "--out", &out];
-    for arguments in [&["fly", "--scenario", &path][..], &["compare", "--scenario", &path], &campaign] {
-        let refused = quatrack(arguments);
-        let said = String::from_utf8(refused.stderr).unwrap();
-        let named =
-            ["scenario.toml: course = \"eigth\"", "eight, hover, step, mild, aggressive", "did you mean eight?"];
-        assert_eq!((refused.status.code(), message(&said)), (Some(2), 1), "{arguments:?}: {said}");
-        assert!(named.iter().all(|name| said.contains(name)), "{arguments:?}: {said}");
-    }
-    let refused = quatrack(&["fly", "--vehicle", "crazyflie-2.1", "--course", "agressive"]);
-    let said = String::from_utf8(refused.stderr).unwrap();
-    assert!(said.contains("flags: course = \"agressive\"") && said.contains("did you mean aggressive?"), "{said}");
-}
-
-#[cfg(unix)]
-#[test]
-fn devices_without_an_end_are_refused_by_every_reader() {
-    let folder = scenario("fly-endless", "").0;
-    let link = |name: &str| {
-        let path = folder.join(name);
-        std::os::unix::fs::symlink("/dev/zero", &path).unwrap();
-        path.to_str().unwrap().to_owned()
-    };
-    let [toml, table] = ["zero.toml", "zero.bin"].map(link);
-    let out = folder.join("out").to_str().unwrap().to_owned();
-    for arguments in [
-        &["fly", "--scenario", "/dev/zero"][..],
-        &["fly", "--vehicle", &toml],
-        &["fly", "--gains", &table, "--vehicle", "crazyflie-2.1"],
-        &["campaign", &toml, "--runs", "1", "--out", &out],
-        &["gains", "design", &toml, "--out", &out],
-        &["gains", "craft", &toml, "--out", &out],
-        &["gains", "show", &table],
-        &["identify", "/dev/null", "--columns", &toml],
-        &["fly", "--vehicle", "crazyflie-2.1", "--course", "/dev/zero"],
-    ] {
-        let refused = quatrack(arguments);
-        let said = String::from_utf8(refused.stderr).unwrap();
-        assert_eq!((refused.status.code(), message(&said)), (Some(2), 1), "{arguments:?}: {said}");
-        assert!(said.contains("longer than 64 MB, or a device without an end"), "{arguments:?}: {said}");
-    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod cli;
 mod compare;
 mod figures;
 mod figures_png;
+mod fly_course;
 mod fly_scenario;
 mod gains;
 mod identify;
