@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::Path;
 
+use crate::quote::line_at;
+
 /// More than any file that is read whole takes.
 pub const MOST_BYTES: u64 = 64 << 20;
 
@@ -27,8 +29,7 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// As [`read`], and [`io::ErrorKind::InvalidData`] with the line that is not UTF-8.
 pub fn read_to_string(path: &Path) -> io::Result<String> {
     String::from_utf8(read(path)?).map_err(|error| {
-        let valid = &error.as_bytes()[..error.utf8_error().valid_up_to()];
-        let line = 1 + valid.iter().filter(|byte| **byte == b'\n').count();
+        let line = line_at(error.as_bytes(), error.utf8_error().valid_up_to());
         io::Error::new(io::ErrorKind::InvalidData, format!("line {line} is not UTF-8; save the file as UTF-8 text"))
     })
 }

@@ -3,8 +3,8 @@
 //! ```text
 //! plan            waypoints and bounds -> B-spline, by second-order cone programming
 //!   trajectory    B-splines, polynomial pieces, their files, fits for the Crazyflie
-//!     quote       the part of a file that an error quotes
 //!     bounded     files as far as any input is long
+//!     quote       the part of a file that an error quotes, and its line
 //! ```
 //!
 //! Below it is `quatrack_design`, of which it takes the flat output and gravity; conventions are those.

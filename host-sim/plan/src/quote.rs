@@ -1,4 +1,5 @@
-//! The part of a file that an error quotes: never more than a line of a terminal or two holds, and nothing that a terminal obeys.
+//! The part of a file that an error quotes, and where it is: never more than a line of a terminal or two holds, and nothing that a
+//! terminal obeys.
 
 /// Most characters of a file that an error quotes.
 pub const QUOTED_MAX: usize = 200;
@@ -30,6 +31,16 @@ pub fn plain(text: &str) -> String {
     text.chars().map(|c| if is_plain(c) { c.to_string() } else { c.escape_unicode().to_string() }).collect()
 }
 
+/// The line of a byte of a file, counted from 1.
+pub fn line_at(bytes: &[u8], offset: usize) -> usize {
+    1 + bytes.iter().take(offset).filter(|byte| **byte == b'\n').count()
+}
+
+/// The line that a reader of TOML complains about; the first where it names none.
+pub fn line_of(text: &str, error: &toml::de::Error) -> usize {
+    line_at(text.as_bytes(), error.span().map_or(0, |span| span.start))
+}
+
 fn cut(text: &str, most: usize) -> String {
     let shown = plain(text);
     if shown.chars().count() <= most {
@@ -51,6 +62,14 @@ mod tests {
         let message = one_line(&format!("unknown field `{}`,\n expected one of", "k".repeat(5000)));
         assert!(message.starts_with("unknown field `kkk") && message.ends_with("... expected one of"), "{message}");
         assert!(message.len() < 150);
+    }
+
+    #[test]
+    fn lines_are_counted_from_one() {
+        let found = [0, 1, 2, 3, 100].map(|offset| line_at(b"a\nb\n", offset));
+        assert_eq!(found, [1, 1, 2, 2, 3]);
+        let text = "a = 1\n\nb = \n";
+        assert_eq!(line_of(text, &toml::from_str::<toml::Table>(text).unwrap_err()), 3);
     }
 
     #[test]

@@ -8,8 +8,9 @@ use std::time::Duration;
 
 use indicatif::ProgressBar;
 use quatrack_plan::plan::{Bounds, Budget, FlightPlan, Overrides, PlanError, PlannedFlight, stored};
+use quatrack_plan::trajectory::file::{self, FileError, TrajectoryFile};
+use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::csv;
-use quatrack_plan::trajectory::{file, on_board};
 
 use super::transform::TransformArgs;
 use super::vehicle::VehicleChoice;
@@ -156,7 +157,22 @@ pub(super) fn planned(
         Ok((plan, flight))
     });
     bar.finish_and_clear();
-    planned.map_err(|error| failed(path, &error))
+    planned.map_err(|error| match error {
+        PlanError::Syntax { .. } => no_plan(path, text).unwrap_or_else(|| failed(path, &error)),
+        error => failed(path, &error),
+    })
+}
+
+/// The name of a file that is no plan for what it is; nothing where it is nothing that is known.
+fn no_plan(path: &Path, text: &str) -> Option<Failure> {
+    let name = path.display().to_string();
+    match file::parse(&name, text) {
+        Ok(TrajectoryFile::Pieces(_) | TrajectoryFile::Spline(_)) => Some(Failure::input(format!(
+            "{name}: is a trajectory already, nothing to plan; `quatrack fly --trajectory {name}` flies it"
+        ))),
+        Err(error @ FileError::Samples { .. }) => Some(Failure::input(error)),
+        _ => None,
+    }
 }
 
 /// The same with nothing over the file's keys, in the usual time.

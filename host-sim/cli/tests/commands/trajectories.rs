@@ -171,6 +171,30 @@ fn waypoints_become_a_trajectory_that_flies() {
 }
 
 #[test]
+fn a_file_that_is_no_plan_is_named_for_what_it_is() {
+    let dir = folder("no-plan");
+    let samples = file(&dir, "samples.csv", b"x,y,z,speed\n0,0,1,1\n2,0,1,1\n");
+    let (code, _, stderr) = texts(&quatrack(&["plan", &samples]));
+    assert_eq!(code, Some(2));
+    assert!(stderr.contains("rows of a flight sampled over time (x,y,z,speed)"), "{stderr}");
+    let spline = file(
+        &dir,
+        "spline.json",
+        br#"{"degree":5,"duration_s":2,"control_points_m":[[0,0,0],[0,0,0],[0,0,0],[1,0,0],[1,0,0],[1,0,0]]}"#,
+    );
+    let (code, _, stderr) = texts(&quatrack(&["plan", &spline]));
+    assert_eq!(code, Some(2));
+    assert!(
+        stderr.contains(&format!("is a trajectory already, nothing to plan; `quatrack fly --trajectory {spline}`")),
+        "{stderr}"
+    );
+    // A slip in a plan is one still.
+    let slip = file(&dir, "slip.toml", b"[[waypoints]\ntime_s = 0\n");
+    let (_, _, stderr) = texts(&quatrack(&["plan", &slip]));
+    assert!(stderr.contains("slip.toml: line 1"), "{stderr}");
+}
+
+#[test]
 fn a_plan_ends_in_its_time_and_never_reads_on_for_ever() {
     let plan = concat!(env!("CARGO_MANIFEST_DIR"), "/../../plans/mild.toml");
     let (code, _, stderr) = texts(&quatrack(&["plan", plan, "--time-limit-s", "1e-9"]));

@@ -20,6 +20,7 @@ use super::polynomial::csv;
 use super::table::Table;
 use super::waypoints::{self, Kind};
 use crate::bounded;
+use crate::quote::{line_at, line_of};
 use control_points::{curves, spline};
 pub use error::FileError;
 
@@ -106,7 +107,7 @@ pub fn parse(name: &str, text: &str) -> Result<TrajectoryFile, FileError> {
     }
     let keys_error = |error: &toml::de::Error| FileError::Keys {
         name: name.into(),
-        line: line_at(text.as_bytes(), error.span().map_or(0, |span| span.start)),
+        line: line_of(text, error),
         reason: one_line(error.message()),
     };
     let table: toml::Table = match toml::from_str(text) {
@@ -159,11 +160,6 @@ fn rows(name: &str, table: &Table) -> Result<TrajectoryFile, FileError> {
         }
         None => csv::read(table).map(TrajectoryFile::Pieces).map_err(|reason| FileError::Pieces { name, reason }),
     }
-}
-
-/// The line, from 1, that holds byte `offset`.
-fn line_at(bytes: &[u8], offset: usize) -> usize {
-    1 + bytes.iter().take(offset).filter(|byte| **byte == b'\n').count()
 }
 
 /// A reader's message with its line breaks taken out.

@@ -1,7 +1,7 @@
 //! Design files: TOML in, their entries out, key by key. Entries that depend on each other are checked in
 //! [`super::design`].
 
-use quatrack_plan::quote::{is_plain, one_line, quoted};
+use quatrack_plan::quote::{is_plain, line_of, one_line, quoted};
 use serde::Deserialize;
 
 use super::GainsError;
@@ -174,8 +174,7 @@ impl std::fmt::Display for MethodName {
 
 pub(super) fn read(text: &str) -> Result<DesignFile, GainsError> {
     let file: DesignFile = toml::from_str(text).map_err(|error| {
-        let start = error.span().map_or(0, |span| span.start);
-        let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
+        let line = line_of(text, &error);
         let written = quoted(text.lines().nth(line - 1).unwrap_or_default().trim());
         GainsError::Syntax { line, written, reason: one_line(error.message()) }
     })?;

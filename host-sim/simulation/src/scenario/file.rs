@@ -13,7 +13,7 @@ mod air;
 use std::path::Path;
 
 use quatrack_plan::bounded;
-use quatrack_plan::quote::{one_line, quoted};
+use quatrack_plan::quote::{line_at, one_line, quoted};
 use serde::Deserialize;
 
 use super::error::ScenarioError;
@@ -191,7 +191,7 @@ impl ScenarioFile {
     /// [`ScenarioError::Syntax`].
     pub fn parse(text: &str, origin: &str) -> Result<Self, ScenarioError> {
         let at = |start: usize, reason: String| {
-            let line = 1 + text.as_bytes()[..start.min(text.len())].iter().filter(|byte| **byte == b'\n').count();
+            let line = line_at(text.as_bytes(), start);
             let written = text.lines().nth(line - 1).unwrap_or("").trim();
             let text = quoted(written.split(" #").next().unwrap_or("").trim());
             ScenarioError::Syntax { origin: origin.to_owned(), line, text, reason }

@@ -12,6 +12,7 @@ use quatrack::Limits;
 use quatrack::checksum::crc32c;
 use quatrack_design::vehicle::{Vehicle, VehicleError, VehicleFile};
 use quatrack_plan::bounded;
+use quatrack_plan::quote::{line_of, one_line};
 
 pub use error::VehicleFileError;
 
@@ -95,7 +96,5 @@ pub fn id(vehicle: &Vehicle) -> u32 {
 }
 
 fn syntax(text: &str, error: &toml::de::Error) -> VehicleFileError {
-    let start = error.span().map_or(0, |span| span.start);
-    let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
-    VehicleFileError::Syntax { line, reason: quatrack_plan::quote::one_line(error.message()) }
+    VehicleFileError::Syntax { line: line_of(text, error), reason: one_line(error.message()) }
 }

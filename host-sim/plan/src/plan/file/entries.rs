@@ -5,7 +5,7 @@ use quatrack_design::model::GRAVITY_M_S2;
 use serde::Deserialize;
 
 use crate::plan::PlanError;
-use crate::quote::one_line;
+use crate::quote::{line_of, one_line};
 
 /// Far beyond any flight; keeps products of numbers in range.
 pub(super) const LARGEST_COORDINATE_M: f64 = 1e5;
@@ -98,11 +98,8 @@ impl Default for PlanFile {
 
 impl PlanFile {
     pub(super) fn parse(text: &str) -> Result<Self, PlanError> {
-        toml::from_str(text).map_err(|error| {
-            let start = error.span().map_or(0, |span| span.start);
-            let line = 1 + text.bytes().take(start).filter(|byte| *byte == b'\n').count();
-            PlanError::Syntax { line, reason: one_line(error.message()) }
-        })
+        toml::from_str(text)
+            .map_err(|error| PlanError::Syntax { line: line_of(text, &error), reason: one_line(error.message()) })
     }
 }
 
