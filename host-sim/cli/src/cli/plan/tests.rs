@@ -51,7 +51,7 @@ fn both_files_hold_the_curve_to_the_bit() {
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let mut keys: Vec<_> = json.as_object().unwrap().keys().map(String::as_str).collect();
     keys.sort_unstable();
-    assert_eq!(keys, ["control_points_m", "degree", "duration_s"]);
+    assert_eq!(keys, ["control_points_m", "degree", "duration_s", "schema"]);
     assert_eq!((json["degree"].as_u64(), json["duration_s"].as_f64()), (Some(5), Some(12.0)));
     let toml = fs::read_to_string(folder.0.join("curve.toml")).unwrap();
     let toml: toml::Table = toml.parse().unwrap();
