@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use quatrack_cli::figures::{Curve, TrackingFigure};
+use crate::figures::{Curve, TrackingFigure};
 use quatrack_simulation::flight::rigid_loop::RigidFlight;
 use quatrack_simulation::scenario::Law;
 use quatrack_simulation::scenario::compare::Table;

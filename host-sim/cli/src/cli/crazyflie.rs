@@ -1,7 +1,7 @@
 //! `quatrack crazyflie`: the controller as the Crazyflie's firmware calls it, flown and counted.
 
-use quatrack_cli::pil::crazyflie::count;
-use quatrack_cli::pil::image;
+use crate::pil::crazyflie::count;
+use crate::pil::image;
 use quatrack_simulation::crazyflie::{CrazyflieReport, knows};
 use quatrack_simulation::scenario::{Law, Scenario};
 

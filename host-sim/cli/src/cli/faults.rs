@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use quatrack_cli::pil::emulated::{self, Equipment, Transport};
-use quatrack_cli::pil::interrupt::Interrupt;
-use quatrack_cli::pil::{PilError, faults as on_board, image};
+use crate::pil::emulated::{self, Equipment, Transport};
+use crate::pil::interrupt::Interrupt;
+use crate::pil::{PilError, faults as on_board, image};
 use quatrack_simulation::faults::{Crafts, Fault, Row, VEHICLES, fly, kinds};
 use serde::Serialize;
 

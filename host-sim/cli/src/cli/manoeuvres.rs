@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use quatrack_cli::figures::{Curve, TrackingFigure};
+use crate::figures::{Curve, TrackingFigure};
 use quatrack_simulation::flight::rigid_loop::RigidFlight;
 use quatrack_simulation::scenario::manoeuvres::{Manoeuvre, Outcome};
 use quatrack_simulation::scenario::{Law, Scenario};

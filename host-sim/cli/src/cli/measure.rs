@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use quatrack_cli::pil::PilError;
-use quatrack_cli::pil::image::{self, Image};
-use quatrack_cli::pil::measure::{self, Images, InstructionReport};
+use crate::pil::PilError;
+use crate::pil::image::{self, Image};
+use crate::pil::measure::{self, Images, InstructionReport};
 
 use super::{Failure, output};
 

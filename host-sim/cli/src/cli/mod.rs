@@ -96,7 +96,7 @@ enum Command {
 }
 
 /// Reads the arguments, runs the command, prints an error in one line.
-pub(crate) fn main() -> ExitCode {
+pub fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => return output::argument_error(&error),

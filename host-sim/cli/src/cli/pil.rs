@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use clap::{ArgGroup, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use quatrack::link::Key;
-use quatrack_cli::pil::client::Client;
-use quatrack_cli::pil::emulated::{self, Equipment, Transport};
-use quatrack_cli::pil::interrupt::Interrupt;
-use quatrack_cli::pil::line::Line;
-use quatrack_cli::pil::{PilError, image, lock_step};
+use crate::pil::client::Client;
+use crate::pil::emulated::{self, Equipment, Transport};
+use crate::pil::interrupt::Interrupt;
+use crate::pil::line::Line;
+use crate::pil::{PilError, image, lock_step};
 
 use super::{Failure, key_file, output};
 

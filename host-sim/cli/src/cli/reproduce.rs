@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use quatrack_cli::figures::{Curve, FigureError, TrackingFigure};
+use crate::figures::{Curve, FigureError, TrackingFigure};
 use quatrack_design::model::position;
 use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::{self, Plan, PlanError};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use quatrack_cli::figures::{Curve, FlightFigure, Quantity, Trace, TrackingFigure};
+use crate::figures::{Curve, FlightFigure, Quantity, Trace, TrackingFigure};
 use quatrack_simulation::flight::rigid_loop::RigidSample;
 use quatrack_simulation::scenario::Around;
 

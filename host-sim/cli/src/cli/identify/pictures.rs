@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use quatrack_cli::figures::{ChartFigure, Curve, FigureError, FlightFigure, Marks, Quantity, Trace, TrackingFigure};
+use crate::figures::{ChartFigure, Curve, FigureError, FlightFigure, Marks, Quantity, Trace, TrackingFigure};
 use quatrack_identify::Report;
 use quatrack_identify::fit::Balance;
 use quatrack_identify::predict::{Errors, Example, Prediction};

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use quatrack_cli::figures::{Plot, PlotsFigure, Quantity, Trace};
+use crate::figures::{Plot, PlotsFigure, Quantity, Trace};
 use quatrack_simulation::gains::{Certified, CutLoop, LoopCurves};
 
 use crate::cli::{Failure, output};
