@@ -3,15 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use crate::figures::{Curve, TrackingFigure};
 use quatrack_simulation::flight::rigid_loop::RigidFlight;
 use quatrack_simulation::scenario::Law;
 use quatrack_simulation::scenario::compare::Table;
 
 use super::fly::scenario::OwnCourse;
+use super::picture::{self, Picture};
 use super::scenario::ScenarioArgs;
 use super::transform::TransformArgs;
 use super::{Failure, fly, output};
+use crate::figures::{Curve, TrackingFigure};
 
 /// Flies laws on one scenario, each from the same start with the same noise and gusts: ours, the paper's, and those of
 /// Mellinger and Kumar, of Lee, Leok and McClamroch, and the cascaded PID with the gains of the Crazyflie's firmware.
@@ -37,7 +38,7 @@ pub(crate) struct Args {
     json: Option<output::File>,
     /// Write a picture of the first four laws, .svg or .png.
     #[arg(long, value_name = "FILE")]
-    picture: Option<output::File>,
+    picture: Option<Picture>,
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -100,12 +101,7 @@ fn write_picture(path: &Path, title: &str, flights: &[(String, RigidFlight)]) ->
         reference: Curve { label: "course", time_s: &times(longest), position_m: &targets },
         flights: drawn.iter().map(|(label, time_s, position_m)| Curve { label, time_s, position_m }).collect(),
     };
-    let bytes = if path.extension().is_some_and(|end| end == "png") {
-        figure.to_png().map_err(Failure::verdict)?
-    } else {
-        figure.to_svg().map_err(Failure::verdict)?.into_bytes()
-    };
-    output::write(path, &bytes)?;
+    picture::write(path, &figure.to_svg().map_err(Failure::verdict)?)?;
     let names: Vec<&str> = drawn.iter().map(|(law, ..)| law.as_str()).collect();
     output::print(&format!("wrote {}: {}\n", path.display(), names.join(", ")))
 }

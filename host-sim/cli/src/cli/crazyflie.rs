@@ -1,7 +1,5 @@
 //! `quatrack crazyflie`: the controller as the Crazyflie's firmware calls it, flown and counted.
 
-use crate::pil::crazyflie::count;
-use crate::pil::image;
 use quatrack_simulation::crazyflie::{CrazyflieReport, knows};
 use quatrack_simulation::scenario::{Law, Scenario};
 
@@ -9,6 +7,8 @@ use super::scenario::ScenarioArgs;
 use super::transform::TransformArgs;
 use super::vehicle::VehicleChoice;
 use super::{Failure, fly, output};
+use crate::pil::crazyflie::count;
+use crate::pil::image;
 
 /// Flies the Crazyflie controller through its C interface on the rigid plant, with the firmware's setpoints, rates and
 /// power distribution: position errors of every course and case.

@@ -2,13 +2,13 @@
 
 use std::fmt::Write as _;
 
-use crate::pil::emulated::{self, Equipment, Transport};
-use crate::pil::interrupt::Interrupt;
-use crate::pil::{PilError, faults as on_board, image};
 use quatrack_simulation::faults::{Crafts, Fault, Row, VEHICLES, fly, kinds};
 use serde::Serialize;
 
 use super::{Failure, output};
+use crate::pil::emulated::{self, Equipment, Transport};
+use crate::pil::interrupt::Interrupt;
+use crate::pil::{PilError, faults as on_board, image};
 
 /// Flies the core's cascade under its supervisor through every kind of fault, on three crafts in air, and prints how each
 /// flight ends.

@@ -19,6 +19,7 @@ use quatrack_simulation::flight::core_loop::CoreLoop;
 use quatrack_simulation::flight::reference::Exact;
 
 use super::limits::LimitsChoice;
+use super::picture::Picture;
 use super::scenario::ScenarioArgs;
 use super::transform::TransformArgs;
 use super::{Failure, output};
@@ -90,7 +91,7 @@ pub(crate) struct Args {
     json: Option<output::File>,
     /// Of a scenario: write a picture of the flight, its errors, tilt, motor forces and wind, .svg or .png.
     #[arg(long, value_name = "FILE")]
-    plot: Option<output::File>,
+    plot: Option<Picture>,
     /// Of a scenario: write a log as a craft records it, which `quatrack identify` reads (CSV, the columns of cflib).
     #[arg(long, value_name = "FILE")]
     log: Option<output::File>,

@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use crate::figures::{Curve, TrackingFigure};
 use quatrack_simulation::flight::rigid_loop::RigidFlight;
 use quatrack_simulation::scenario::manoeuvres::{Manoeuvre, Outcome};
 use quatrack_simulation::scenario::{Law, Scenario};
@@ -13,6 +12,7 @@ use serde::Serialize;
 
 use super::scenario::ScenarioArgs;
 use super::{Failure, output};
+use crate::figures::{Curve, TrackingFigure};
 
 /// Laws where none is named: ours, the stock controller's, the one before ours, and the paper's.
 const LAWS: [Law; 4] = [Law::Quatrack, Law::Mellinger, Law::ActuatorAware, Law::LqrE];

@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
+use super::{Failure, output};
 use crate::pil::PilError;
 use crate::pil::image::{self, Image};
 use crate::pil::measure::{self, Images, InstructionReport};
-
-use super::{Failure, output};
 
 /// Counts instructions on the emulated target, over both of the paper's flights with all four controllers: each law's
 /// step, the reference, the whole tick; and the firmware's flash and RAM.

@@ -16,6 +16,7 @@ mod manoeuvres;
 mod measure;
 mod names;
 mod output;
+mod picture;
 mod pil;
 mod plan;
 mod refit;

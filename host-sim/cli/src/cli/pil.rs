@@ -6,13 +6,13 @@ use std::path::PathBuf;
 use clap::{ArgGroup, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use quatrack::link::Key;
+
+use super::{Failure, key_file, output};
 use crate::pil::client::Client;
 use crate::pil::emulated::{self, Equipment, Transport};
 use crate::pil::interrupt::Interrupt;
 use crate::pil::line::Line;
 use crate::pil::{PilError, image, lock_step};
-
-use super::{Failure, key_file, output};
 
 /// Flies both of the paper's trajectories with all four controllers on the target, in lock-step with the plant on this
 /// host, and compares every command with the same core's here.

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector3;
-use crate::figures::{Curve, FigureError, TrackingFigure};
 use quatrack_design::model::position;
 use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::{self, Plan, PlanError};
@@ -14,6 +13,7 @@ use quatrack_simulation::reproduction::report::Reproduction;
 use quatrack_simulation::reproduction::table::Controller;
 
 use super::{Failure, output};
+use crate::figures::{Curve, FigureError, TrackingFigure};
 
 /// Reproduces the paper: plans both trajectories from their waypoints, designs all four gains, flies every cell of
 /// Table I, and draws Figures 2 to 5.

@@ -21,6 +21,7 @@ use nalgebra::Vector3;
 pub use chart::ChartFigure;
 pub use flight::{FlightFigure, Marks, Quantity, Trace};
 pub use plots::{Plot, PlotsFigure};
+pub use render::png;
 
 /// Coordinates and times up to this size can be told apart on an axis and labelled.
 const LARGEST: f64 = 1e6;
@@ -104,7 +105,7 @@ impl TrackingFigure<'_> {
     /// # Errors
     /// [`FigureError`] if the data do not make a figure.
     pub fn to_png(&self) -> Result<Vec<u8>, FigureError> {
-        render::png(&self.to_svg()?)
+        png(&self.to_svg()?)
     }
 
     fn validate(&self) -> Result<(), FigureError> {

@@ -21,6 +21,8 @@ static FONTS: LazyLock<Arc<fontdb::Database>> = LazyLock::new(|| {
     const FACE: &[u8] = include_bytes!("../../assets/ibm-plex-sans/IBMPlexSans_400Regular.ttf");
     let mut fonts = fontdb::Database::new();
     fonts.load_font_source(fontdb::Source::Binary(Arc::new(FACE)));
+    // For a document of another crate, which names no face.
+    fonts.set_sans_serif_family(FONT_FAMILY);
     Arc::new(fonts)
 });
 
@@ -29,8 +31,11 @@ fn tree(document: &str) -> Result<Tree, FigureError> {
     Tree::from_str(document, &options).map_err(|error| FigureError::Rendering(error.to_string()))
 }
 
-/// The document as a PNG file of 8-bit RGBA.
-pub(super) fn png(document: &str) -> Result<Vec<u8>, FigureError> {
+/// An SVG document as a PNG file of 8-bit RGBA.
+///
+/// # Errors
+/// [`FigureError::Rendering`].
+pub fn png(document: &str) -> Result<Vec<u8>, FigureError> {
     let tree = tree(document)?;
     let size = tree.size().to_int_size().scale_by(SCALE);
     let mut pixels = size

@@ -7,6 +7,7 @@ use quatrack_simulation::scenario::{Law, Scenario};
 
 use super::{refused, trajectories};
 use crate::cli::fly::scenario::{Outputs, fly_and_print};
+use crate::cli::picture::Picture;
 use crate::cli::transform::TransformArgs;
 use crate::cli::{Failure, output};
 
@@ -30,7 +31,7 @@ pub(super) struct Args {
     json: Option<output::File>,
     /// Write a picture of the flight, .svg or .png.
     #[arg(long, value_name = "FILE")]
-    plot: Option<output::File>,
+    plot: Option<Picture>,
     /// Write the flight for Foxglove and PlotJuggler, .mcap. Needs a command built with --features mcap.
     #[arg(long, value_name = "FILE")]
     mcap: Option<output::File>,

@@ -7,6 +7,7 @@ use quatrack_campaign::picture::svg;
 use quatrack_campaign::summary::{Summary, View};
 
 use super::refused;
+use crate::cli::picture::{self, Picture};
 use crate::cli::{Failure, output};
 
 /// Summarises a campaign, also while it flies: success of each law with Wilson's interval of 95 %, errors at 50, 95 and
@@ -22,9 +23,9 @@ pub(super) struct Args {
     /// How many of the worst flights to name for each law.
     #[arg(long, value_name = "N", default_value_t = 3)]
     worst: usize,
-    /// Write a picture of the share of successes over each drawn figure, .svg.
+    /// Write a picture of the share of successes over each drawn figure, .svg or .png.
     #[arg(long, value_name = "FILE")]
-    picture: Option<output::File>,
+    picture: Option<Picture>,
     /// Write all of it as JSON.
     #[arg(long, value_name = "FILE")]
     json: Option<output::File>,
@@ -39,7 +40,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let summary = Summary::of(&folder, &view).map_err(refused)?;
     output::print(&summary.to_string())?;
     if let Some(path) = &args.picture {
-        output::write(path, svg(&folder, &view).map_err(refused)?.as_bytes())?;
+        picture::write(path, &svg(&folder, &view).map_err(refused)?)?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     if let Some(path) = &args.json {

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use crate::figures::{Curve, FlightFigure, Quantity, Trace, TrackingFigure};
 use quatrack_simulation::flight::rigid_loop::RigidSample;
 use quatrack_simulation::scenario::Around;
 
-use crate::cli::{Failure, output};
+use crate::cli::{Failure, output, picture};
+use crate::figures::{Curve, FlightFigure, Quantity, Trace, TrackingFigure};
 
 /// Writes it, .svg or .png.
 pub(super) fn write(path: &Path, title: &str, law: &str, rows: &[(RigidSample, Around)]) -> Result<(), Failure> {
@@ -53,11 +53,6 @@ pub(super) fn write(path: &Path, title: &str, law: &str, rows: &[(RigidSample, A
         flights: vec![Curve { label: law, time_s: &time_s, position_m: &places }],
     };
     let figure = FlightFigure { tracking, quantities };
-    let bytes = if path.extension().is_some_and(|end| end == "png") {
-        figure.to_png().map_err(Failure::verdict)?
-    } else {
-        figure.to_svg().map_err(Failure::verdict)?.into_bytes()
-    };
-    output::write(path, &bytes)?;
+    picture::write(path, &figure.to_svg().map_err(Failure::verdict)?)?;
     output::print(&format!("wrote {}\n", path.display()))
 }

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use crate::figures::{ChartFigure, Curve, FigureError, FlightFigure, Marks, Quantity, Trace, TrackingFigure};
 use quatrack_identify::Report;
 use quatrack_identify::fit::Balance;
 use quatrack_identify::predict::{Errors, Example, Prediction};
 
 use crate::cli::{Failure, output};
+use crate::figures::{ChartFigure, Curve, FigureError, FlightFigure, Marks, Quantity, Trace, TrackingFigure};
 
 /// Writes prediction, ahead, residuals and lag, each as .svg and .png, to a folder.
 #[expect(

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use crate::figures::{Plot, PlotsFigure, Quantity, Trace};
 use quatrack_simulation::gains::{Certified, CutLoop, LoopCurves};
 
 use crate::cli::{Failure, output};
+use crate::figures::{Plot, PlotsFigure, Quantity, Trace};
 
 /// Decibels below which a gain is not drawn.
 const LEAST_DB: f64 = -60.0;
