@@ -2,7 +2,7 @@
 //!
 //! A quantity of one craft has the shape of the quantity alone, that of N crafts an axis before it. Arrays are float64 or
 //! float32, in any memory order and with any strides; lists and other array libraries go through `numpy.asarray`. Whole numbers in an
-//! array are refused: a position of integers is a rounded one.
+//! array of quantities are refused: a position of integers is a rounded one. Matrices of whole numbers are matrices.
 
 use nalgebra::DMatrix;
 use numpy::ndarray::{Array, ArrayViewD, IxDyn};
@@ -203,6 +203,11 @@ pub(crate) fn matrix(name: &str, value: &Bound<'_, PyAny>) -> PyResult<DMatrix<f
         };
         Ok(DMatrix::from_row_iterator(rows, columns, view.iter().map(|entry| (*entry).into())))
     }
+    let is_whole = |array: &Bound<'_, PyUntypedArray>| matches!(array.dtype().kind(), b'i' | b'u');
+    let value = match value.cast::<PyUntypedArray>() {
+        Ok(array) if is_whole(array) => &array.call_method1("astype", ("float64",))?,
+        _ => value,
+    };
     match read(name, value)? {
         Read::Double(array) => dense(name, &array.try_readonly()?.as_array()),
         Read::Single(array) => dense(name, &array.try_readonly()?.as_array()),

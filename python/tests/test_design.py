@@ -18,6 +18,14 @@ def test_the_double_integrators_gain_is_known():
     assert feedback.relative_residual < 1e-15 and feedback.condition > 0
 
 
+@pytest.mark.parametrize("dtype", [int, np.int8, np.uint16])
+def test_matrices_of_whole_numbers_are_matrices(dtype):
+    whole = [part.astype(dtype) for part in DOUBLE]
+    assert np.array_equal(q.care(*whole).p, q.care(*DOUBLE).p)
+    with pytest.raises(TypeError, match="^a: dtype bool"):
+        q.care(whole[0].astype(bool), *whole[1:])
+
+
 def test_equations_hold_to_the_last_digits():
     rng = np.random.default_rng(3)
     a, b = rng.normal(size=(6, 6)), rng.normal(size=(6, 2))

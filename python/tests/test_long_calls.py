@@ -64,11 +64,11 @@ def test_other_threads_run_during_a_flight():
     counter = threading.Thread(target=count)
     counter.start()
     before = counted[0]
-    q.fly(LONG | {"duration_s": 5.0})
+    q.fly(LONG | {"duration_s": 300.0})
     during = counted[0] - before
     over.set()
     counter.join()
-    # Held, the lock would let none run.
+    # Some 150 ms of flight, in which the other thread sleeps for 1 ms at a time. Held, the lock would let none run.
     assert during > 1
 
 
