@@ -6,6 +6,7 @@ mod plot;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use quatrack_simulation::crazyflie::OwnCraft;
 use quatrack_simulation::gains::{self, Signal, Table};
 use serde_json::{Value, json};
 
@@ -36,9 +37,18 @@ pub(super) fn show(path: &Path, json: Option<&Path>, plot: Option<&Path>) -> Res
             (of_document(&document), document)
         }
         "bin" => {
-            let table = Table::from_bytes(&read(path)?)
+            let bytes = read(path)?;
+            let own = OwnCraft::from_bytes(&bytes);
+            let table = Table::from_bytes(own.as_ref().map_or(&bytes, |own| &own.table))
                 .map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
-            (of_table(&table), table_json(&table))
+            let craft = own.map_or_else(String::new, |own| {
+                format!(
+                    "a craft of {} kg, motors of {} ms, with its table; `upload.py craft` sends it\n",
+                    own.mass_kg,
+                    1e3 * own.motor_lag_s
+                )
+            });
+            (craft + &of_table(&table), table_json(&table))
         }
         _ => {
             let reason = "neither a design (.toml) nor made of one (.json, .bin)";

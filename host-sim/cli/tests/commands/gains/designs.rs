@@ -129,6 +129,12 @@ fn a_vehicle_file_becomes_a_header_for_the_crazyflie_and_flies() {
     let bytes = fs::read(&file).unwrap();
     assert_eq!((bytes.len(), &bytes[..6]), (6 + 60 + 326 + 4, &b"QTCR\x01\0"[..]));
     assert_eq!(bytes[6..10], 0.029_f32.to_le_bytes());
+    let shown = stdout(&quatrack(&["gains", "show", file.to_str().unwrap()]));
+    assert!(
+        shown.starts_with("a craft of 0.029 kg, motors of 126 ms, with its table; `upload.py craft` sends it\n"),
+        "{shown}"
+    );
+    assert!(shown.contains("crazyflie-2.1-legacy"), "{shown}");
     // The one that upload.py is tried with.
     assert_eq!(bytes, include_bytes!("../../../../../tests/data/legacy-craft.bin"));
     let flown = quatrack(&["crazyflie", "--vehicle", &vehicle]);
