@@ -186,6 +186,24 @@ fn a_craft_that_there_is_no_table_for_flies_once_it_is_sent() {
 }
 
 #[test]
+fn a_craft_with_one_wrong_bit_is_not_taken_whatever_its_checksum() {
+    let vehicle = file("crazyflie-2.1-legacy.toml");
+    let sound = own_craft(&certified(&vehicle)).unwrap().to_bytes();
+    let firmware = Firmware::start(&vehicle, &Tune::new(0, 0.0), QUIET);
+    let end = sound.len() - 4;
+    // Every byte of magic, version and figures, and some of the table, which has a checksum of its own.
+    for position in (0..66).chain((66..end).step_by(23)) {
+        let mut bytes = sound;
+        bytes[position] ^= 1 << (position % 8);
+        let checksum = quatrack::checksum::crc32c(&bytes[..end]).to_le_bytes();
+        bytes[end..].copy_from_slice(&checksum);
+        assert_ne!(send_for_words(&bytes).0, Status::Taken as u8, "byte {position}");
+    }
+    assert_eq!(send_for_words(&sound).0, Status::Taken as u8);
+    drop(firmware);
+}
+
+#[test]
 fn the_header_has_the_figures_and_the_table_in_full() {
     let certified = certified(&file("crazyflie-2.1-legacy.toml"));
     let (own, header) = (own_craft(&certified).unwrap(), craft_header(&certified).unwrap());
