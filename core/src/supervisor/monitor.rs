@@ -6,114 +6,31 @@
 //! should give where there is none. Each part is looked at by itself, so that a position that is NaN takes nothing
 //! from a good attitude.
 
+mod bridge;
+mod checks;
+mod sample;
+
 use nalgebra::Vector3;
 
+use self::bridge::{Bridge, Still};
+use self::checks::{
+    NORM_SQUARED_NEAR, as_attitude, is_attitude, is_moving, is_near_unit, is_place, is_same, is_turning, motion_max,
+    motion_of, normalised, shorter,
+};
+pub use self::sample::{Looked, MonitorConfig, Sample, Soundness};
 use crate::clock::Tick;
-use crate::flatness::GRAVITY_M_S2;
-use crate::math::sqrt;
 use crate::quaternion::Quaternion;
 use crate::state::State;
 
-/// The bounds of a sound sample, and for how long the rest is bridged.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MonitorConfig {
-    /// Length of a tick, s.
-    pub tick_s: f32,
-    /// How long a position, velocity or attitude is bridged before it counts as lost, ticks.
-    pub bridge_ticks: Tick,
-    /// How long the gyroscope alone may carry an attitude on, ticks.
-    pub attitude_ticks: Tick,
-    /// How long body rates may be the attitude's differences, ticks.
-    pub body_rates_ticks: Tick,
-    /// How long an estimate may stay the same, bit by bit, while the gyroscope moves; and a gyroscope while the attitude
-    /// does.
-    pub frozen_ticks: Tick,
-    /// Velocity that no craft has, m/s.
-    pub speed_max_m_s: f32,
-    /// Farthest position, m.
-    pub position_max_m: f32,
-    /// Body rate beyond the gyroscope's range, rad/s.
-    pub body_rate_max_rad_s: f32,
-}
-
-impl MonitorConfig {
-    /// Ticks of 1 ms; half a second of bridging, five on the gyroscope alone, and a range of 2000 degrees a second.
-    pub const STANDARD: Self = Self {
-        tick_s: 1e-3,
-        bridge_ticks: 500,
-        attitude_ticks: 5000,
-        body_rates_ticks: 600,
-        frozen_ticks: 100,
-        speed_max_m_s: 30.0,
-        position_max_m: 10_000.0,
-        body_rate_max_rad_s: 34.9,
-    };
-}
-
-/// Squared norms between which a quaternion is an attitude and is scaled to norm 1: of 0.7 and of 1.4.
-const NORM_SQUARED: [f32; 2] = [0.49, 1.96];
-/// Squared norms that every law takes as they are.
-const NORM_SQUARED_NEAR: [f32; 2] = [1.0 - NEAR, 1.0 + NEAR];
-const NEAR: f32 = 0.02;
-/// Largest specific force that is believed, m/s^2: 16 g.
-const FORCE_MAX_M_S2: f32 = 157.0;
 /// Change of a body rate from which on the gyroscope moves, rad/s: one step of its output at 2000 degrees a second.
 const MOVED_RAD_S: f32 = 1e-3;
 /// How long an estimate or body rates may stay the same before it is checked whether they are stuck, ticks: three periods
 /// of 100 Hz.
 const QUIET_TICKS: Tick = 30;
-/// Drag over mass that bridges a velocity where there is no accelerometer, 1/s.
-const DRAG_PER_S: f32 = 0.4;
 /// Longest step of the bridge, s.
 const STEP_MAX_S: f32 = 0.05;
 /// A bound below every sum of squares.
 const NEVER_CALM: f32 = -1.0;
-/// Share of a new difference of attitudes in the body rates that are made of them.
-const DIFFERENCE_SHARE: f32 = 0.5;
-
-/// The soundness of a state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Soundness {
-    /// As it was given, or with its quaternion scaled to norm 1.
-    Sound,
-    /// In parts the last sound one, carried on.
-    Bridged,
-    /// A position, velocity or attitude has been missing for too long: the rest is good for staying level.
-    AttitudeOnly,
-    /// There is no attitude.
-    AttitudeLost,
-    /// There are no body rates.
-    BodyRatesLost,
-}
-
-/// The state and body rates that a step may be flown on.
-#[derive(Clone, Copy, Debug)]
-pub struct Looked<'a> {
-    /// Its soundness.
-    pub soundness: Soundness,
-    /// The state; of finite numbers and an attitude, unless that is lost.
-    pub state: &'a State,
-    /// The body rates, rad/s.
-    pub body_rates_rad_s: &'a Vector3<f32>,
-    /// How long the velocity has been bridged, ticks; none while it is measured.
-    pub velocity_bridged_ticks: Option<Tick>,
-}
-
-/// The measurements of a step.
-#[derive(Clone, Copy, Debug)]
-pub struct Sample<'a> {
-    /// The tick.
-    pub now: Tick,
-    /// The estimate; nothing where the newest is too old.
-    pub state: Option<&'a State>,
-    /// The gyroscope's body rates, rad/s; nothing where there is none. One that has failed gives NaN.
-    pub body_rates_rad_s: Option<&'a Vector3<f32>>,
-    /// The accelerometer's specific force in the body frame, m/s^2.
-    pub specific_force_m_s2: Option<&'a Vector3<f32>>,
-    /// Thrust over mass that the motors should give, m/s^2: it carries a velocity on where there is no accelerometer.
-    pub thrust_m_s2: f32,
-}
-
 /// The monitor's memory; first the part that every step looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
@@ -133,36 +50,6 @@ pub struct Monitor {
     is_bridged: bool,
     /// Something is not sound, or stays the same.
     bridge: Option<Bridge>,
-}
-
-/// The state that is carried on while something is not sound.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Bridge {
-    state: State,
-    rates: Vector3<f32>,
-    /// Since when each is bad.
-    place: Option<Tick>,
-    attitude: Option<Tick>,
-    gyroscope: Option<Tick>,
-    /// That the estimate stays the same, and where the gyroscope was when it began to.
-    still: Option<Still<Vector3<f32>>>,
-    /// That the gyroscope does, and where the attitude was.
-    still_gyroscope: Option<Still<Quaternion>>,
-}
-
-/// One measurement stays the same.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Still<T> {
-    from: Tick,
-    /// Where another one was then, and whether that has moved since.
-    other: T,
-    has_moved: bool,
-}
-
-impl<T> Still<T> {
-    const fn new(from: Tick, other: T) -> Self {
-        Self { from, other, has_moved: false }
-    }
 }
 
 const ZERO: Vector3<f32> = Vector3::new(0.0, 0.0, 0.0);
@@ -346,144 +233,9 @@ impl Default for Monitor {
     }
 }
 
-impl Bridge {
-    /// Carries the state on by gyroscope and accelerometer.
-    #[inline(never)]
-    fn carry(&mut self, sample: &Sample<'_>, step_s: f32) {
-        let State { position_m, attitude, velocity_m_s } = self.state;
-        let is_felt = |f: &&Vector3<f32>| f.dot(f) <= FORCE_MAX_M_S2 * FORCE_MAX_M_S2;
-        let acceleration = match sample.specific_force_m_s2.filter(is_felt) {
-            Some(force) => turned(attitude, force),
-            None => {
-                let thrust = attitude.thrust_axis() * sample.thrust_m_s2;
-                if thrust.dot(&thrust).is_finite() { thrust - velocity_m_s * DRAG_PER_S } else { ZERO }
-            }
-        };
-        let acceleration = Vector3::new(acceleration.x, acceleration.y, acceleration.z - GRAVITY_M_S2);
-        let half = 0.5 * step_s;
-        let turn = Quaternion::new(1.0, half * self.rates.x, half * self.rates.y, half * self.rates.z);
-        self.state = State {
-            position_m: position_m + (velocity_m_s + acceleration * half) * step_s,
-            attitude: normalised(attitude * turn).unwrap_or(attitude),
-            velocity_m_s: velocity_m_s + acceleration * step_s,
-        };
-    }
-
-    /// Makes body rates of the difference of two attitudes.
-    #[inline(never)]
-    fn differ(&mut self, before: Quaternion, after: Quaternion, step_s: f32) {
-        let turn = before.conjugate() * after;
-        let scale = if turn.w < 0.0 { -2.0 } else { 2.0 };
-        if step_s > 0.0 {
-            let difference = turn.vector() * (scale / step_s);
-            self.rates += (difference - self.rates) * DIFFERENCE_SHARE;
-        }
-    }
-
-    #[inline(never)]
-    fn soundness(&self, is_known: bool, config: &MonitorConfig, now: Tick) -> Soundness {
-        let longer = |from: Option<Tick>, most: Tick| from.is_some_and(|from| now.wrapping_sub(from) > most);
-        if !is_known || longer(self.attitude, config.attitude_ticks) {
-            Soundness::AttitudeLost
-        } else if longer(self.gyroscope, config.body_rates_ticks)
-            || (self.gyroscope.is_some() && longer(self.attitude, 0))
-        {
-            Soundness::BodyRatesLost
-        } else if longer(self.place, config.bridge_ticks) || longer(self.attitude, config.bridge_ticks) {
-            Soundness::AttitudeOnly
-        } else if self.place.is_some() || self.attitude.is_some() || self.gyroscope.is_some() {
-            Soundness::Bridged
-        } else {
-            Soundness::Sound
-        }
-    }
-}
-
 /// Notes since when something is so.
 fn since(noted: &mut Option<Tick>, is_so: bool, from: Tick) {
     *noted = if is_so { Some(noted.unwrap_or(from)) } else { None };
-}
-
-fn shorter(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
-}
-
-#[inline(always)]
-fn is_attitude(q: Quaternion, [least, most]: [f32; 2]) -> bool {
-    let squared = q.dot(q);
-    squared >= least && squared <= most
-}
-
-/// The same of [`NORM_SQUARED_NEAR`] by one comparison.
-#[inline(always)]
-fn is_near_unit(q: Quaternion) -> bool {
-    let squared = (q.x * q.x + q.y * q.y) + (q.w * q.w + q.z * q.z);
-    (squared - 1.0).abs() <= NEAR
-}
-
-/// Position, velocity and body rates as one sum of squares. Below [`motion_max`] each is within its own bound; one that is no number
-/// is below nothing.
-#[inline(always)]
-fn motion_of(state: &State, w: &Vector3<f32>, config: &MonitorConfig) -> f32 {
-    let (p, v) = (&state.position_m, &state.velocity_m_s);
-    let per_m2 = motion_max(config) / (config.position_max_m * config.position_max_m);
-    let motion = (v.x * v.x + v.y * v.y + v.z * v.z) + (w.x * w.x + w.y * w.y + w.z * w.z);
-    (p.x * p.x + p.y * p.y + p.z * p.z) * per_m2 + motion
-}
-
-/// The square of the lesser of the bounds of velocity and body rates.
-#[inline(always)]
-fn motion_max(config: &MonitorConfig) -> f32 {
-    let most = shorter(config.speed_max_m_s, config.body_rate_max_rad_s);
-    most * most
-}
-
-#[inline(always)]
-fn is_place(state: &State, config: &MonitorConfig) -> bool {
-    let (p, v) = (&state.position_m, &state.velocity_m_s);
-    let (far, fast) = (config.position_max_m, config.speed_max_m_s);
-    p.x * p.x + p.y * p.y + p.z * p.z <= far * far && v.x * v.x + v.y * v.y + v.z * v.z <= fast * fast
-}
-
-#[inline(always)]
-fn is_turning(w: &Vector3<f32>, config: &MonitorConfig) -> bool {
-    let most = config.body_rate_max_rad_s;
-    w.x * w.x + w.y * w.y + w.z * w.z < most * most
-}
-
-/// Whether body rates are other ones than those before.
-#[inline(always)]
-fn is_moving(rates: &Vector3<f32>, before: &Vector3<f32>) -> bool {
-    rates.x != before.x || rates.y != before.y || rates.z != before.z
-}
-
-/// Whether two estimates have the same bits; a NaN is the same as itself.
-#[inline(always)]
-fn is_same(a: &State, b: &State) -> bool {
-    let differ = |a: f32, b: f32| a.to_bits() ^ b.to_bits();
-    let (p, q, v) = (&a.position_m, &a.attitude, &a.velocity_m_s);
-    let (o, r, u) = (&b.position_m, &b.attitude, &b.velocity_m_s);
-    let place = differ(p.x, o.x) | differ(p.y, o.y) | differ(p.z, o.z);
-    let attitude = differ(q.w, r.w) | differ(q.x, r.x) | differ(q.y, r.y) | differ(q.z, r.z);
-    let velocity = differ(v.x, u.x) | differ(v.y, u.y) | differ(v.z, u.z);
-    (place | attitude | velocity) == 0
-}
-
-/// An attitude as the laws take it: as it is where its norm is near 1, else scaled.
-fn as_attitude(q: Quaternion) -> Option<Quaternion> {
-    if is_attitude(q, NORM_SQUARED_NEAR) { Some(q) } else { normalised(q) }
-}
-
-#[inline(never)]
-fn normalised(q: Quaternion) -> Option<Quaternion> {
-    is_attitude(q, NORM_SQUARED).then(|| q.scaled(1.0 / sqrt(q.dot(q))))
-}
-
-/// A body vector in the world frame.
-fn turned(q: Quaternion, v: &Vector3<f32>) -> Vector3<f32> {
-    let u = q.vector();
-    let t = u.cross(v) * 2.0;
-    v + t * q.w + u.cross(&t)
 }
 
 #[cfg(test)]

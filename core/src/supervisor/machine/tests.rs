@@ -1,6 +1,8 @@
 //! The state machine by its verdicts: every reason, its time and the mode after it.
 
-use super::super::mode::Fault;
+use nalgebra::Vector3;
+
+use super::super::mode::{Fault, Tumble};
 use super::*;
 
 const CONFIG: Config = Config {

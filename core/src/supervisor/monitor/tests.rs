@@ -1,6 +1,7 @@
 //! The monitor on spoilt samples: each fault, how long it is bridged, and how far the bridge is from the truth.
 
 use super::*;
+use crate::flatness::GRAVITY_M_S2;
 
 const CONFIG: MonitorConfig = MonitorConfig::STANDARD;
 const NAN: Vector3<f32> = Vector3::new(f32::NAN, f32::NAN, f32::NAN);
