@@ -13,10 +13,11 @@
 //! `tx = a (-f1 - f2 + f3 + f4)`, `ty = a (-f1 + f2 + f3 - f4)`, `tz = c (-f1 + f2 - f3 + f4)`, and the four sign patterns
 //! are orthogonal: the inverse is the transposed one over four. Order and signs are those of the Crazyflie's firmware.
 
-use core::fmt;
+mod error;
 
 use nalgebra::Vector3;
 
+pub use self::error::{AirframeError, AirframeFigure};
 use crate::clock::Rate;
 use crate::command::Limits;
 use crate::flatness::GRAVITY_M_S2;
@@ -63,54 +64,6 @@ pub(crate) struct Mixing {
     pub(crate) inertia: [f32; 3],
     /// `(Iz - Iy, Ix - Iz, Iy - Ix)` over four levers: force per motor over `(q r, p r, p q)`, N s^2.
     pub(crate) gyroscopic: [f32; 3],
-}
-
-/// A figure of a craft.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum AirframeFigure {
-    /// [`AirframeFigures::mass_kg`].
-    Mass,
-    /// [`AirframeFigures::inertia_kg_m2`].
-    Inertia,
-    /// [`AirframeFigures::lever_arm_m`].
-    LeverArm,
-    /// [`AirframeFigures::torque_per_thrust_m`].
-    TorquePerThrust,
-    /// [`AirframeFigures::motor_lag_s`].
-    MotorLag,
-}
-
-/// Why figures are no craft.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum AirframeError {
-    /// A figure is not between a millionth (a billionth for the inertia) and a thousand of its SI unit: check the units.
-    OutOfRange {
-        /// The figure.
-        figure: AirframeFigure,
-        /// Its value.
-        value: f32,
-    },
-    /// A moment of inertia exceeds the sum of the other two, which no body's does.
-    Inertia {
-        /// The largest moment, kg m^2.
-        largest_kg_m2: f32,
-        /// The sum of the others, kg m^2.
-        others_kg_m2: f32,
-    },
-    /// `0 <= force_min_n < force_max_n` does not hold, or the motors cannot hold the weight within it.
-    Force {
-        /// Least force of a motor, N.
-        min_n: f32,
-        /// Most force, N.
-        max_n: f32,
-        /// A quarter of the weight, which has to lie between them, N.
-        hover_n: f32,
-    },
 }
 
 impl Airframe {
@@ -241,39 +194,6 @@ impl Limits {
         Self::new(min, max, body_rates_max_rad_s).or_else(|_| Self::new(min, max, any_rate)).unwrap_or(Self::NONE)
     }
 }
-
-impl fmt::Display for AirframeFigure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Mass => "mass (kg)",
-            Self::Inertia => "moment of inertia (kg m^2)",
-            Self::LeverArm => "lever arm (m)",
-            Self::TorquePerThrust => "torque per thrust (m)",
-            Self::MotorLag => "motor lag (s)",
-        })
-    }
-}
-
-impl fmt::Display for AirframeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::OutOfRange { figure, value } => {
-                write!(f, "airframe: {figure} is {value}; give it positive and in SI units")
-            }
-            Self::Inertia { largest_kg_m2, others_kg_m2 } => write!(
-                f,
-                "airframe: a moment of inertia, {largest_kg_m2} kg m^2, exceeds the sum of the others, {others_kg_m2}; \
-                 check their order"
-            ),
-            Self::Force { min_n, max_n, hover_n } => write!(
-                f,
-                "airframe: motors of {min_n} to {max_n} N do not hold the weight, {hover_n} N each; check mass and forces"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for AirframeError {}
 
 #[cfg(test)]
 mod tests {

@@ -1,9 +1,14 @@
 //! Why bytes are no table, and why a table is not flown here: one variant for each reason, with the value found.
 
+mod place;
+mod refusal;
+
 use core::fmt;
 
+pub use self::place::{CascadeFigure, KnotFault};
+pub use self::refusal::{AcceptError, LoadError};
 use super::TableKind;
-use super::certificate::{Figure, Vehicle};
+use super::certificate::Figure;
 use super::name::NameError;
 use crate::command::LimitsError;
 use crate::gain::GainError;
@@ -128,109 +133,6 @@ pub enum TableError {
     },
 }
 
-/// The fields of a table of the cascade beside the head.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum CascadeFigure {
-    /// A gain: its size must be within 1e-7 to 1e4, and its sign must close the loop.
-    Gain {
-        /// Its place among the 16, from 0.
-        index: u8,
-    },
-    /// An end of the certified range of motor lags, s: the range holds the lag of the design and ends within the largest that the
-    /// certificate states.
-    MotorLag,
-    /// Certified share of mass, 0 to 0.9.
-    Mass,
-    /// Certified share of inertia, 0 to 0.9.
-    Inertia,
-    /// An end of the certified range of force over command, which holds 1.
-    ForceShare,
-    /// Certified delay, s, 0 to the largest that the certificate states.
-    Delay,
-    /// Certified drag, 1/s, from 0.
-    Drag,
-    /// Certified moment of the air, N s, from 0.
-    Moment,
-    /// Drag that is told, 1/s, 0 to 1.
-    ToldDrag,
-    /// Told drag along the thrust over that across it, 0 to 2.
-    ToldDragAlong,
-    /// Moment that is told, N s, 0 to 2e-3.
-    ToldMoment,
-    /// Share of the wind's moment that is fed forward, 0 to 1.
-    ToldGust,
-    /// Whether the air is learned: 0 or 1.
-    Learn,
-}
-
-/// A fault of a gain at a knot; rows and columns are counted from 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum KnotFault {
-    /// An entry is not finite, or an error goes unused.
-    Gain(GainError),
-    /// An entry is out of proportion, as in [`TableError::Entry`].
-    Entry {
-        /// Row.
-        row: u8,
-        /// Column.
-        column: u8,
-        /// The value found.
-        value: f32,
-    },
-}
-
-/// Why a sound table is not flown on this board.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum AcceptError {
-    /// Designed for another vehicle, or for other parameters of it.
-    Vehicle {
-        /// The one that the table is for.
-        table: Vehicle,
-    },
-    /// Certified at another control rate.
-    Rate {
-        /// The table's, Hz.
-        table_hz: u32,
-        /// The loop's, Hz.
-        loop_hz: u32,
-    },
-    /// Certified for shorter motor lags than this craft's.
-    MotorLag {
-        /// The longest that is certified, s.
-        lag_max_s: f32,
-        /// The craft's, s.
-        motor_lag_s: f32,
-    },
-    /// It has more gains along its trajectory than there is room for.
-    Knots {
-        /// The table's.
-        knots: u16,
-        /// The room.
-        room: u16,
-    },
-}
-
-/// Why a blob does not become a table that is flown.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[non_exhaustive]
-pub enum LoadError {
-    /// It is no table.
-    Table(TableError),
-    /// It is one, but not for this board.
-    Accept(AcceptError),
-}
-
 impl fmt::Display for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("gain table: ")?;
@@ -298,60 +200,9 @@ impl fmt::Display for TableError {
     }
 }
 
-impl fmt::Display for CascadeFigure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Gain { index } => return write!(f, "gain {index} of the cascade"),
-            Self::MotorLag => "an end of the certified motor lags (s)",
-            Self::Mass => "certified share of mass",
-            Self::Inertia => "certified share of inertia",
-            Self::ForceShare => "certified force over command",
-            Self::Delay => "certified delay (s)",
-            Self::Drag => "certified drag (1/s)",
-            Self::Moment => "certified moment of the air (N s)",
-            Self::ToldDrag => "told drag (1/s)",
-            Self::ToldDragAlong => "told drag along the thrust",
-            Self::ToldMoment => "told moment of the air (N s)",
-            Self::ToldGust => "share of the wind fed forward",
-            Self::Learn => "the mark of learned air",
-        })
-    }
-}
-
 fn entry_out_of_proportion(f: &mut fmt::Formatter<'_>, row: u8, column: u8, value: f32) -> fmt::Result {
     let (min, max) = (super::ENTRY_MIN, super::ENTRY_MAX);
     write!(f, "entry ({row}, {column}) is {value:e}; must be 0 or of a size from {min:e} to {max:e}")
-}
-
-impl fmt::Display for AcceptError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Vehicle { table } => {
-                write!(f, "gain table: designed for {table}, which this board does not fly; design it for this one")
-            }
-            Self::Rate { table_hz, loop_hz } => write!(
-                f,
-                "gain table: certified at {table_hz} Hz, the loop runs at {loop_hz} Hz; certify it at the loop's rate"
-            ),
-            Self::MotorLag { lag_max_s, motor_lag_s } => write!(
-                f,
-                "gain table: certified up to a motor lag of {lag_max_s} s, the craft's is {motor_lag_s} s; design it for \
-                 these motors"
-            ),
-            Self::Knots { knots, room } => {
-                write!(f, "gain table: {knots} knots, there is room for {room}; change their spacing")
-            }
-        }
-    }
-}
-
-impl fmt::Display for LoadError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Table(error) => error.fmt(f),
-            Self::Accept(error) => error.fmt(f),
-        }
-    }
 }
 
 impl core::error::Error for TableError {
@@ -362,29 +213,6 @@ impl core::error::Error for TableError {
             Self::Limits(error) => Some(error),
             _ => None,
         }
-    }
-}
-
-impl core::error::Error for AcceptError {}
-
-impl core::error::Error for LoadError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::Table(error) => Some(error),
-            Self::Accept(error) => Some(error),
-        }
-    }
-}
-
-impl From<TableError> for LoadError {
-    fn from(error: TableError) -> Self {
-        Self::Table(error)
-    }
-}
-
-impl From<AcceptError> for LoadError {
-    fn from(error: AcceptError) -> Self {
-        Self::Accept(error)
     }
 }
 
