@@ -9,12 +9,14 @@
 //! The felt force less that of the known drag is the wind's: `r = LP f + d LP v = d w`. It is fed forward into the moment
 //! alone: as a force, a bias of the accelerometer of 0.05 g would cost 5 cm.
 
+mod seen;
+
 use nalgebra::Vector3;
 
+pub(super) use self::seen::{Coefficients, Felt, SeenAir};
 use super::air::Air;
 use super::bounds::{between, shortened};
 use crate::airframe::Airframe;
-use crate::mixer::Parts;
 
 /// Time between two updates, s.
 const TICK_S: f32 = 0.01;
@@ -49,74 +51,6 @@ pub(super) struct AirLearner {
     learn: bool,
     /// Steps between two updates.
     steps: u8,
-}
-
-/// The air as it is flown with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Coefficients {
-    /// Drag over mass, 1/s.
-    pub(super) drag: f32,
-    /// Moment per velocity as parts of the forces, N s/m.
-    pub(super) moment: [f32; 2],
-}
-
-impl Coefficients {
-    /// Drag alone.
-    pub(super) const fn without_moment(self) -> Self {
-        Self { moment: [0.0; 2], ..self }
-    }
-}
-
-/// Memory of the air learner: low-passed signals, sums of the regressions and the learned coefficients.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct SeenAir {
-    /// The learned coefficients; nothing while the told ones are flown with.
-    pub(super) learned: Option<Coefficients>,
-    /// The wind's moment that is answered, as parts: roll and pitch, N.
-    pub(super) wind: [f32; 2],
-    /// Low-passed: felt force, velocity, body rates, torque as parts; x and y each.
-    low: [[f32; 2]; 4],
-    /// Slowly low-passed, to be taken off: felt force, velocity, torque of the air.
-    slow: [[f32; 2]; 3],
-    /// Sums of products: drag, moment about x, moment about y.
-    products: [f32; 3],
-    squares: [f32; 3],
-    /// Steps until the next update.
-    pub(super) wait: u8,
-}
-
-/// The inputs of an update.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Felt<'a> {
-    /// Specific force in the body frame, m/s^2.
-    pub(super) accelerometer: Option<&'a Vector3<f32>>,
-    /// The reference's velocity in its own body frame, x and y, m/s.
-    pub(super) body_velocity: [f32; 2],
-    pub(super) body_rates: &'a Vector3<f32>,
-    /// The motors' forces, in parts.
-    pub(super) forces: &'a Parts,
-    /// Whether the craft flies where it was sent with motors within their range.
-    pub(super) undisturbed: bool,
-}
-
-impl SeenAir {
-    /// Nothing seen yet.
-    pub(super) const NONE: Self = Self {
-        learned: None,
-        wind: [0.0; 2],
-        low: [[0.0; 2]; 4],
-        slow: [[0.0; 2]; 3],
-        products: [0.0; 3],
-        squares: [0.0; 3],
-        wait: 0,
-    };
-
-    /// Nothing is learned and no wind answered while the craft stands on the ground; the learned figures stay.
-    pub(super) fn rest(&mut self) {
-        *self = Self { learned: self.learned, products: self.products, squares: self.squares, ..Self::NONE };
-    }
 }
 
 impl AirLearner {
@@ -248,87 +182,4 @@ fn without([x, y]: [f32; 2], [a, b]: [f32; 2]) -> [f32; 2] {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const CRAFT: Airframe = Airframe::CRAZYFLIE_2_1_BRUSHLESS;
-    const H: f32 = 0.002;
-    /// The air that is true in these tests.
-    const DRAG: f32 = 0.45;
-    const MOMENT: [f32; 2] = [7e-4, 9e-4];
-
-    /// The coefficients after flying a circle of 1 m/s for some seconds, with an accelerometer that is off, in a wind.
-    fn known(air: &Air, seconds: f32, bias: f32, wind: f32, speed: f32) -> (AirLearner, SeenAir) {
-        let learner = AirLearner::new(air, &CRAFT, H);
-        let mut seen = SeenAir::NONE;
-        for step in 0..(seconds / H) as u32 {
-            let (sin, cos) = crate::math::sin_cos(1.5 * H * step as f32);
-            let (vx, vy) = (speed * cos, speed * sin);
-            let felt = Vector3::new(-DRAG * (vx - wind) + bias, -DRAG * vy, 9.81);
-            let lever = 4.0 * CRAFT.figures().lever_arm_m;
-            let [cx, cy] = MOMENT;
-            // The motors hold against the moment: the craft does not turn.
-            let forces = Parts { thrust: 0.1, roll: -cx * vy / lever, pitch: cy * (vx - wind) / lever, yaw: 0.0 };
-            let felt = Felt {
-                accelerometer: Some(&felt),
-                body_velocity: [vx, vy],
-                body_rates: &Vector3::zeros(),
-                forces: &forces,
-                undisturbed: true,
-            };
-            learner.step(&mut seen, &felt);
-        }
-        (learner, seen)
-    }
-
-    #[test]
-    fn the_air_is_learned_from_nothing_at_any_bias() {
-        let untold = Air { learn: true, ..Air::NONE };
-        let (learner, seen) = known(&untold, 30.0, 0.5, 0.0, 1.0);
-        // The told zero keeps 0.1 of 30 m^2/s for drag, of 15 for each moment.
-        assert!((learner.now(&seen).drag / DRAG - 1.0).abs() < 0.01, "{}", learner.now(&seen).drag);
-        for (found, wanted) in learner.moment_n_s(&learner.now(&seen)).iter().zip(MOMENT) {
-            assert!((found / wanted - 1.0).abs() < 0.02, "{found} {wanted}");
-        }
-    }
-
-    #[test]
-    fn a_wind_at_hover_teaches_nothing_and_is_answered_in_the_moment() {
-        let air = Air::BRUSHLESS;
-        let (learner, seen) = known(&air, 3.0, 0.0, 1.0, 0.0);
-        assert_eq!(learner.now(&seen), learner.told);
-        // The share of the moment of 1 m/s that c / d tells from a felt 0.45 m/s^2.
-        let lever = 4.0 * CRAFT.figures().lever_arm_m;
-        let pitch = -air.gust * 7.3e-4 / 0.353 * DRAG / lever;
-        let [roll, found] = seen.wind;
-        assert!(roll == 0.0 && (found / pitch - 1.0).abs() < 1e-5, "{found} {pitch}");
-    }
-
-    #[test]
-    fn without_an_accelerometer_the_told_air_is_flown() {
-        let learner = AirLearner::new(&Air::BRUSHED, &CRAFT, H);
-        let mut seen = SeenAir::NONE;
-        for accelerometer in [None, Some(Vector3::new(f32::NAN, 0.0, 0.0)), Some(Vector3::new(0.0, 1e9, 0.0))] {
-            for _ in 0..20 {
-                let felt = Felt {
-                    accelerometer: accelerometer.as_ref(),
-                    body_velocity: [1.0, 0.0],
-                    body_rates: &Vector3::zeros(),
-                    forces: &Parts { thrust: 0.1, roll: 0.0, pitch: 0.0, yaw: 0.0 },
-                    undisturbed: true,
-                };
-                learner.step(&mut seen, &felt);
-            }
-        }
-        assert_eq!((learner.now(&seen), seen.wind), (learner.told, [0.0; 2]));
-    }
-
-    #[test]
-    fn it_forgets_nothing_at_rest_but_the_wind() {
-        let (learner, mut seen) = known(&Air::BRUSHED, 10.0, 0.0, 1.0, 1.0);
-        let now = learner.now(&seen);
-        assert!(seen.wind != [0.0; 2]);
-        seen.rest();
-        assert_eq!((learner.now(&seen), seen.wind), (now, [0.0; 2]));
-    }
-}
+mod tests;

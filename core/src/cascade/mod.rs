@@ -28,6 +28,7 @@ mod air_learner;
 mod allocation;
 mod attitude;
 mod bounds;
+mod command;
 mod estimate;
 mod force_observer;
 mod gains;
@@ -37,6 +38,7 @@ mod jerk_fit;
 mod level;
 mod limits;
 mod memory;
+mod observe;
 mod outer;
 mod reference;
 mod torque_observer;
@@ -45,27 +47,20 @@ mod yield_learner;
 use nalgebra::Vector3;
 
 pub use self::air::{Air, AirError};
-use self::air_learner::{AirLearner, Felt};
+use self::air_learner::AirLearner;
 use self::allocation::Allocation;
-use self::bounds::smaller;
-use self::force_observer::{ForceObserver, Pushed};
+use self::force_observer::ForceObserver;
 pub use self::gains::{CascadeGainError, CascadeGains, HeightGains, TiltGains, YawGains};
-use self::ground::HELD_M_S;
-use self::inner::{Errors, InnerLoop};
+use self::inner::InnerLoop;
 pub use self::jerk_fit::JerkFit;
 pub use self::limits::{CascadeLimits, CascadeLimitsError};
 pub use self::memory::CascadeMemory;
-use self::memory::{Before, Seen};
 use self::outer::OuterLoop;
-use self::reference::{InAir, Surroundings};
 use self::torque_observer::TorqueObserver;
-use self::yield_learner::MotorYield;
 use crate::actuation::Actuation;
 use crate::airframe::Airframe;
 use crate::clock::Rate;
-use crate::error::{StateError, StepError};
-use crate::flatness::GRAVITY_M_S2;
-use crate::law::difference;
+use crate::error::StepError;
 use crate::mixer::{MotorLimited, Parts};
 use crate::motor_lag::{MotorForces, MotorLagError};
 use crate::motor_reference::FifthOrderSample;
@@ -183,156 +178,6 @@ impl Cascade {
         self.observe(memory, accelerometer);
         Ok(stepped)
     }
-
-    /// The commanded forces for this step, N, finite and within the motors' range, and the limits that cut them.
-    ///
-    /// # Errors
-    /// [`StepError`] where the estimate is not to be flown on or the reference has no attitude. There are then no
-    /// forces and the memory is as it was: the caller stops or levels, and never holds the last ones.
-    pub fn command(
-        &self,
-        memory: &mut CascadeMemory,
-        forces_n: &mut MotorForces,
-        input: &CascadeInput<'_>,
-    ) -> Result<(MotorForces, MotorLimited), StepError> {
-        self.stepped(memory, forces_n, input).ok_or_else(|| refusal(input))
-    }
-
-    #[inline(always)]
-    fn stepped(
-        &self,
-        memory: &mut CascadeMemory,
-        forces_n: &mut MotorForces,
-        input: &CascadeInput<'_>,
-    ) -> Option<(MotorForces, MotorLimited)> {
-        let (mut carried, mut held, period_s) = (memory.carried, memory.held, self.actuation.lag.period_s());
-        let flat = &input.sample.flat;
-        let mut now =
-            carried.at_step(input.state, input.body_rates_rad_s, &memory.disturbance.acceleration, period_s)?;
-        held.step(&mut now, period_s);
-
-        let position = difference(&now.position, &flat.position_m);
-        let velocity = difference(&now.velocity, &flat.velocity_m_s);
-        let speed_m_s = if memory.ground.is_held() { HELD_M_S } else { self.outer.speed_m_s() };
-        let approach = self.outer.approach(&memory.approach, &position, (speed_m_s, period_s));
-
-        let (standing, disturbance, air) =
-            (memory.ground.is_standing(), &memory.disturbance, self.air_learner.now(&memory.air));
-        let Followed { across, height } = input.followed;
-        let around = if across {
-            Surroundings {
-                air: if standing { air.without_moment() } else { air },
-                disturbance: disturbance.across,
-                slope: disturbance.slope,
-                wind: memory.air.wind,
-                approach,
-            }
-        } else {
-            Surroundings::STILL
-        };
-        let reference = InAir::of(input.sample, input.heading, &around, now.attitude, self.airframe()).ok()?;
-
-        let wanted = if height {
-            let sideways_m_s = (across && !standing).then_some(speed_m_s);
-            let correction = self.outer.correction(&position, &velocity, sideways_m_s);
-            self.outer.limited(&reference.acceleration, &correction)
-        } else {
-            let a = &reference.acceleration;
-            Vector3::new(a.x, a.y, a.z + GRAVITY_M_S2)
-        };
-
-        let axis = now.attitude.thrust_axis();
-        let [p, q, r] = reference.body_rates;
-        let w = &now.body_rates;
-        let errors = Errors {
-            half_rotation: attitude::half_error(&wanted, reference.heading, now.attitude),
-            body_rates: [w.x - p, w.y - q, w.z - r],
-            imbalance: memory.imbalance.parts,
-        };
-        let mut along = axis.x * wanted.x + axis.y * wanted.y + axis.z * wanted.z;
-        if height {
-            along = OuterLoop::lifting(along, wanted.z, axis.z);
-            let drag_apart = air.drag * (self.drag_along_share - 1.0);
-            let v = &now.velocity;
-            along = along - disturbance.along + drag_apart * (axis.x * v.x + axis.y * v.y + axis.z * v.z);
-        }
-        let thrust = self.airframe().mixing.quarter_mass_kg * along;
-        let MotorYield { share, inverse } = memory.motors;
-        let forces = turned(&parts_of(forces_n), share);
-        let asked = self.inner.commands(thrust, [&reference.forces, &reference.commands], &forces, &errors);
-        let (commands, limited) = self.allocation.allocate(turned(&asked, inverse))?;
-
-        // Nothing has been remembered so far; from here on nothing fails.
-        let commands_n = commands.forces().map(|force| self.allocation.cut(force));
-        *forces_n = self.actuation.lag.next(forces_n, &commands_n);
-        let far = position.x * position.x + position.y * position.y + position.z * position.z > FAR_M * FAR_M;
-        memory.seen = Seen {
-            now,
-            axis,
-            mean_forces: memory.coming,
-            answer: reference.answer,
-            wanted: flat.velocity_m_s,
-            body_velocity: reference.body_velocity,
-            undisturbed: across && !(far || limited.any()),
-            half_rotation: errors.half_rotation,
-        };
-        memory.coming = middle(&forces, &turned(&parts_of(forces_n), share));
-        (memory.carried, memory.held, memory.approach) = (carried, held, approach);
-        Some((commands_n, limited))
-    }
-
-    /// The updates after a step: the observers, the air, the ground.
-    pub fn observe(&self, memory: &mut CascadeMemory, accelerometer: Option<&Vector3<f32>>) {
-        let (seen, before) = (memory.seen, memory.before);
-        let (flew, period_s) = (memory.ground.is_flying(), self.actuation.lag.period_s());
-        memory.before = Before { velocity: seen.now.velocity, axis: seen.axis, answer: seen.answer };
-        let push = memory.disturbance.along;
-        memory.ground.step(&seen.now, memory.disturbance.is_on_bound(), push, period_s);
-        if !(flew && memory.ground.is_flying()) {
-            return memory.rest();
-        }
-        let thrust = seen.mean_forces.thrust / self.airframe().mixing.quarter_mass_kg;
-        let (known, mut mean_velocity) =
-            (self.air_learner.now(&memory.air).drag, mean(&before.velocity, &seen.now.velocity));
-        let drag = smaller(known, BELIEVED_DRAG_MAX_PER_S);
-        if known > drag {
-            // Drag known beyond that is taken of the reference's velocity, as the reference has it: it is no part of the
-            // loop.
-            let (rest, v) = ((known - drag) / drag, &seen.wanted);
-            mean_velocity += Vector3::new(rest * v.x, rest * v.y, rest * v.z);
-        }
-        let pushed =
-            Pushed { velocity: seen.now.velocity, mean_velocity, axis: mean(&before.axis, &seen.axis), thrust, drag };
-        if self.force_observer.step(&mut memory.disturbance, &pushed) {
-            memory.ground.stop(&seen.now.position);
-            return memory.rest();
-        }
-        if seen.undisturbed {
-            memory.motors.step(thrust, memory.disturbance.along, period_s);
-        }
-        let ([rx, ry], [sx, sy]) = (before.answer, seen.answer);
-        let (rates, answer) = (&seen.now.body_rates, [0.5 * (rx + sx), 0.5 * (ry + sy)]);
-        self.torque_observer.step(&mut memory.imbalance, rates, &seen.mean_forces, answer);
-        let felt = Felt {
-            accelerometer,
-            body_velocity: seen.body_velocity,
-            body_rates: rates,
-            forces: &seen.mean_forces,
-            undisturbed: seen.undisturbed,
-        };
-        self.air_learner.step(&mut memory.air, &felt);
-    }
-}
-
-/// Most of the drag that the force observer takes of the measured velocity, 1/s. Certificates go as far.
-const BELIEVED_DRAG_MAX_PER_S: f32 = 0.6;
-
-/// Distance from the reference beyond which nothing is learned, m.
-const FAR_M: f32 = 0.4;
-
-#[inline(always)]
-fn mean(a: &Vector3<f32>, b: &Vector3<f32>) -> Vector3<f32> {
-    Vector3::new(0.5 * (a.x + b.x), 0.5 * (a.y + b.y), 0.5 * (a.z + b.z))
 }
 
 /// The parts of motor forces.
@@ -357,12 +202,4 @@ fn middle(a: &Parts, b: &Parts) -> Parts {
         pitch: 0.5 * (a.pitch + b.pitch),
         yaw: 0.5 * (a.yaw + b.yaw),
     }
-}
-
-/// Why there are no forces.
-#[cold]
-#[inline(never)]
-fn refusal(input: &CascadeInput<'_>) -> StepError {
-    let rates = || StateError::of_body_rates(input.body_rates_rad_s);
-    input.state.fault().or_else(rates).map_or(StepError::Singular, StepError::State)
 }
