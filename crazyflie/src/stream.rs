@@ -5,17 +5,18 @@
 //! last eight jerks ([`JerkFit`]). Where no jerk is sent, as in full-state packets, jerk and snap are those of a parabola
 //! through the last accelerations. Nothing is fitted over a jump or a gap of more than [`GAP_MAX_MS`].
 
-use quatrack::FifthOrderSample;
+mod extrapolation;
+mod jerk_source;
+
 use quatrack::cascade::JerkFit;
 use quatrack::nalgebra::Vector3;
 
+pub use self::extrapolation::EXTRAPOLATION_MAX_MS;
+use self::jerk_source::{Source, is_zero};
 use crate::motion::Motion;
 
 /// Longest time between two setpoints of one motion, ms: one in a row of any rate above 40 a second may be missing.
 pub const GAP_MAX_MS: u32 = 50;
-
-/// Longest time that a setpoint is extrapolated, ms; then the motion stops where it has come to.
-pub const EXTRAPOLATION_MAX_MS: u32 = 100;
 
 /// Differences from the extrapolated last setpoint, beyond which a setpoint is a jump: m, m/s, m/s^2, summed over
 /// the axes.
@@ -25,27 +26,6 @@ const JUMP: [f32; 3] = [0.02, 0.2, 2.0];
 /// beyond lies the corner of a trajectory.
 const SNAP_MAX_M_S4: f32 = 1_000.0;
 const CRACKLE_MAX_M_S5: f32 = 25_000.0;
-
-/// Largest difference of a sound jerk, in the mean of two setpoints, from the slope of their accelerations: m/s^3, summed over
-/// the axes, and a share of the jerk for dates that are half a millisecond off.
-const JERK_OFF_MAX_M_S3: f32 = 0.5;
-const JERK_OFF_SHARE: f32 = 0.15;
-
-/// Jerks in a row that are not sound after which they are no longer taken, and sound ones after which they are again: a quarter
-/// of a second.
-const UNSOUND_JERKS: u8 = 3;
-const SOUND_JERKS: u8 = 25;
-
-/// Source of a motion's jerk.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Source {
-    /// As it is sent; how many in a row were not the slope of the accelerations.
-    Sent { unsound: u8 },
-    /// The accelerations: none is sent.
-    Accelerations,
-    /// The accelerations: the sent jerk is not their slope. How many in a row were.
-    Mistrusted { sound: u8 },
-}
 
 /// The newest setpoint's motion, and the fit through those before.
 #[derive(Clone, Copy, Debug)]
@@ -151,35 +131,6 @@ impl Stream {
                     && distance(&motion.acceleration_m_s2, &acceleration) <= acceleration_most))
     }
 
-    /// Where the jerk of a motion so many seconds after the newest setpoint is to come from.
-    ///
-    /// The firmware turns a trajectory that is started with a relative yaw, but for its jerk (`traj_eval_transform`). Jerks
-    /// that are not the slope of the accelerations are not taken.
-    #[inline(always)]
-    fn source_of(&self, motion: &Motion, gap_s: f32) -> Source {
-        let (new, j) = (&motion.acceleration_m_s2, &motion.jerk_m_s3);
-        let (old, k) = (&self.newest.acceleration_m_s2, &self.sent_jerk_m_s3);
-        if is_zero(j) && !matches!(self.source, Source::Mistrusted { .. }) {
-            return Source::Accelerations;
-        }
-        let twice = 2.0 / gap_s;
-        let axis = |new: f32, old: f32, j: f32, k: f32| {
-            let sum = j + k;
-            ((twice * (new - old) - sum).abs(), sum.abs())
-        };
-        let (x, y, z) = (axis(new.x, old.x, j.x, k.x), axis(new.y, old.y, j.y, k.y), axis(new.z, old.z, j.z, k.z));
-        let is_sound = x.0 + y.0 + z.0 <= 2.0 * JERK_OFF_MAX_M_S3 + JERK_OFF_SHARE * (x.1 + y.1 + z.1);
-        match self.source {
-            Source::Accelerations => Source::Sent { unsound: 0 },
-            Source::Sent { .. } if is_sound => Source::Sent { unsound: 0 },
-            Source::Sent { unsound } if unsound + 1 < UNSOUND_JERKS => Source::Sent { unsound: unsound + 1 },
-            Source::Sent { .. } => Source::Mistrusted { sound: 0 },
-            Source::Mistrusted { .. } if !is_sound => Source::Mistrusted { sound: 0 },
-            Source::Mistrusted { sound } if sound < SOUND_JERKS => Source::Mistrusted { sound: sound + 1 },
-            Source::Mistrusted { .. } => Source::Sent { unsound: 0 },
-        }
-    }
-
     /// Takes a motion; until it is fitted, its higher derivatives are extrapolated from the one before.
     #[inline(always)]
     fn keep(&mut self, motion: &Motion, gap_s: f32, source: Source) {
@@ -243,72 +194,6 @@ impl Stream {
     pub fn newest(&self) -> &Motion {
         &self.newest
     }
-
-    /// The motion at a time, heading aside, into `sample`; with snap and crackle only where they are asked for.
-    #[inline(never)]
-    pub fn at(&self, now_ms: u32, beyond_jerk: bool, sample: &mut FifthOrderSample) {
-        let age_ms = self.since_ms.map_or(0, |since_ms| now_ms.wrapping_sub(since_ms));
-        if age_ms > EXTRAPOLATION_MAX_MS {
-            return self.end(sample);
-        }
-        let t = age_ms as f32 * 1e-3;
-        if beyond_jerk {
-            self.put_to_fifth(t, sample);
-            return;
-        }
-        let flat = &mut sample.flat;
-        [flat.position_m, flat.velocity_m_s, flat.acceleration_m_s2] = self.extrapolated(t);
-        flat.jerk_m_s3 = self.newest.jerk_m_s3;
-    }
-
-    /// Position, velocity and acceleration so many seconds after the newest setpoint, by its own derivatives.
-    #[inline(always)]
-    fn extrapolated(&self, t: f32) -> [Vector3<f32>; 3] {
-        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
-        let (t2, t3) = (t * (1.0 / 2.0), t * (1.0 / 3.0));
-        let along = |p: f32, v: f32, a: f32, j: f32| (p + t * (v + t2 * (a + t3 * j)), v + t * (a + t2 * j), a + t * j);
-        let (x, y, z) = (along(p.x, v.x, a.x, j.x), along(p.y, v.y, a.y, j.y), along(p.z, v.z, a.z, j.z));
-        [Vector3::new(x.0, y.0, z.0), Vector3::new(x.1, y.1, z.1), Vector3::new(x.2, y.2, z.2)]
-    }
-
-    #[inline(always)]
-    fn put_to_fifth(&self, t: f32, sample: &mut FifthOrderSample) {
-        let Motion { position_m: p, velocity_m_s: v, acceleration_m_s2: a, jerk_m_s3: j } = &self.newest;
-        let (s, c) = (&self.snap_m_s4, &self.crackle_m_s5);
-        let (t2, t3, t4, t5) = (t * (1.0 / 2.0), t * (1.0 / 3.0), t * (1.0 / 4.0), t * (1.0 / 5.0));
-        let along = |p: f32, v: f32, a: f32, j: f32, s: f32, c: f32| {
-            (
-                p + t * (v + t2 * (a + t3 * (j + t4 * (s + t5 * c)))),
-                v + t * (a + t2 * (j + t3 * (s + t4 * c))),
-                a + t * (j + t2 * (s + t3 * c)),
-                j + t * (s + t2 * c),
-                s + t * c,
-            )
-        };
-        let x = along(p.x, v.x, a.x, j.x, s.x, c.x);
-        let y = along(p.y, v.y, a.y, j.y, s.y, c.y);
-        let z = along(p.z, v.z, a.z, j.z, s.z, c.z);
-        let flat = &mut sample.flat;
-        flat.position_m = Vector3::new(x.0, y.0, z.0);
-        flat.velocity_m_s = Vector3::new(x.1, y.1, z.1);
-        flat.acceleration_m_s2 = Vector3::new(x.2, y.2, z.2);
-        flat.jerk_m_s3 = Vector3::new(x.3, y.3, z.3);
-        sample.snap_m_s4 = Vector3::new(x.4, y.4, z.4);
-        sample.crackle_m_s5 = *c;
-    }
-
-    /// Where a motion without successors has come to.
-    #[cold]
-    #[inline(never)]
-    fn end(&self, sample: &mut FifthOrderSample) {
-        [sample.flat.position_m, ..] = self.extrapolated(EXTRAPOLATION_MAX_MS as f32 * 1e-3);
-        *sample = FifthOrderSample::at_rest(sample.flat.position_m, 0.0);
-    }
-}
-
-#[inline(always)]
-fn is_zero(v: &Vector3<f32>) -> bool {
-    v.x == 0.0 && v.y == 0.0 && v.z == 0.0
 }
 
 /// Summed over the axes.

@@ -1,14 +1,18 @@
 //! Flies a craft as the supervisor orders: setpoints, a law's table and the law's memory in; the output of a
 //! step out.
 
+mod changes;
+mod ordered;
+
 use quatrack::flatness::GRAVITY_M_S2;
 use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
-use quatrack::supervisor::{self, Guard, Levelled, Looked, Soundness};
+use quatrack::supervisor::{self, Guard, Looked};
 use quatrack::{
     CascadeMemory, Command, FifthOrderSample, Followed, Handover, Heading, Limits, Memory, Quaternion, State,
 };
 
+pub use self::changes::FADE_STEPS;
 use super::ahead::Ahead;
 use super::flight::Flight;
 use super::law_step::{LawStep, Unflown};
@@ -16,15 +20,11 @@ use super::outcome::{Outcome, Settings};
 use crate::abi;
 use crate::craft::{Craft, PERIOD_S};
 use crate::heading::HeadingStream;
-use crate::inbox::Newest;
 use crate::output::Output;
 use crate::shaping::{Shaped, Shaping};
 use crate::stream::Stream;
 use crate::tables::Table;
 use crate::units;
-
-/// Control steps that a change of the table takes: a quarter of a second.
-pub const FADE_STEPS: u16 = 125;
 
 /// Everything that flies: the fields that every step reads come first.
 #[derive(Clone, Debug)]
@@ -73,52 +73,6 @@ impl Flyer {
         is_long
     }
 
-    /// Starts a flight of another kind.
-    #[inline(never)]
-    pub(super) fn begin(&mut self, flight: &Flight, newest: &Newest) {
-        self.stream = Stream::new();
-        self.headings.begin(newest.heading, newest.heading_rate_rad_s, newest.date_ms);
-        self.shaping.begin();
-        if matches!(self.flight, Flight::Rates { .. }) {
-            self.take_motors_over();
-        }
-        if !flight.followed().across || matches!(flight, Flight::Rates { .. }) {
-            self.memory.clear_integral();
-        }
-    }
-
-    /// Motors off, as asked.
-    #[cold]
-    pub(super) fn turn_off(&mut self) {
-        (self.flight, self.handover) = (Flight::Off, Handover::OVER);
-        self.ahead.forget();
-        self.memory.clear_integral();
-    }
-
-    /// Motors off for this step. They run down with their lag: a flight that goes on soon begins with the rest of their
-    /// forces.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn switch_off(&mut self) {
-        (self.outcome.output, self.outcome.limited, self.outcome.has_stepped) =
-            (Output::OFF, MotorLimited::NOTHING, false);
-        self.memory.run_down(self.craft.motor_lag_s / (self.craft.motor_lag_s + PERIOD_S));
-    }
-
-    /// In the air, of which nothing is known; off until a setpoint says otherwise.
-    #[cold]
-    pub(super) fn restart(&mut self) {
-        self.memory = Memory::hovering(self.craft.airframe());
-        (self.flight, self.handover) = (Flight::Off, Handover::OVER);
-        self.outcome = Outcome::OFF;
-        self.ahead.forget();
-    }
-
-    /// The firmware's mixer has carried commands to the motors: their forces of now have not been kept.
-    fn take_motors_over(&mut self) {
-        self.memory.assume_hovering(self.craft.airframe());
-    }
-
     /// Thrust over mass that the motors should give, m/s^2.
     #[inline(always)]
     pub(super) fn thrust_m_s2(&self) -> f32 {
@@ -161,68 +115,6 @@ impl Flyer {
             let way = (&self.stream, &self.headings);
             self.ahead.sample_on_leash_at(next_step, way, (leash, state));
             self.ahead.refer();
-        }
-    }
-
-    /// To a standstill, and down, along a sample at a heading.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn brake(
-        &mut self,
-        looked: &Looked<'_>,
-        sample: &FifthOrderSample,
-        heading: Heading,
-    ) -> Result<(), Unflown> {
-        self.leave();
-        self.fly_towards(looked, sample, heading, Followed::ALL)
-    }
-
-    /// Level, by attitude alone: the cascade by its own way, the paper's laws at a place where nothing is off.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn level(&mut self, levelled: &Levelled) {
-        self.leave();
-        let outcome = &mut self.outcome;
-        (outcome.has_stepped, outcome.error_m) = (false, Vector3::new(0.0, 0.0, 0.0));
-        let is_flown = match self.table.as_cascade() {
-            Some(cascade) => match self.memory.level(cascade, levelled) {
-                Some((forces_n, limited)) => {
-                    (outcome.output, outcome.limited) = (Output::Forces(forces_n), limited);
-                    true
-                }
-                None => false,
-            },
-            None => self.level_at_rest(levelled).is_ok(),
-        };
-        if !is_flown {
-            self.switch_off();
-        }
-    }
-
-    #[inline(never)]
-    fn level_at_rest(&mut self, levelled: &Levelled) -> Result<(), Unflown> {
-        let place = Vector3::new(0.0, 0.0, 0.0);
-        let state = State { attitude: levelled.attitude, ..State::at_rest(place) };
-        let looked = Looked {
-            soundness: Soundness::AttitudeOnly,
-            state: &state,
-            body_rates_rad_s: &levelled.body_rates_rad_s,
-            velocity_bridged_ticks: None,
-        };
-        let mut sample = FifthOrderSample::at_rest(place, 0.0);
-        sample.flat.acceleration_m_s2 = levelled.acceleration_m_s2;
-        let Quaternion { w, z, .. } = levelled.attitude;
-        let heading = if w * w + z * z > 1e-6 { Heading::from_half(w, z) } else { Heading::ZERO };
-        self.fly_towards(&looked, &sample, heading, Followed::ALL)
-    }
-
-    /// Forgets the state that a flight as asked would go on from.
-    fn leave(&mut self) {
-        self.handover = Handover::OVER;
-        self.ahead.forget();
-        self.shaping.begin();
-        if self.table.gives_forces() && matches!(self.outcome.output, Output::Wrench(_)) {
-            self.take_motors_over();
         }
     }
 
@@ -323,45 +215,6 @@ impl Flyer {
             }
             _ => Err(Unflown::State),
         }
-    }
-
-    /// Keeps the table that is flown, to fade it out once another one comes: in a call of its own, each copy takes long.
-    #[inline(never)]
-    pub(super) fn keep_table(&mut self) {
-        self.handover.end();
-        self.before = self.table;
-    }
-
-    /// Flies another table from the next control step on, after [`Self::keep_table`]; in flight over [`FADE_STEPS`] of them,
-    /// but for a cascade that takes over from another one: their memory is the same, and their limits hold at once.
-    #[inline(never)]
-    pub(super) fn change_table(&mut self, table: &Table) {
-        self.table = *table;
-        let (old, new) = (&self.before, &self.table);
-        if self.flight.is_on() && !(old.gives_forces() && new.gives_forces()) {
-            if !old.gives_forces() {
-                self.memory.assume_hovering(self.craft.airframe());
-            }
-            let feed_forward = self.settings.feed_forward;
-            let (old, new) = (old.law(feed_forward), new.law(feed_forward));
-            self.handover.begin_again(FADE_STEPS, &old, &new, &mut self.memory);
-        }
-        self.ahead.forget();
-    }
-
-    /// Starts for a craft: motors off until a setpoint comes.
-    #[inline(never)]
-    pub(super) fn change_craft(&mut self, craft: &Craft) {
-        self.craft = *craft;
-        (self.flight, self.handover) = (Flight::Off, Handover::OVER);
-    }
-
-    /// Takes over the owner's settings.
-    #[inline(never)]
-    pub(super) fn set(&mut self, settings: &Settings, craft: &Craft) {
-        self.settings = *settings;
-        self.craft.actuation = craft.actuation;
-        self.craft.motor_lag_s = craft.motor_lag_s;
     }
 
     /// Drag (1/s) and moment (N s) that are flown with, and the cascade's memory; nothing under another law.

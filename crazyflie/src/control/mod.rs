@@ -20,12 +20,11 @@ mod flyer;
 mod law_step;
 mod outcome;
 mod power_on;
+mod setpoints;
+mod supervision;
 
-use quatrack::mixer::MotorLimited;
 use quatrack::nalgebra::Vector3;
-use quatrack::supervisor::{
-    self, Circumstances, Config, Guard, MonitorConfig, Order, ReferenceReport, Sample, Soundness,
-};
+use quatrack::supervisor::{self, Guard};
 use quatrack::{CascadeMemory, Quaternion};
 
 use self::background::Background;
@@ -37,16 +36,11 @@ pub use self::outcome::{Counters, Mode, Outcome, Settings, Why};
 pub(crate) use self::power_on::CONTROLLER;
 use crate::abi;
 use crate::craft::{Craft, DECIMATION};
-use crate::inbox::{Change, Inbox, News};
-use crate::stream::Arrival;
+use crate::inbox::Inbox;
 use crate::tables::Table;
-use crate::units;
 
 /// Time without a control step after which another controller has flown, or nobody, ms.
 const ABSENT_MS: u32 = 25;
-
-/// The supervisor's limits: ticks are the firmware's steps of 1 ms.
-const CONFIGS: (&Config, &MonitorConfig) = (&Config::STANDARD, &MonitorConfig::STANDARD);
 
 /// The controller of a craft.
 ///
@@ -113,169 +107,6 @@ impl Controller {
             self.counters.limited_steps = self.counters.limited_steps.wrapping_add(1);
         }
         true
-    }
-
-    /// Flies as asked where the supervisor says so, else does as it orders.
-    #[inline(always)]
-    fn supervise(&mut self, sensors: &abi::SensorData, state: &abi::State, step: u32) {
-        let (limited, measured) = (self.flyer.outcome.limited, (sensors, state));
-        let is_well = !self.is_bad && goes_on(&mut self.guard, measured, limited, step);
-        if (is_well || self.is_to_fly(measured, step)) && self.flyer.fly(&self.guard.looked(), step).is_err() {
-            self.rescue(step);
-        }
-    }
-
-    /// The supervisor's inputs beside the measurements; link, battery and arming are the firmware's.
-    fn circumstances(&self) -> Circumstances {
-        let reference = if self.is_bad { ReferenceReport::Bad } else { ReferenceReport::Sound };
-        Circumstances { asked: self.flyer.flight.asked(), reference, limited: self.flyer.cut(), ..Circumstances::WELL }
-    }
-
-    /// Not all is well: does as the supervisor orders, but for flying as asked, which is left to the caller.
-    #[cold]
-    #[inline(never)]
-    fn is_to_fly(&mut self, (sensors, state): (&abi::SensorData, &abi::State), step: u32) -> bool {
-        let (state, rates, felt) =
-            (units::state(state), units::body_rates_rad_s(sensors), units::specific_force_m_s2(sensors));
-        let sample = Sample {
-            now: step,
-            state: Some(&state),
-            body_rates_rad_s: Some(&rates),
-            specific_force_m_s2: felt.as_ref(),
-            thrust_m_s2: self.flyer.thrust_m_s2(),
-        };
-        let around = self.circumstances();
-        let order = self.guard.order_closely(CONFIGS, &sample, &around);
-        if let Order::Fly(looked) | Order::Brake(looked, ..) = &order
-            && looked.soundness != Soundness::Sound
-        {
-            self.counters.bad_states = self.counters.bad_states.wrapping_add(1);
-        }
-        match order {
-            Order::Fly(_) => return true,
-            Order::Brake(looked, sample, heading) => {
-                if self.flyer.brake(&looked, sample, heading).is_err() {
-                    self.rescue(step);
-                }
-            }
-            Order::Level(levelled) => self.flyer.level(&levelled),
-            Order::Off => self.flyer.switch_off(),
-        }
-        self.note();
-        false
-    }
-
-    /// The law gives nothing: level, where that can be flown.
-    #[cold]
-    #[inline(never)]
-    fn rescue(&mut self, step: u32) {
-        let around = self.circumstances();
-        match self.guard.step_failed(step, CONFIGS.1.tick_s, &around) {
-            Some(levelled) => self.flyer.level(&levelled),
-            None => self.flyer.switch_off(),
-        }
-        self.note();
-    }
-
-    /// Remembers why the craft is not flown as asked.
-    #[cold]
-    #[inline(never)]
-    fn note(&mut self) {
-        if let Some(why) = Why::of(self.guard.mode()) {
-            self.why = why;
-        }
-    }
-
-    /// Between control steps. Until a setpoint has been taken here the one before is carried on, which leads to the same place
-    /// unless it jumps. Gives the background work that there is time for.
-    #[inline]
-    pub fn between(&mut self, setpoint: &abi::Setpoint, sensors: &abi::SensorData, step: u32) -> Option<Work> {
-        if self.flyer.flight == Flight::NoCraft {
-            return Some(self.background.next());
-        }
-        // One thing at a time: a setpoint that comes with the longest look of the observers is taken a call later, and is fitted
-        // another one later. It is dated by its stamp.
-        let is_busy = self.flyer.observe(sensors);
-        let news = if is_busy { self.inbox.glance(setpoint, step) } else { self.inbox.look(setpoint, step) };
-        let has_time = news == News::Nothing && !(is_busy || self.is_heading_due || self.flyer.stream.is_due());
-        match news {
-            News::Nothing if is_busy || has_time => {}
-            News::Nothing if self.is_heading_due => self.follow_heading(),
-            News::Nothing => self.flyer.stream.catch_up(),
-            News::Motion => self.follow_motion(),
-            News::Other => self.take(setpoint, step),
-        }
-        self.flyer.look_ahead(&self.guard, step.wrapping_add(1));
-        if has_time { Some(self.background.next()) } else { self.background.put_off() }
-    }
-
-    /// Takes a setpoint, and does as it asks.
-    #[inline(never)]
-    fn take(&mut self, setpoint: &abi::Setpoint, now: u32) {
-        match self.inbox.take(setpoint) {
-            Change::Request(request) => {
-                if !self.flyer.flight.is_on() {
-                    self.guard.arm(now);
-                    self.why = Why::Nothing;
-                }
-                self.is_bad = false;
-                self.begin_or_go_on(Flight::of(&request, &self.flyer.craft));
-            }
-            Change::Off => self.turn_off(now),
-            Change::Bad => self.bad_setpoint(),
-        }
-    }
-
-    /// Takes one more motion of the stream. Its heading is left to the next call, so that none has to do everything: until then the
-    /// one before turns on.
-    #[inline(never)]
-    fn follow_motion(&mut self) {
-        let (newest, beyond_jerk) = (self.inbox.newest(), self.flyer.looks_beyond_jerk());
-        let arrival = self.flyer.stream.accept(&newest.motion, newest.date_ms, beyond_jerk);
-        self.is_heading_due = true;
-        if arrival == Arrival::Jumped {
-            self.counters.jumps = self.counters.jumps.wrapping_add(1);
-        }
-    }
-
-    /// Takes the heading of the newest setpoint.
-    #[inline(never)]
-    fn follow_heading(&mut self) {
-        let newest = self.inbox.newest();
-        let is_differenced = self.flyer.looks_beyond_jerk() && newest.is_by_yaw;
-        self.flyer.headings.accept(newest.heading, newest.heading_rate_rad_s, newest.date_ms, is_differenced);
-        self.is_heading_due = false;
-    }
-
-    #[inline(never)]
-    fn begin_or_go_on(&mut self, flight: Flight) {
-        if !self.flyer.flight.is_like(&flight) {
-            self.flyer.begin(&flight, self.inbox.newest());
-        }
-        self.flyer.flight = flight;
-        self.flyer.ahead.forget();
-        self.follow_motion();
-        self.follow_heading();
-    }
-
-    /// Motors off, as asked.
-    #[cold]
-    #[inline(never)]
-    fn turn_off(&mut self, now: u32) {
-        self.guard.disarm(now);
-        self.is_bad = false;
-        self.flyer.turn_off();
-    }
-
-    /// The setpoint makes no sense: a flight goes on with it as the supervisor says; none begins with it.
-    #[cold]
-    #[inline(never)]
-    fn bad_setpoint(&mut self) {
-        self.counters.bad_setpoints = self.counters.bad_setpoints.wrapping_add(1);
-        self.is_bad = true;
-        if self.flyer.flight == Flight::Off && self.guard.mode().is_in_air() {
-            self.flyer.flight = Flight::Unknown;
-        }
     }
 
     /// Another controller has flown in the meantime, or nobody: nothing that was remembered holds. The motors are
@@ -360,23 +191,4 @@ impl Controller {
     pub fn rotation_error_rad(&self, attitude: Quaternion) -> Vector3<f32> {
         self.flyer.rotation_error_rad(attitude)
     }
-}
-
-/// Whether all measurements of a step are sound.
-#[inline(always)]
-fn goes_on(
-    guard: &mut Guard,
-    (sensors, state): (&abi::SensorData, &abi::State),
-    limited: MotorLimited,
-    step: u32,
-) -> bool {
-    let (state, rates) = (units::state(state), units::body_rates_rad_s(sensors));
-    let sample = Sample {
-        now: step,
-        state: Some(&state),
-        body_rates_rad_s: Some(&rates),
-        specific_force_m_s2: None,
-        thrust_m_s2: f32::INFINITY,
-    };
-    guard.goes_on(CONFIGS, &sample, &Circumstances { limited, ..Circumstances::WELL })
 }
