@@ -1,32 +1,27 @@
 //! The flight: states, orders and ticks in; gated commands, motor forces and answers out. The control interrupt owns all
 //! of it.
 
+mod answers;
 #[cfg(not(feature = "motors"))]
 #[path = "flight/commands_only.rs"]
 pub(crate) mod motors;
 #[cfg(feature = "motors")]
 pub(crate) mod motors;
+mod settings;
+mod step;
 
-#[cfg(feature = "motors")]
-use quatrack::body_rate::BandwidthError;
-use quatrack::command::LimitsError;
-use quatrack::gains::table::AcceptedTable;
-use quatrack::link::{
-    CommandOut, ForcesOut, FromBoard, GainStore, LawChoice, LimitsSetting, NoCommand, RigidStateIn, StateIn,
-};
+use quatrack::link::{GainStore, NoCommand, RigidStateIn, StateIn};
 use quatrack::mixer::MotorLimited;
-use quatrack::supervisor::{
-    ArmError, Asked, Circumstances, Config, Fault, Guard, Mode, MonitorConfig, Order, Preflight, Reason,
-    ReferenceReport, Sample,
-};
-use quatrack::{Command, Leash, Limits, MotorForces, Output, Rate, RigidState, State, Tick};
+use quatrack::supervisor::{ArmError, Config, Fault, Guard, Mode, MonitorConfig, Preflight, ReferenceReport};
+use quatrack::{Command, Leash, Limits, Rate, RigidState, State, Tick};
 
-use crate::craft::BodyRates;
-use crate::laws::{FADE_STEPS, Laws, Refused};
-use crate::playback::{self, Playback};
-use crate::vehicle::{AIRFRAME, BODY_RATES_MAX_RAD_S, START_MAX_M, STOPPED};
-
+use self::answers::Answer;
 pub use self::motors::ToMotors;
+use self::settings::step_rate;
+use crate::laws::Laws;
+use crate::playback::{self, Playback};
+use crate::vehicle::{AIRFRAME, BODY_RATES_MAX_RAD_S, START_MAX_M};
+
 pub use crate::rates::{DECIMATION, LOCK_STEP, TICK_RATE, TICK_RATE_HZ};
 
 /// Bounds of a flight unless they are set otherwise: 50 ms without a state, half a second without a frame.
@@ -41,13 +36,6 @@ struct Arrived {
     state: StateIn,
     at: Tick,
     answered: bool,
-}
-
-/// A step and its result.
-struct Answer {
-    tick: Tick,
-    state_tick: Tick,
-    result: Result<Output, NoCommand>,
 }
 
 /// Memory for uploads, too large for the stack at start-up; all zeros, so that a static costs no flash.
@@ -157,87 +145,6 @@ impl Flight {
         self.decimation == LOCK_STEP
     }
 
-    /// Ticks of the loop for one step, or [`LOCK_STEP`].
-    pub fn decimation(&self) -> u32 {
-        self.decimation
-    }
-
-    /// Sets the ticks for one step. Gain tables for another rate are dropped, that of the cascade in the image too.
-    pub fn set_decimation(&mut self, decimation: u32) {
-        self.decimation = decimation;
-        self.laws.set_rate(step_rate(decimation));
-    }
-
-    /// The law in force.
-    pub fn law(&self) -> LawChoice {
-        self.laws.choice()
-    }
-
-    /// Chooses a law, from the next step on; in flight over [`FADE_STEPS`].
-    ///
-    /// # Errors
-    /// As [`Laws::select`].
-    #[cold]
-    pub fn select(&mut self, law: LawChoice) -> Result<(), Refused> {
-        self.laws.select(law, self.fade_steps())
-    }
-
-    /// The rate of the steps that gain tables must be certified at, if there are any for it. In lock-step the states are
-    /// taken to come at the rate of [`DECIMATION`].
-    pub fn table_rate(&self) -> Option<Rate> {
-        self.laws.rate()
-    }
-
-    /// Puts an accepted gain table to use, from the next step on; in flight over [`FADE_STEPS`] where it takes the place
-    /// of the one that is flown.
-    ///
-    /// # Errors
-    /// As [`Laws::load`].
-    #[cold]
-    pub fn load(&mut self, table: &AcceptedTable<'_>) -> Result<(), Refused> {
-        self.laws.load(table, self.fade_steps())
-    }
-
-    /// On the ground there is nothing to jump.
-    fn fade_steps(&self) -> u16 {
-        if self.mode().motors_allowed() { FADE_STEPS } else { 0 }
-    }
-
-    /// Bandwidth of the body-rate loop, rad/s.
-    #[cfg(feature = "motors")]
-    pub fn bandwidth_rad_s(&self) -> [f32; 3] {
-        self.laws.actuations.bandwidth_rad_s()
-    }
-
-    /// Sets it.
-    ///
-    /// # Errors
-    /// As [`quatrack::BodyRateLoop::new`]; the old setting stays.
-    #[cfg(feature = "motors")]
-    pub fn set_bandwidth(&mut self, bandwidth_rad_s: [f32; 3]) -> Result<(), BandwidthError> {
-        self.laws.actuations.set_bandwidth(bandwidth_rad_s)
-    }
-
-    /// The limits in force.
-    pub fn limits(&self) -> LimitsSetting {
-        let limits = self.laws.limits();
-        LimitsSetting {
-            thrust_min_m_s2: limits.thrust_min_m_s2(),
-            thrust_max_m_s2: limits.thrust_max_m_s2(),
-            body_rates_max_rad_s: limits.body_rates_max_rad_s().into(),
-        }
-    }
-
-    /// Sets the limits.
-    ///
-    /// # Errors
-    /// As [`Limits::new`]; the ones in force stay.
-    #[cold]
-    pub fn set_limits(&mut self, limits: LimitsSetting) -> Result<(), LimitsError> {
-        self.laws.set_limits(limits.check()?);
-        Ok(())
-    }
-
     /// Takes an arm request. In lock-step, where no motor turns, only faults and the link are looked at.
     ///
     /// # Errors
@@ -291,58 +198,10 @@ impl Flight {
         is_fresh.then_some(&arrived.state.state)
     }
 
-    /// The command that passes; zero under a law that gives none.
-    pub fn command(&self) -> &Command {
-        &self.passed
-    }
-
-    /// The motor forces that pass, N.
-    pub fn forces_n(&self) -> &MotorForces {
-        self.motors.forces_n()
-    }
-
-    /// Those that motors are to be driven to: none in lock-step, where it is not this craft that flies.
-    #[inline]
-    pub fn driven_forces_n(&self) -> &MotorForces {
-        if self.is_lock_step() { &STOPPED } else { self.motors.forces_n() }
-    }
-
     /// Whether the next step is to be given the craft's own body rates.
     #[inline]
     pub fn takes_body_rates(&self) -> bool {
         !self.is_lock_step() && self.guard.mode().motors_allowed()
-    }
-
-    /// The answer to the last state, once.
-    pub fn take_message(&mut self) -> Option<FromBoard> {
-        let is_new = core::mem::take(&mut self.is_answer_new);
-        is_new.then(|| self.message())
-    }
-
-    fn message(&self) -> FromBoard {
-        let Answer { tick, state_tick, result } = &self.answer;
-        let (tick, state_tick) = (*tick, *state_tick);
-        match result {
-            Ok(Output::Command(step)) => FromBoard::Command(CommandOut { tick, state_tick, result: Ok(*step) }),
-            Ok(Output::Forces(step)) => FromBoard::Forces(ForcesOut { tick, state_tick, result: Ok(*step) }),
-            Err(reason) if self.motors.answers_by_forces() => {
-                FromBoard::Forces(ForcesOut { tick, state_tick, result: Err(*reason) })
-            }
-            Err(reason) => FromBoard::Command(CommandOut { tick, state_tick, result: Err(*reason) }),
-        }
-    }
-
-    /// The same, if it is a command.
-    pub fn take_answer(&mut self) -> Option<CommandOut> {
-        match self.take_message()? {
-            FromBoard::Command(command) => Some(command),
-            _ => None,
-        }
-    }
-
-    /// Steps taken, and those without a command.
-    pub fn steps(&self) -> (u32, u32) {
-        (self.steps, self.steps_failed)
     }
 
     /// Takes a fault: zero from here on, until a restart.
@@ -353,134 +212,12 @@ impl Flight {
         self.stop();
     }
 
-    /// One control step at a tick of the board: supervise, do as the supervisor orders, and answer the state if it is
-    /// new.
-    #[inline]
-    pub fn step(&mut self, now: Tick, overrun: bool, rates: BodyRates) {
-        self.steps = self.steps.wrapping_add(1);
-        let state_tick = self.arrived.as_ref().map_or(now, |arrived| arrived.state.tick);
-        let tick = if self.is_lock_step() { state_tick } else { now };
-        self.answer.result = self.supervised(now, tick, overrun, rates);
-        match &self.answer.result {
-            Ok(output) => {
-                self.limited = output.limited();
-                self.passed = output.command().map_or(Command::ZERO, |step| step.command);
-                self.motors.pass(output);
-            }
-            Err(_) => self.stand_still(),
-        }
-        (self.answer.tick, self.answer.state_tick) = (now, state_tick);
-        if let Some(arrived) = &mut self.arrived {
-            self.is_answer_new |= !arrived.answered;
-            arrived.answered = true;
-        }
-    }
-
-    /// The output that passes in this step, or the reason why none does.
-    #[inline]
-    fn supervised(&mut self, now: Tick, tick: Tick, overrun: bool, rates: BodyRates) -> Result<Output, NoCommand> {
-        let is_fresh = self.fresh_state(now).is_some();
-        self.motors.look_at(rates);
-        // Rates that came with a state are as old as it is.
-        let body_rates = self.motors.body_rates(rates, is_fresh);
-        let around = Circumstances {
-            link_silence_ticks: age(self.heard_at, now),
-            asked: Asked::Places,
-            reference: if self.playback.is_there() { self.reference } else { ReferenceReport::Missing },
-            limited: self.limited,
-            levels: body_rates.is_some() && self.motors.can_level(),
-            starts_near: self.guard.mode() != Mode::Armed || self.starts_near(now),
-            battery_v: Some(self.motors.battery().volts()),
-            overrun,
-            fault: self.fault,
-        };
-        let sample = Sample {
-            now: tick,
-            state: if is_fresh { self.arrived.as_ref().map(|arrived| &arrived.state.state) } else { None },
-            body_rates_rad_s: body_rates.as_ref(),
-            specific_force_m_s2: None,
-            thrust_m_s2: self.laws.thrust_m_s2(),
-        };
-        let Self { guard, laws, playback, motors, leash, reference, .. } = self;
-        let looked = match guard.order((&self.config, &MONITOR), &sample, &around) {
-            Order::Fly(looked) => looked,
-            // The reference is checked meanwhile: once it is sound again the flight goes on.
-            Order::Brake(looked, sample, heading) => {
-                *reference = looked_at(playback, tick);
-                return laws.brake(&looked, sample, heading).map_err(NoCommand::Step);
-            }
-            Order::Level(levelled) => {
-                *reference = looked_at(playback, tick);
-                return laws.level(&levelled).map_err(NoCommand::Step);
-            }
-            Order::Off => return Err(NoCommand::Mode(guard.mode())),
-        };
-        let stepped = motors.step(laws, (playback, leash), tick, &looked, body_rates.is_some());
-        let Err(failure) = stepped else { return stepped };
-        let instead = match failure {
-            NoCommand::Reference(_) => {
-                *reference = ReferenceReport::Bad;
-                let brake = guard.reference_failed(tick, MONITOR.tick_s, &around);
-                brake.and_then(|(looked, sample, heading)| laws.brake(&looked, sample, heading).ok())
-            }
-            _ => {
-                let levelled = guard.step_failed(tick, MONITOR.tick_s, &around);
-                levelled.and_then(|levelled| laws.level(&levelled).ok())
-            }
-        };
-        instead.ok_or(failure)
-    }
-
-    /// Whether the reference begins near enough to where the craft is.
-    #[cold]
-    fn starts_near(&mut self, now: Tick) -> bool {
-        let begins_at = self.playback.begins_at_m();
-        let (Some(begins_at), Some(state)) = (begins_at, self.fresh_state(now)) else { return true };
-        let way = begins_at - state.position_m;
-        way.dot(&way) <= START_MAX_M * START_MAX_M
-    }
-
-    #[cold]
-    fn stand_still(&mut self) {
-        self.steps_failed = self.steps_failed.wrapping_add(1);
-        self.stop();
-    }
-
     /// Nothing passes.
     #[inline]
     fn stop(&mut self) {
         self.passed = Command::ZERO;
         self.motors.stop();
     }
-
-    /// A tick without a step. In lock-step, where none comes by itself, it looks at the ages, and stops where they are too high.
-    pub fn watch(&mut self, now: Tick, overrun: bool) {
-        if !(self.is_lock_step() && self.guard.mode().motors_allowed()) {
-            return;
-        }
-        let is_silent = age(self.heard_at, now).is_none_or(|ticks| ticks > self.config.link_silence_max_ticks);
-        let is_old = self.guard.mode().is_in_air() && self.fresh_state(now).is_none();
-        let reason = match (overrun && self.config.overruns_tolerated == 0, is_silent, is_old) {
-            (true, ..) => Reason::Overrun,
-            (_, true, _) => Reason::LinkLost,
-            (.., true) => Reason::StateLost,
-            _ => return,
-        };
-        self.guard.stop(reason, now);
-        self.stop();
-    }
-}
-
-/// Whether the reference can be flown.
-#[cold]
-fn looked_at(playback: &mut Playback, tick: Tick) -> ReferenceReport {
-    if playback.reference(tick).is_ok() { ReferenceReport::Sound } else { ReferenceReport::Bad }
-}
-
-/// The rate of the steps at so many ticks each, if it is a whole number of Hz.
-fn step_rate(decimation: u32) -> Option<Rate> {
-    let ticks = if decimation == LOCK_STEP { DECIMATION } else { decimation };
-    if TICK_RATE_HZ.is_multiple_of(ticks) { Rate::from_hz(TICK_RATE_HZ.checked_div(ticks)?) } else { None }
 }
 
 /// Ticks since something happened.

@@ -1,5 +1,7 @@
 //! The link's side of the board: bytes in; orders to the flight, and frames, out. Runs whenever nothing else does.
 
+mod greeting;
+mod orders;
 mod parameters;
 mod speaker;
 mod uploads;
@@ -7,21 +9,15 @@ mod uploads;
 use heapless::Vec;
 use quatrack::Tick;
 use quatrack::link::{
-    Admission, BLOB_BYTES_MAX, BlobError, BlobReceiver, DELIMITER, Decoder, FRAME_BYTES, FaultReport, FromBoard,
-    Identity, LoopStatistics, Message as _, Nonce, Received, Refusal, TRAJECTORY_PIECES, Telemetry, ToBoard,
-    TrajectoryCommand, TrajectoryId, UploadBegin, Version,
+    Admission, BLOB_BYTES_MAX, BlobReceiver, DELIMITER, Decoder, FRAME_BYTES, FaultReport, FromBoard, LoopStatistics,
+    Message as _, Nonce, Refusal, Telemetry, ToBoard, UploadBegin,
 };
 
 use self::speaker::Speaker;
-use crate::flight::{Flight, TICK_RATE_HZ};
+use crate::flight::Flight;
 use crate::kept::Keep;
-use crate::laws::Refused;
 use crate::provisioned::Keys;
 use crate::signature::Signatures;
-use crate::stored;
-
-/// Identifies the control path: a checksum of the sources that compute commands, by the build script.
-const CONTROL_IMAGE: u32 = include!(concat!(env!("OUT_DIR"), "/control_image.rs"));
 
 /// Access to the flight, which the control interrupt shares.
 pub trait Shared {
@@ -177,85 +173,10 @@ impl<K: Keep> Session<K> {
         self.speaker.frame(message, buffer)
     }
 
-    fn greet(
-        &mut self,
-        hello: &Received<ToBoard>,
-        host: Nonce,
-        flight: &mut impl Shared,
-        vitals: &impl Vitals,
-        answers: &mut Answers,
-    ) -> Option<FromBoard> {
-        let Received { session, sequence, .. } = *hello;
-        let greeted = match self.speaker.greet(session, host, || vitals.nonce()) {
-            Ok(greeted) => greeted,
-            Err(reason) => return Some(FromBoard::Nack { sequence, reason }),
-        };
-        if let Some(seal) = greeted.to_board {
-            self.decoder.propose(session, sequence, seal);
-        }
-        let identity = Identity {
-            firmware: version(),
-            control_image: CONTROL_IMAGE,
-            tick_rate_hz: TICK_RATE_HZ,
-            decimation: flight.with(|flight| flight.decimation()),
-            trajectory_pieces: TRAJECTORY_PIECES as u32,
-            protection: self.speaker.protection(),
-            signed_tables: self.signatures.are_asked_for(),
-            nonce: greeted.nonce,
-        };
-        // There is room for two.
-        let _ = answers.push(FromBoard::Hello(identity));
-        if self.speaker.has_key() {
-            // Told once the session is open.
-            return None;
-        }
-        self.fault_told = true;
-        self.fault.map(FromBoard::Fault)
-    }
-
-    fn carry_out(
-        &mut self,
-        received: Received<ToBoard>,
-        flight: &mut impl Shared,
-        now: Tick,
-    ) -> Result<Option<FromBoard>, Refusal> {
-        match received.message {
-            ToBoard::SelectLaw(law) => flight.with(|flight| flight.select(law)).map(|()| None).map_err(Refusal::from),
-            ToBoard::Trajectory(command) => trajectory(command, flight).map(|()| None),
-            ToBoard::Arm => flight.with(|flight| flight.arm(now)).map(|()| None).map_err(Refusal::Arm),
-            ToBoard::Disarm => {
-                flight.with(Flight::disarm);
-                Ok(None)
-            }
-            ToBoard::UploadBegin(begin) => {
-                self.uploads.begin(&begin).map(|progress| Some(FromBoard::Upload(progress))).map_err(Refusal::Upload)
-            }
-            ToBoard::UploadChunk(chunk) => {
-                self.uploads.chunk(&chunk).map(|progress| Some(FromBoard::Upload(progress))).map_err(Refusal::Upload)
-            }
-            ToBoard::UploadQuery => {
-                self.uploads.progress().map(|progress| Some(FromBoard::Upload(progress))).map_err(Refusal::Upload)
-            }
-            ToBoard::UploadCommit { id } => self.counted(|session| session.commit(id, flight)).map(|()| None),
-            ToBoard::UploadKeep { id } => self.counted(|session| session.keep(id, flight)).map(|()| None),
-            _ => Err(Refusal::Unsupported),
-        }
-    }
-
     fn telemetry(&self, flight: &mut impl Shared, vitals: &impl Vitals) -> FromBoard {
         let (mode, (steps, steps_failed)) = flight.with(|flight| (flight.mode(), flight.steps()));
         let statistics = LoopStatistics { steps, steps_failed, ..vitals.statistics() };
         FromBoard::Telemetry(Telemetry { tick: vitals.now(), mode, statistics, link: *self.decoder.counters() })
-    }
-}
-
-impl From<Refused> for Refusal {
-    fn from(refused: Refused) -> Self {
-        match refused {
-            Refused::NoTable => Self::NoTable,
-            Refused::Busy => Self::LawChanging,
-            Refused::Accept(error) => Self::Blob(BlobError::GainTable(error.into())),
-        }
     }
 }
 
@@ -276,37 +197,6 @@ fn answer(sequence: u32, done: Result<FromBoard, Refusal>) -> FromBoard {
 
 fn disarmed(flight: &mut impl Shared) -> Result<(), Refusal> {
     if flight.with(|flight| flight.mode().motors_allowed()) { Err(Refusal::NotWhileArmed) } else { Ok(()) }
-}
-
-fn trajectory(command: TrajectoryCommand, flight: &mut impl Shared) -> Result<(), Refusal> {
-    let found = match command {
-        TrajectoryCommand::Start(TrajectoryId::Uploaded) => flight.with(|flight| flight.playback.start_uploaded()),
-        TrajectoryCommand::Start(id) => {
-            // Checked here, where only the link waits for it.
-            let player = stored::player(id).ok_or(Refusal::NoTrajectory)?;
-            flight.with(|flight| flight.playback.start(player));
-            true
-        }
-        TrajectoryCommand::Pause => flight.with(|flight| flight.playback.pause()),
-        TrajectoryCommand::Resume => flight.with(|flight| flight.playback.resume()),
-        TrajectoryCommand::Stop => {
-            flight.with(|flight| flight.playback.stop());
-            true
-        }
-    };
-    if found { Ok(()) } else { Err(Refusal::NoTrajectory) }
-}
-
-/// The package's version.
-fn version() -> Version {
-    let number = |text: &str| {
-        text.bytes().fold(0_u16, |sum, digit| sum.wrapping_mul(10).wrapping_add(u16::from(digit.wrapping_sub(b'0'))))
-    };
-    Version {
-        major: number(env!("CARGO_PKG_VERSION_MAJOR")),
-        minor: number(env!("CARGO_PKG_VERSION_MINOR")),
-        patch: number(env!("CARGO_PKG_VERSION_PATCH")),
-    }
 }
 
 #[cfg(test)]
