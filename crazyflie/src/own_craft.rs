@@ -135,13 +135,16 @@ impl OwnCraft {
         bytes
     }
 
-    /// The craft of a file whose checksum has been looked at; nothing where it is none.
+    /// The craft of a file; nothing where it is none, or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Option<Self> {
-        let (figures, bytes) = bytes.strip_prefix(&MAGIC)?.split_first_chunk::<{ 4 * FIGURES }>()?;
-        let (table, checksum) = bytes.split_first_chunk::<TABLE_BYTES>()?;
+        let (body, checksum) = bytes.split_last_chunk()?;
+        if crc32c(body) != u32::from_le_bytes(*checksum) {
+            return None;
+        }
+        let (figures, table) = body.strip_prefix(&MAGIC)?.split_first_chunk::<{ 4 * FIGURES }>()?;
         let mut figures = figures.as_chunks().0.iter().map(|figure| f32::from_le_bytes(*figure));
         let mut next = || figures.next();
-        let own = Self {
+        Some(Self {
             mass_kg: next()?,
             inertia_kg_m2: [next()?, next()?, next()?, next()?, next()?, next()?],
             arm_m: next()?,
@@ -149,9 +152,8 @@ impl OwnCraft {
             torque_per_thrust_m: next()?,
             motor_lag_s: next()?,
             body_rates_rad_s: [next()?, next()?, next()?],
-            table: *table,
-        };
-        (checksum.len() == 4).then_some(own)
+            table: table.try_into().ok()?,
+        })
     }
 
     /// The number by which a table names the vehicle that it is for: CRC-32C of its name and figures.

@@ -90,7 +90,7 @@ impl Handover {
     #[inline(never)]
     fn hand_to(&mut self, controller: &mut Controller) {
         match &self.craft {
-            Some((_, Arrival::Sent)) if controller.mode().is_flight() => {}
+            Some((_, Arrival::Sent)) if Mode::is_flight(controller.mode() as u8) => {}
             Some((craft, _)) => {
                 // The motors are off: there is time, and nothing is flown with a half of it.
                 controller.change_craft(craft);
@@ -189,7 +189,7 @@ impl Service {
     /// A craft of the owner's has been sent: it takes the place of the one before, which does not fly.
     #[inline(never)]
     fn change_craft(&mut self, own: &OwnCraft, platform: &Platform, shared: &Shared) -> Result<(), Status> {
-        if Mode::is_flight_numbered(shared.log.mode.load(Relaxed)) {
+        if Mode::is_flight(shared.log.mode.load(Relaxed)) {
             return Err(Status::Flying);
         }
         let (craft, table) = own.on(platform)?;

@@ -2,7 +2,7 @@
 //! table or the craft out.
 //!
 //! ```text
-//! 1  length: u16  checksum: u32      announces a table, by its own checksum: its last four bytes
+//! 1  length: u16  checksum: u32      announces either, by its own checksum: its last four bytes
 //! 2  offset: u16  bytes: 1 to 27     its next bytes
 //! 3                                  all sent: check it and make it the uploaded table
 //! ```

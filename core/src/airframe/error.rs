@@ -1,4 +1,4 @@
-//! The figure that makes no craft, in; the sentence that names it, with what to check, out.
+//! The figure that makes no craft, in; the sentence that names it, with the remedy, out.
 
 use core::fmt;
 

@@ -26,13 +26,8 @@ pub enum Mode {
 }
 
 impl Mode {
-    /// Whether it has the motors turn.
-    pub(crate) const fn is_flight(self) -> bool {
-        Self::is_flight_numbered(self as u8)
-    }
-
-    /// The same of its number.
-    pub(crate) const fn is_flight_numbered(number: u8) -> bool {
+    /// Whether the motors turn in the mode of a number.
+    pub(crate) const fn is_flight(number: u8) -> bool {
         number == Self::Flying as u8 || number == Self::Descending as u8
     }
 }

@@ -1,4 +1,4 @@
-//! The result of the last step in; what passes, the message that answers the state, once, and the counts of steps, out.
+//! The result of the last step in; its output, the message that answers the state, once, and the counts of steps, out.
 
 use quatrack::link::{CommandOut, ForcesOut, FromBoard, NoCommand};
 use quatrack::{Command, MotorForces, Output, Tick};

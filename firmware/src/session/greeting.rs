@@ -1,4 +1,4 @@
-//! A hello in; who the board is, with the keys of a session where it has one, out.
+//! A hello in; the board's name and version, with the keys of a session where it has one, out.
 
 use quatrack::link::{FromBoard, Identity, Nonce, Received, TRAJECTORY_PIECES, ToBoard, Version};
 

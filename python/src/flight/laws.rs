@@ -1,4 +1,4 @@
-//! The law that flies, as somebody gives it, and a scenario in; the flight, or what is wrong with the law, out.
+//! The law that flies, as somebody gives it, and a scenario in; the flight, or the fault of the law, out.
 
 use std::str::FromStr;
 

@@ -169,6 +169,23 @@ fn a_craft_is_sent_and_flies_once_the_one_before_does_not() {
 }
 
 #[test]
+fn a_craft_that_was_sent_is_flown_by_the_controller_that_is_selected_in_the_air() {
+    let (built_in, vehicle) =
+        (vehicles::by_name("crazyflie-2.1-brushless").unwrap(), file("crazyflie-2.1-brushless-45g.toml"));
+    let own = own_craft(&certified(&vehicle)).unwrap();
+    let mut firmware =
+        Firmware::start_told(&vehicle, built_in.mass_kg(), &Tune::new(0, 0.0), QUIET).expect("the built-in one");
+    held(&mut firmware, &vehicle, None, 100);
+    assert_eq!(send_for_words(&own.to_bytes()).0, Status::Taken as u8);
+    ffi::quatrackService();
+    // No step of this controller in between: another one has taken off.
+    ffi::controllerOutOfTreeInit();
+    let force_n = held(&mut firmware, &vehicle, Some(&Course::Hover(Vector3::z())), 4);
+    assert!((force_n / weight_n(&vehicle) - 1.0).abs() < 0.02, "{force_n} N");
+    assert_eq!(ffi::quatrack.log.table.load(Relaxed), 0);
+}
+
+#[test]
 fn a_craft_that_there_is_no_table_for_flies_once_it_is_sent() {
     let vehicle = file("crazyflie-2.1-legacy.toml");
     let own = own_craft(&certified(&vehicle)).unwrap();

@@ -1,4 +1,4 @@
-//! What the state machine is given and what it answers: the bounds of a flight and the conditions of a step; the verdict.
+//! The state machine's inputs, the bounds of a flight and the conditions of a step; and its answer, the verdict.
 
 use nalgebra::Vector3;
 

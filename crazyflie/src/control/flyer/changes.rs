@@ -1,4 +1,4 @@
-//! A flight of another kind, another table, craft or setting in; what flies, changed to it with what it has to forget, out.
+//! A flight of another kind, another table, craft or setting in; the flyer changed to it, and the memory that no longer holds forgotten, out.
 
 use quatrack::mixer::MotorLimited;
 use quatrack::{Handover, Memory};

@@ -11,7 +11,7 @@ use quatrack_simulation::scenario::{Law, Scenario};
 use serde::Serialize;
 
 use super::scenario::ScenarioArgs;
-use super::{Failure, output};
+use super::{Failure, output, picture};
 use crate::figures::{Curve, TrackingFigure};
 
 /// Laws where none is named: ours, the stock controller's, the one before ours, and the paper's.
@@ -128,8 +128,5 @@ fn write_figure(dir: &Path, name: &str, title: &str, flights: &[(&str, RigidFlig
         reference: Curve { label: "reference", time_s: &times(longest), position_m: &targets },
         flights: flown.iter().map(|(label, time_s, position_m)| Curve { label, time_s, position_m }).collect(),
     };
-    let (svg, png) = (dir.join(format!("{name}.svg")), dir.join(format!("{name}.png")));
-    output::write(&svg, figure.to_svg().map_err(Failure::verdict)?.as_bytes())?;
-    output::write(&png, &figure.to_png().map_err(Failure::verdict)?)?;
-    output::print(&format!("wrote {} and {}\n", svg.display(), png.display()))
+    picture::write_both(dir, name, &figure.to_svg().map_err(Failure::verdict)?)
 }

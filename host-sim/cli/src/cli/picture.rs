@@ -1,4 +1,4 @@
-//! A picture that an argument names: an SVG document in, the file as its name asks for it out.
+//! An SVG document in; the picture, as the name of its file asks for it, or both as SVG and as PNG, out.
 
 use std::ops::Deref;
 use std::path::Path;
@@ -39,6 +39,14 @@ pub(crate) fn write(path: &Path, svg: &str) -> Result<(), Failure> {
         return output::write(path, &figures::png(svg).map_err(Failure::verdict)?);
     }
     output::write(path, svg.as_bytes())
+}
+
+/// Writes a document to a folder, as NAME.svg and NAME.png, and says so.
+pub(crate) fn write_both(dir: &Path, name: &str, svg: &str) -> Result<(), Failure> {
+    let [vector, pixels] = ["svg", "png"].map(|end| dir.join(format!("{name}.{end}")));
+    write(&vector, svg)?;
+    write(&pixels, svg)?;
+    output::print(&format!("wrote {} and {}\n", vector.display(), pixels.display()))
 }
 
 #[cfg(test)]

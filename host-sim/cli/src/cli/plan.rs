@@ -163,7 +163,7 @@ pub(super) fn planned(
     })
 }
 
-/// The name of a file that is no plan for what it is; nothing where it is nothing that is known.
+/// The refusal of a file that is no plan but another kind that is known; nothing of any other file.
 fn no_plan(path: &Path, text: &str) -> Option<Failure> {
     let name = path.display().to_string();
     match file::parse(&name, text) {

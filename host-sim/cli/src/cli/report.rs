@@ -50,6 +50,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 fn reproduced() -> Result<Paper, Failure> {
     let reproduction = reproduce::fly()?;
     let figures = reproduce::figures(&reproduction)?;
-    let figures = figures.into_iter().map(|(number, title, svg, _)| (format!("Fig. {number}: {title}"), svg)).collect();
+    let figures = figures.into_iter().map(|(number, title, svg)| (format!("Fig. {number}: {title}"), svg)).collect();
     Ok(Paper { table: reproduction.to_string(), figures })
 }

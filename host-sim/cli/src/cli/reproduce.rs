@@ -12,8 +12,8 @@ use quatrack_simulation::reproduction::extensions::Extensions;
 use quatrack_simulation::reproduction::report::Reproduction;
 use quatrack_simulation::reproduction::table::Controller;
 
-use super::{Failure, output};
-use crate::figures::{Curve, FigureError, TrackingFigure};
+use super::{Failure, output, picture};
+use crate::figures::{Curve, TrackingFigure};
 
 /// Reproduces the paper: plans both trajectories from their waypoints, designs all four gains, flies every cell of
 /// Table I, and draws Figures 2 to 5.
@@ -89,7 +89,7 @@ pub(super) fn fly() -> Result<Reproduction, Failure> {
 }
 
 /// Number, title, SVG and PNG of each figure; the latter as it is asked for.
-pub(super) fn figures(reproduction: &Reproduction) -> Result<Vec<(u32, &'static str, String, Png)>, Failure> {
+pub(super) fn figures(reproduction: &Reproduction) -> Result<Vec<(u32, &'static str, String)>, Failure> {
     let mut drawn = Vec::new();
     for (number, title, course, controllers) in FIGURES {
         let flights: Vec<&Flight> = controllers
@@ -104,23 +104,15 @@ pub(super) fn figures(reproduction: &Reproduction) -> Result<Vec<(u32, &'static 
             reference: reference.curve("reference"),
             flights: tracks.iter().zip(&labels).map(|(track, label)| track.curve(label)).collect(),
         };
-        drawn.push((number, title, figure.to_svg().map_err(Failure::verdict)?, figure.to_png()));
+        drawn.push((number, title, figure.to_svg().map_err(Failure::verdict)?));
     }
     Ok(drawn)
 }
 
-/// A figure's pixels, or why there are none.
-type Png = Result<Vec<u8>, FigureError>;
-
 fn write_figures(reproduction: &Reproduction, dir: &Path) -> Result<(), Failure> {
-    for (number, _, document, pixels) in figures(reproduction)? {
-        let svg = dir.join(format!("figure{number}.svg"));
-        let png = dir.join(format!("figure{number}.png"));
-        output::write(&svg, document.as_bytes())?;
-        output::write(&png, &pixels.map_err(Failure::verdict)?)?;
-        output::print(&format!("wrote {} and {}\n", svg.display(), png.display()))?;
-    }
-    Ok(())
+    figures(reproduction)?
+        .iter()
+        .try_for_each(|(number, _, document)| picture::write_both(dir, &format!("figure{number}"), document))
 }
 
 /// A flight's positions over time, as a figure takes them.

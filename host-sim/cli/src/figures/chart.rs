@@ -1,7 +1,6 @@
 //! Quantities over one axis, panel below panel: a curve, or the residual of a flight.
 
 use super::flight::{Marks, Quantity, draw_quantities};
-use super::render;
 use super::space::Frame;
 use super::style::TITLE;
 use super::svg::{Anchor, Sheet};
@@ -37,14 +36,6 @@ impl ChartFigure<'_> {
         let size = compose::fitting(self.title, TITLE)?;
         sheet.text(self.title, [0.5 * compose::WIDTH, 32.0], size, Anchor::Middle);
         Ok(sheet.into_document())
-    }
-
-    /// As a PNG file, the same as the SVG: 2400 x 1440 opaque pixels of 8-bit RGBA.
-    ///
-    /// # Errors
-    /// [`FigureError`] if the data do not make a figure.
-    pub fn to_png(&self) -> Result<Vec<u8>, FigureError> {
-        render::png(&self.to_svg()?)
     }
 
     fn validate(&self) -> Result<(), FigureError> {

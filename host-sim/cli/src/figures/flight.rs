@@ -2,7 +2,7 @@
 
 use super::axis::{self, Range, Scale};
 use super::panels::Panel;
-use super::render::{self, width_em};
+use super::render::width_em;
 use super::space::{self, Frame};
 use super::style::{CAP_HEIGHT, Colour, LABEL, Stroke, TICK, TITLE};
 use super::svg::{Anchor, Sheet};
@@ -75,14 +75,6 @@ impl FlightFigure<'_> {
         sheet.text(figure.title, [0.5 * compose::WIDTH, 32.0], size, Anchor::Middle);
         compose::legend(&mut sheet, &lines)?;
         Ok(sheet.into_document())
-    }
-
-    /// As a PNG file, the same as the SVG: 2400 x 1640 opaque pixels of 8-bit RGBA.
-    ///
-    /// # Errors
-    /// [`FigureError`] if the data do not make a figure.
-    pub fn to_png(&self) -> Result<Vec<u8>, FigureError> {
-        render::png(&self.to_svg()?)
     }
 
     fn draw_panels(&self, sheet: &mut Sheet) -> Result<(), FigureError> {

@@ -100,14 +100,6 @@ impl TrackingFigure<'_> {
         compose::document(self)
     }
 
-    /// The figure as a PNG file, the same as the SVG: 2400 x 1120 opaque pixels of 8-bit RGBA.
-    ///
-    /// # Errors
-    /// [`FigureError`] if the data do not make a figure.
-    pub fn to_png(&self) -> Result<Vec<u8>, FigureError> {
-        png(&self.to_svg()?)
-    }
-
     fn validate(&self) -> Result<(), FigureError> {
         if !(1..=style::Colour::FLIGHTS.len()).contains(&self.flights.len()) {
             return Err(FigureError::Flights(self.flights.len()));

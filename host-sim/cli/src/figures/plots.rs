@@ -4,7 +4,6 @@ use super::axis::{self, Range, Scale};
 use super::compose;
 use super::flight::{Quantity, Trace};
 use super::panels::Panel;
-use super::render;
 use super::space::Frame;
 use super::style::{CAP_HEIGHT, LABEL, TICK, TITLE};
 use super::svg::{Anchor, Sheet};
@@ -57,14 +56,6 @@ impl PlotsFigure<'_> {
         let size = compose::fitting(self.title, TITLE)?;
         sheet.text(self.title, [0.5 * compose::WIDTH, 32.0], size, Anchor::Middle);
         Ok(sheet.into_document())
-    }
-
-    /// As a PNG file, the same as the SVG: 2400 x 1200 opaque pixels of 8-bit RGBA.
-    ///
-    /// # Errors
-    /// [`FigureError`] if the data do not make a figure.
-    pub fn to_png(&self) -> Result<Vec<u8>, FigureError> {
-        render::png(&self.to_svg()?)
     }
 }
 

@@ -31,7 +31,7 @@ fn tree(document: &str) -> Result<Tree, FigureError> {
     Tree::from_str(document, &options).map_err(|error| FigureError::Rendering(error.to_string()))
 }
 
-/// An SVG document as a PNG file of 8-bit RGBA.
+/// An SVG document as a PNG file, two pixels to a unit, 8-bit RGBA; a figure's are opaque.
 ///
 /// # Errors
 /// [`FigureError::Rendering`].

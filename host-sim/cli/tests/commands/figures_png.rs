@@ -1,7 +1,7 @@
 //! Figures as PNG: the picture is in the file, with its texts, and the same on every machine.
 
 use nalgebra::Vector3;
-use quatrack_cli::figures::{Curve, TrackingFigure};
+use quatrack_cli::figures::{Curve, TrackingFigure, png};
 use resvg::tiny_skia::{Pixmap, PremultipliedColorU8};
 
 const WIDTH: usize = 2400;
@@ -14,7 +14,8 @@ fn figure(lag_s: f64) -> Vec<u8> {
     let flight: Vec<_> = time_s.iter().map(|t| at((t - lag_s).max(0.0))).collect();
     let curve = |label, position_m| Curve { label, time_s: &time_s, position_m };
     let flights = vec![curve("flight", &flight)];
-    TrackingFigure { title: "A title", reference: curve("reference", &reference), flights }.to_png().expect("a figure")
+    let figure = TrackingFigure { title: "A title", reference: curve("reference", &reference), flights };
+    png(&figure.to_svg().expect("a figure")).expect("a picture")
 }
 
 /// Pixels of the file, all opaque.
@@ -67,6 +68,7 @@ fn any_title_and_label_can_be_drawn() {
     for text in ["", " ", "\u{3bc} = 2 \u{b0} \u{2212}1", "\u{1f681}\u{0}\n", &long] {
         let curve = Curve { label: text, time_s: &time_s, position_m: &position_m };
         let figure = TrackingFigure { title: text, reference: curve, flights: vec![curve; 4] };
-        assert!(figure.to_png().is_ok_and(|png| decode(&png).contains(&[0, 114, 178])), "{text:.20}");
+        let drawn = png(&figure.to_svg().expect("a figure"));
+        assert!(drawn.is_ok_and(|png| decode(&png).contains(&[0, 114, 178])), "{text:.20}");
     }
 }

@@ -1,4 +1,4 @@
-//! `quatrack fly` along courses of one's own: what is looked at before they are flown, and what is refused.
+//! `quatrack fly` along courses of one's own: the checks before they are flown, and the refusals.
 
 use std::fs;
 use std::path::Path;

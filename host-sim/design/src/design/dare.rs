@@ -22,6 +22,7 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::DesignError;
+use super::attempts::{self, ACCURATE};
 use super::dare_equation::{Problem, Refined, spectral_radius};
 use super::dare_existence::{require_detectable, require_stabilisable};
 use super::discretise::require_fitting;
@@ -31,10 +32,6 @@ use super::equation::Equation;
 use super::existence::require_positive_semidefinite;
 use super::require_symmetric;
 
-/// A solution counts as found if the last correction, relative to P, is below this.
-const ACCURATE: f64 = 1e-13;
-/// A solution to which no later start needs to be compared.
-const EXACT: f64 = 1e-17;
 /// A start whose first correction is above this share of P has lost too much in rounding to be refined where it is.
 const ROUGH: f64 = 1e-4;
 
@@ -138,26 +135,12 @@ impl Problem {
         let size = if q.hi.norm() > 0.0 { q.hi.norm() } else { 1.0 };
         lifted.add(&(DMatrix::identity(a.hi.nrows(), a.hi.nrows()) * size));
         // In 16 digits first: the refinement brings the others back on all but the hardest problems.
-        let attempts: [&dyn Fn() -> Option<Refined>; 3] = [
+        let ways: [&dyn Fn() -> Option<Refined>; 3] = [
             &|| self.refine(doubling_in_16_digits(&a, &self.factor, &q)?, ROUGH),
             &|| self.refine_in_cost_coordinates(doubling(&a, &self.factor, &q)?),
             &|| self.refine(doubling(&a, &self.factor, &lifted)?, f64::INFINITY),
         ];
-        let mut best: Option<Refined> = None;
-        for (number, attempt) in attempts.into_iter().enumerate() {
-            if let Some(refined) = attempt()
-                && best.as_ref().is_none_or(|held| refined.error() < held.error())
-            {
-                best = Some(refined);
-            }
-            // The second start may know P better than the first one, the third only does if the others do not stabilise.
-            let enough = |held: &Refined| {
-                held.error() <= EXACT || number > 0 && held.error().is_finite() && held.last_correction <= ACCURATE
-            };
-            if best.as_ref().is_some_and(enough) {
-                break;
-            }
-        }
+        let best = attempts::best(ways.into_iter().map(|way| way()));
         best.ok_or_else(|| inaccurate(f64::INFINITY))
     }
 }

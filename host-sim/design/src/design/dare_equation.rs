@@ -5,6 +5,7 @@
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
+use super::attempts::Attempt;
 use super::cost_coordinates::CostCoordinates;
 use super::discretise::require_fitting;
 use super::double_double::{DoubleMatrix, UNIT_ROUNDING};
@@ -48,10 +49,17 @@ pub(super) struct Refined {
     pub(super) rounding: f64,
 }
 
-impl Refined {
-    /// How far P may be off, over P; infinite if a pole is not inside the unit circle.
-    pub(super) fn error(&self) -> f64 {
-        if spectral_radius(&self.poles) < 1.0 { self.last_correction.max(self.rounding) } else { f64::INFINITY }
+impl Attempt for Refined {
+    fn is_stable(&self) -> bool {
+        spectral_radius(&self.poles) < 1.0
+    }
+
+    fn error(&self) -> f64 {
+        self.last_correction.max(self.rounding)
+    }
+
+    fn last_correction(&self) -> f64 {
+        self.last_correction
     }
 }
 

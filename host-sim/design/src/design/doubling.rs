@@ -1,7 +1,7 @@
 //! Structured doubling for the discrete Riccati equation `A' P (I + G P)^-1 A - P + Q = 0`, G = F F'.
 //!
 //! In flow A (n x n), F (n x m) and Q (n x n); out flows P: after k steps `H` is the cost of `2^k` samples. In 16 digits it
-//! takes a fraction of the time; in 32 digits it stands what equations lose in rounding that are far too ill-conditioned for 16.
+//! takes a fraction of the time; in 32 digits it solves equations that are far too ill-conditioned for 16.
 //! Reference: Chu, Fan, Lin and Wang 2004.
 
 use nalgebra::DMatrix;

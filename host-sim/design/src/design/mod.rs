@@ -15,6 +15,7 @@
 
 pub mod actuator_aware;
 pub mod along;
+mod attempts;
 pub mod cascade;
 pub mod codegen;
 mod cost_coordinates;

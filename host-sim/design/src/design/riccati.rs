@@ -26,6 +26,7 @@
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
+use super::attempts::ACCURATE;
 use super::equation::Equation;
 use super::existence::{
     marginal_pole, no_solution, require_detectable, require_positive_semidefinite, require_stabilisable,
@@ -33,7 +34,7 @@ use super::existence::{
 use super::input_weight::InputWeight;
 use super::lyapunov_operator::LyapunovOperator;
 use super::newton::Refined;
-use super::riccati_attempts::{ACCURATE, Attempt, best_attempt};
+use super::riccati_attempts::{Solution, solution};
 use super::{DesignError, require_symmetric};
 use crate::analysis::{MatrixError, require_finite, require_square};
 
@@ -144,9 +145,9 @@ fn solve(
     }
     // A second scaling for the rare matrix that balancing makes worse.
     let scalings = [balanced, given.clone().uniformly_scaled()];
-    let Some(attempt) = best_attempt(&scalings) else { return Err(no_solution(&scalings[0], f64::INFINITY)) };
-    let abscissa = attempt.abscissa();
-    let Attempt { equation, refined, poles } = attempt;
+    let Some(found) = solution(&scalings) else { return Err(no_solution(&scalings[0], f64::INFINITY)) };
+    let abscissa = found.abscissa();
+    let Solution { equation, refined, poles } = found;
     let p = equation.unscaled(&refined.x);
     let relative_residual = given.relative_residual(&p.hi);
     let stable = refined.last_correction <= ACCURATE && abscissa < 0.0;

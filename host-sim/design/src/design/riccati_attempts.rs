@@ -7,6 +7,7 @@
 
 use num_complex::Complex64;
 
+use super::attempts::{self, Attempt};
 use super::cost_coordinates::CostCoordinates;
 use super::double_double::DoubleMatrix;
 use super::equation::Equation;
@@ -14,10 +15,6 @@ use super::hamiltonian::{by_precise_doubling, by_precise_sign_function, by_schur
 use super::newton::{Refined, refine};
 use crate::analysis::eigenvalues;
 
-/// A solution counts as found if the last correction, relative to P, is below this.
-pub(super) const ACCURATE: f64 = 1e-13;
-/// A solution to which no other start needs to be compared.
-const EXACT: f64 = 1e-17;
 /// A start whose first correction is above this share of P has lost too much in rounding to be refined where it is.
 const ROUGH: f64 = 1e-2;
 
@@ -27,27 +24,36 @@ type Start = fn(&Equation) -> Option<DoubleMatrix>;
 type Refinement = fn(&Equation, DoubleMatrix) -> Option<(Refined, Vec<Complex64>)>;
 
 /// A refined solution in the coordinates of its equation.
-pub(super) struct Attempt<'a> {
+pub(super) struct Solution<'a> {
     pub(super) equation: &'a Equation,
     pub(super) refined: Refined,
     /// Eigenvalues of the closed loop, 1/s, sorted by real part.
     pub(super) poles: Vec<Complex64>,
 }
 
-impl Attempt<'_> {
+impl Solution<'_> {
     /// Largest real part of the poles.
     pub(super) fn abscissa(&self) -> f64 {
         self.poles.last().map_or(f64::NEG_INFINITY, |pole| pole.re)
     }
+}
 
-    /// A stable attempt beats an unstable one; among equals the better known one wins.
-    fn rank(&self) -> (bool, f64) {
-        (self.abscissa() >= 0.0, self.refined.last_correction.max(self.refined.rounding))
+impl Attempt for Solution<'_> {
+    fn is_stable(&self) -> bool {
+        self.abscissa() < 0.0
+    }
+
+    fn error(&self) -> f64 {
+        self.refined.last_correction.max(self.refined.rounding)
+    }
+
+    fn last_correction(&self) -> f64 {
+        self.refined.last_correction
     }
 }
 
-/// Tries the starts in each scaling until one refines to full accuracy; otherwise the best there was.
-pub(super) fn best_attempt(scalings: &[Equation]) -> Option<Attempt<'_>> {
+/// Refines the starts in each scaling, as far as they are needed.
+pub(super) fn solution(scalings: &[Equation]) -> Option<Solution<'_>> {
     let quick: [(Start, Refinement); 2] =
         [(by_sign_function, unless_rough), (by_precise_doubling, in_cost_coordinates)];
     // From a rough start Newton's method may wander: it is left to that only where the precise starts fail, too.
@@ -59,23 +65,10 @@ pub(super) fn best_attempt(scalings: &[Equation]) -> Option<Attempt<'_>> {
     ];
     let first = scalings.iter().flat_map(|equation| quick.map(|start| (equation, start)));
     let then = slow.into_iter().flat_map(|start| scalings.iter().map(move |equation| (equation, start)));
-    let mut best: Option<Attempt> = None;
-    for (number, (equation, (start, refinement))) in first.chain(then).enumerate() {
-        let Some((refined, poles)) = start(equation).and_then(|x| refinement(equation, x)) else { continue };
-        let attempt = Attempt { equation, refined, poles };
-        if best.as_ref().is_none_or(|held| attempt.rank() < held.rank()) {
-            best = Some(attempt);
-        }
-        // The precise doubling may know X better than the first start; the others only do if these two fail.
-        let enough = |held: &Attempt| {
-            let (unstable, error) = held.rank();
-            !unstable && (error <= EXACT || number > 0 && held.refined.last_correction <= ACCURATE)
-        };
-        if best.as_ref().is_some_and(enough) {
-            break;
-        }
-    }
-    best
+    attempts::best(first.chain(then).map(|(equation, (start, refinement))| {
+        let (refined, poles) = refinement(equation, start(equation)?)?;
+        Some(Solution { equation, refined, poles })
+    }))
 }
 
 fn unless_rough(equation: &Equation, start: DoubleMatrix) -> Option<(Refined, Vec<Complex64>)> {

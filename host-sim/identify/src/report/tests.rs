@@ -1,3 +1,5 @@
+//! A craft identified from real flights, where they are; and faulty inputs, each named.
+
 use std::path::PathBuf;
 
 use quatrack_design::vehicle::VehicleFile;

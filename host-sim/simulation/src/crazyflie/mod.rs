@@ -28,7 +28,7 @@ pub use firmware::{Firmware, STEPS_HZ, Sensors, Tune, knows, platform};
 pub use flight::{Case, FlightErrors, Recorded, fly, fly_on, fly_recorded};
 pub use own_craft::{OwnCraftError, craft_header, own_craft, standard_design, standard_force_input};
 pub use paper_limits::{CodegenError, paper_limits};
-pub use quatrack_crazyflie::own_craft::OwnCraft;
+pub use quatrack_crazyflie::own_craft::{MAGIC as CRAFT_MAGIC, OwnCraft};
 pub use recording::{CONTROL_BYTES, Recording};
 pub use report::{CrazyflieReport, Row};
 pub use setpoints::Setpoints;

@@ -8,7 +8,7 @@
 //!   row                  its outcome
 //!   under_guard, object  its controller: the core's cascade under the core's supervisor; the Crazyflie object
 //! kinds                  every kind of fault: the signals it spoils, and others' answers
-//!   signals              what a fault spoils, and what is under test
+//!   signals              the targets of a fault: inputs of a step, controller, craft
 //! ```
 
 mod bench;

@@ -1,4 +1,4 @@
-//! What a fault spoils and what is under test: the inputs of a control step, a controller that takes them, and a craft
+//! The targets of a fault: the inputs of a control step, a controller that takes them, and a craft
 //! that differs from the told one.
 
 use nalgebra::{Vector3, Vector4};

@@ -1,4 +1,4 @@
-//! Files that come from designs, against what the designs give today: differences, or the files written anew, out.
+//! Designs and the files that were made of them in; the differences, or the files written anew, out.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

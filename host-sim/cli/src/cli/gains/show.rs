@@ -6,7 +6,7 @@ mod plot;
 use std::fmt::Write as _;
 use std::path::Path;
 
-use quatrack_simulation::crazyflie::OwnCraft;
+use quatrack_simulation::crazyflie::{CRAFT_MAGIC, OwnCraft};
 use quatrack_simulation::gains::{self, Signal, Table};
 use serde_json::{Value, json};
 
@@ -39,6 +39,10 @@ pub(super) fn show(path: &Path, json: Option<&Path>, plot: Option<&Path>) -> Res
         "bin" => {
             let bytes = read(path)?;
             let own = OwnCraft::from_bytes(&bytes);
+            if own.is_none() && bytes.starts_with(&CRAFT_MAGIC) {
+                let remedy = "make it again with `quatrack gains craft`";
+                return Err(Failure::input(format!("{}: a craft that is damaged; {remedy}", path.display())));
+            }
             let table = Table::from_bytes(own.as_ref().map_or(&bytes, |own| &own.table))
                 .map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
             let craft = own.map_or_else(String::new, |own| {

@@ -7,40 +7,23 @@ use quatrack_identify::Report;
 use quatrack_identify::fit::Balance;
 use quatrack_identify::predict::{Errors, Example, Prediction};
 
-use crate::cli::{Failure, output};
+use crate::cli::{Failure, output, picture};
 use crate::figures::{ChartFigure, Curve, FigureError, FlightFigure, Marks, Quantity, Trace, TrackingFigure};
 
 /// Writes prediction, ahead, residuals and lag, each as .svg and .png, to a folder.
-#[expect(
-    clippy::redundant_closure_for_method_calls,
-    reason = "a method's path is for one lifetime, the figure's is any"
-)]
 pub(super) fn write(dir: &Path, report: &Report) -> Result<(), Failure> {
     output::create_dir(dir)?;
-    if let Ok(prediction) = &report.prediction {
-        if let Some(example) = &prediction.example {
-            save(dir, "prediction", &|| prediction_figure(example, |f| f.to_svg()), &|| {
-                prediction_figure(example, |f| f.to_png())
-            })?;
+    let save = |name, svg: Result<String, FigureError>| picture::write_both(dir, name, &svg.map_err(Failure::verdict)?);
+    if let Ok(found) = &report.prediction {
+        if let Some(example) = &found.example {
+            save("prediction", prediction(example))?;
         }
-        save(dir, "ahead", &|| ahead(prediction, |f| f.to_svg()), &|| ahead(prediction, |f| f.to_png()))?;
+        save("ahead", ahead(found))?;
     }
     if let Some(balance) = &report.fit.balance {
-        save(dir, "residuals", &|| residuals(balance, |f| f.to_svg()), &|| residuals(balance, |f| f.to_png()))?;
+        save("residuals", residuals(balance))?;
     }
-    save(dir, "lag", &|| lag(report, |f| f.to_svg()), &|| lag(report, |f| f.to_png()))
-}
-
-fn save(
-    dir: &Path,
-    name: &str,
-    svg: &dyn Fn() -> Result<String, FigureError>,
-    png: &dyn Fn() -> Result<Vec<u8>, FigureError>,
-) -> Result<(), Failure> {
-    let path = |end: &str| dir.join(format!("{name}.{end}"));
-    output::write(&path("svg"), svg().map_err(Failure::verdict)?.as_bytes())?;
-    output::write(&path("png"), &png().map_err(Failure::verdict)?)?;
-    output::print(&format!("wrote {} and .svg\n", path("png").display()))
+    save("lag", lag(report))
 }
 
 fn line<'a>(label: &'a str, values: Vec<f64>) -> Trace<'a> {
@@ -57,9 +40,7 @@ fn short(path: &str) -> &str {
     Path::new(path).file_name().and_then(|name| name.to_str()).unwrap_or(path)
 }
 
-type Drawn<T> = Result<T, FigureError>;
-
-fn prediction_figure<T>(example: &Example, draw: impl Fn(&FlightFigure<'_>) -> Drawn<T>) -> Drawn<T> {
+fn prediction(example: &Example) -> Result<String, FigureError> {
     let title = format!("{}, held out: predicted from commands, a new start every 0.5 s", short(&example.flight));
     // A line breaks where a prediction starts anew.
     let starts = quatrack_identify::predict::HORIZON;
@@ -89,17 +70,18 @@ fn prediction_figure<T>(example: &Example, draw: impl Fn(&FlightFigure<'_>) -> D
             traces: vec![flight(axis(flown, k)), line("predicted", broken(axis(ours, k)))],
         }))
         .collect();
-    draw(&FlightFigure {
+    FlightFigure {
         tracking: TrackingFigure {
             title: &title,
             reference: Curve { label: "flown", time_s: &example.times_s, position_m: &example.position_m },
             flights: vec![Curve { label: "predicted", time_s: &example.times_s, position_m: &predicted }],
         },
         quantities,
-    })
+    }
+    .to_svg()
 }
 
-fn ahead<T>(prediction: &Prediction, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) -> Drawn<T> {
+fn ahead(prediction: &Prediction) -> Result<String, FigureError> {
     let places: Vec<f64> = (1..=prediction.ours.len()).map(|k| 0.01 * k as f64).collect();
     let quantity = |name, of: fn(&Errors) -> f64| Quantity {
         name,
@@ -110,7 +92,7 @@ fn ahead<T>(prediction: &Prediction, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>
             line("no change", prediction.no_change.iter().map(of).collect()),
         ],
     };
-    draw(&ChartFigure {
+    ChartFigure {
         title: "Mean error on the quarter held out",
         axis_name: "ahead (s)",
         places: &places,
@@ -121,10 +103,11 @@ fn ahead<T>(prediction: &Prediction, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>
             quantity("rotation (rad)", |e| e.rotation_rad),
             quantity("rate (rad/s)", |e| e.body_rate_rad_s),
         ],
-    })
+    }
+    .to_svg()
 }
 
-fn residuals<T>(balance: &Balance, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) -> Drawn<T> {
+fn residuals(balance: &Balance) -> Result<String, FigureError> {
     let title = format!("{}: torques below 6 Hz", short(&balance.flight));
     let milli = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| 1e3 * v).collect() };
     let left = |axis: usize| -> Vec<f64> {
@@ -141,10 +124,10 @@ fn residuals<T>(balance: &Balance, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) 
             ],
         })
         .collect();
-    draw(&ChartFigure { title: &title, axis_name: "time (s)", places: &balance.times_s, marks: None, quantities })
+    ChartFigure { title: &title, axis_name: "time (s)", places: &balance.times_s, marks: None, quantities }.to_svg()
 }
 
-fn lag<T>(report: &Report, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) -> Drawn<T> {
+fn lag(report: &Report) -> Result<String, FigureError> {
     let curve = &report.fit.lag_curve;
     let places: Vec<f64> = curve.iter().map(|point| 1e3 * point.lag_s).collect();
     let of = |axis: usize| -> Vec<f64> { curve.iter().map(|point| point.explained[axis]).collect() };
@@ -155,7 +138,7 @@ fn lag<T>(report: &Report, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) -> Drawn
         ),
         _ => ("Lag of the motors: not told by these flights".to_owned(), None),
     };
-    draw(&ChartFigure {
+    ChartFigure {
         title: &title,
         axis_name: "lag (ms)",
         places: &places,
@@ -165,5 +148,6 @@ fn lag<T>(report: &Report, draw: impl Fn(&ChartFigure<'_>) -> Drawn<T>) -> Drawn
             shortest: 0.05,
             traces: vec![line("about x", of(0)), line("about y", of(1))],
         }],
-    })
+    }
+    .to_svg()
 }

@@ -1,4 +1,4 @@
-//! A plan and its flight in; what is printed of them, each value beside its bound, out.
+//! A plan and its flight in; the text that is printed of them, each value beside its bound, out.
 
 use std::fmt::Write as _;
 

@@ -135,6 +135,12 @@ fn a_vehicle_file_becomes_a_header_for_the_crazyflie_and_flies() {
         "{shown}"
     );
     assert!(shown.contains("crazyflie-2.1-legacy"), "{shown}");
+    let mut damaged = bytes.clone();
+    damaged[8] ^= 1;
+    let broken = dir.join("damaged.bin");
+    fs::write(&broken, damaged).unwrap();
+    let refused = quatrack(&["gains", "show", broken.to_str().unwrap()]);
+    assert_refused(&refused, 2, &["a craft that is damaged; make it again with `quatrack gains craft`"]);
     // The one that upload.py is tried with.
     assert_eq!(bytes, include_bytes!("../../../../../tests/data/legacy-craft.bin"));
     let flown = quatrack(&["crazyflie", "--vehicle", &vehicle]);

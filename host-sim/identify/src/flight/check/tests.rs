@@ -1,3 +1,5 @@
+//! Logs with a part turned, mirrored or in another unit in; the reading of each, or the refusal, out.
+
 use quatrack_design::model::GRAVITY_M_S2;
 
 use super::*;

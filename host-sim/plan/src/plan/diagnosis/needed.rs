@@ -1,4 +1,4 @@
-//! A plan and a curve in; what each limit of the plan is, and what it would have to be for that curve, out.
+//! A plan and a curve in; each limit of the plan beside the one that the curve would need out.
 
 use nalgebra::Vector3;
 use quatrack_design::model::GRAVITY_M_S2;

@@ -1,4 +1,4 @@
-//! Every kind of fault on every craft: what may not be lost, and when the motors are off.
+//! Every kind of fault on every craft: the flights that may not be lost, and when the motors are off.
 
 use super::super::kinds;
 use super::*;

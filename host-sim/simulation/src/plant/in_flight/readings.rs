@@ -1,4 +1,4 @@
-//! What can be read of a plant: state, time, wind, voltage, limits, and the specific force of an accelerometer.
+//! A plant in; its readings out: state, time, wind, voltage, limits, and the specific force of an accelerometer.
 
 use nalgebra::{Vector3, Vector4};
 

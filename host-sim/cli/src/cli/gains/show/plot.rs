@@ -4,7 +4,7 @@ use std::path::Path;
 
 use quatrack_simulation::gains::{Certified, CutLoop, LoopCurves};
 
-use crate::cli::{Failure, output};
+use crate::cli::{Failure, output, picture};
 use crate::figures::{Plot, PlotsFigure, Quantity, Trace};
 
 /// Decibels below which a gain is not drawn.
@@ -16,10 +16,7 @@ pub(super) fn draw(certified: &Certified, path: &Path, folder: &Path) -> Result<
     let name = certified.design.name;
     let title = format!("{name} for {}: {}", certified.design.vehicle.name(), curves.conditions);
     let figure = figure(&title, &curves);
-    let (svg, png) = (folder.join(format!("{name}.svg")), folder.join(format!("{name}.png")));
-    output::write(&svg, figure.to_svg().map_err(Failure::verdict)?.as_bytes())?;
-    output::write(&png, &figure.to_png().map_err(Failure::verdict)?)?;
-    output::print(&format!("wrote {} and {}\n", svg.display(), png.display()))
+    picture::write_both(folder, name.as_str(), &figure.to_svg().map_err(Failure::verdict)?)
 }
 
 fn figure<'a>(title: &'a str, curves: &'a LoopCurves) -> PlotsFigure<'a> {
