@@ -83,7 +83,7 @@ class RotorControl:
             raise ValueError(f"ctrl_freq: {plant.CTRL_FREQ}; the law is made for {rate} Hz: pyb_freq={2 * rate}, ctrl_freq={rate}")
         self._plant = plant
         periods = 1.0 / (self.controller.rate_hz * lag_s)
-        # What is left of a difference after a period, and its mean in the period.
+        # The share of a difference that is left after a period, and its mean over the period.
         self._left, self._mean = np.exp(-periods), -np.expm1(-periods) / periods
         self._forces = self._hover()
 
