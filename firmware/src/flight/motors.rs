@@ -99,7 +99,8 @@ impl ToMotors {
     pub(super) fn step(
         &mut self,
         laws: &mut Laws,
-        (playback, leash): (&mut Playback, &Leash),
+        playback: &mut Playback,
+        leash: &Leash,
         tick: Tick,
         looked: &Looked<'_>,
         has_body_rates: bool,

@@ -72,7 +72,7 @@ impl Flight {
             }
             Order::Off => return Err(NoCommand::Mode(guard.mode())),
         };
-        let stepped = motors.step(laws, (playback, leash), tick, &looked, body_rates.is_some());
+        let stepped = motors.step(laws, playback, leash, tick, &looked, body_rates.is_some());
         let Err(failure) = stepped else { return stepped };
         let instead = match failure {
             NoCommand::Reference(_) => {
