@@ -60,7 +60,8 @@ pub(crate) struct Args {
     /// Write the pieces as they are stored, in the uav_trajectories form that Bitcraze's tools read.
     #[arg(long, value_name = "FILE")]
     csv: Option<output::File>,
-    /// Write the pieces in Bitcraze's compressed form: control points of 1 mm and 0.1 degrees, in 2 bytes each.
+    /// Write it in Bitcraze's compressed form, control points of 1 mm and 0.1 degrees in 2 bytes each: its own pieces, where
+    /// the memory holds as many so, else the fitted ones.
     #[arg(long, value_name = "FILE")]
     compressed: Option<output::File>,
     /// Limits that the reference is compared with: those of a vehicle, none, or THRUST_MIN,THRUST_MAX,RATE_MAX in m/s^2
@@ -116,14 +117,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     let off_m = report.largest_difference.position_m;
-    if args.tolerance_m.is_none() && (off_m.is_nan() || off_m > FAR_M) {
+    // A fit that nobody asks for may be as far off as it likes.
+    let writes_fit = args.csv.is_some() || args.compressed.is_none();
+    if writes_fit && args.tolerance_m.is_none() && (off_m.is_nan() || off_m > FAR_M) {
         output::print(&format!(
             "\nnote: {} pieces are {off_m:.3} m off, which is far; {}, or let --tolerance-m {FAR_M} refuse such a fit\n",
             report.pieces,
             remedy(args.pieces)
         ))?;
     }
-    if let Some(tolerance_m) = args.tolerance_m.filter(|tolerance_m| off_m.is_nan() || off_m > *tolerance_m) {
+    let is_far = |tolerance_m: &f64| writes_fit && (off_m.is_nan() || off_m > *tolerance_m);
+    if let Some(tolerance_m) = args.tolerance_m.filter(is_far) {
         return Err(Failure::verdict(format!(
             "{name}: {} pieces are {off_m:.2e} m off, more than --tolerance-m {tolerance_m}; {}",
             report.pieces,
@@ -131,7 +135,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         )));
     }
     let packed = match &args.compressed {
-        Some(path) => Some((path, Packed::of(&fitted, &original).map_err(|error| failed(&error))?)),
+        Some(path) => Some((path, Packed::nearest(&original, &fitted).map_err(|error| failed(&error))?)),
         None => None,
     };
     if let Some((_, packed)) = &packed {
@@ -159,14 +163,26 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A fit in the compressed form.
+/// A trajectory in the compressed form.
 struct Packed {
     bytes: Vec<u8>,
-    /// Of the bytes as they are read again, from the trajectory that was fitted.
+    /// Of the bytes as they are read again, from the trajectory as it was given.
     off: Deviation,
 }
 
 impl Packed {
+    /// The nearer one of the trajectory's own pieces, if the memory holds them so, and of those fitted to it.
+    fn nearest(original: &PiecewisePolynomial, fitted: &PiecewisePolynomial) -> Result<Self, CompressedError> {
+        let fitted = Self::of(fitted, original);
+        match Self::of(original, original) {
+            Ok(own) if own.bytes.len() <= MEMORY_BYTES => match fitted {
+                Ok(fitted) if fitted.off.position_m < own.off.position_m => Ok(fitted),
+                _ => Ok(own),
+            },
+            _ => fitted,
+        }
+    }
+
     fn of(fitted: &PiecewisePolynomial, original: &PiecewisePolynomial) -> Result<Self, CompressedError> {
         let bytes = compressed::to_bytes(fitted)?;
         let off = Deviation::between(&Exact(original), &Exact(&compressed::from_bytes(&bytes)?));

@@ -105,15 +105,34 @@ fn the_compressed_form_is_written_and_read() {
     let (code, stdout, stderr) = texts(&quatrack(&["refit", "aggressive", "--compressed", path.to_str().unwrap()]));
     assert_eq!(code, Some(0), "{stderr}");
     assert!(stdout.contains("of 4096 bytes, at most "), "{stdout}");
-    // Three axes of 7 control points at most, no heading: a piece that is straight along an axis has fewer.
-    let bytes = fs::metadata(&path).unwrap().len();
-    assert!(bytes > 31 * 3 && bytes <= 8 + 31 * (3 + 3 * 7 * 2) + 3, "{bytes}");
+    // Of each of its pieces three axes of 7 control points at most, no heading: one that is straight along an axis has fewer.
+    let (bytes, pieces) = (fs::metadata(&path).unwrap().len(), 45);
+    assert!(bytes > pieces * 3 && bytes <= 8 + pieces * (3 + 3 * 7 * 2) + 3, "{bytes}");
     let flown = ["fly", "--controller", "lqr-e", "--trajectory", path.to_str().unwrap()];
     let (code, stdout, stderr) = texts(&quatrack(&flown));
     assert_eq!(code, Some(0), "{stderr}");
     let iae: f64 = stdout.lines().nth(1).unwrap().split_whitespace().rev().nth(2).unwrap().parse().unwrap();
     // Half a millimetre a control point for 12 s, beside the original's.
     assert!((iae - 0.1114).abs() < 12.0 * 0.5e-3, "{iae}");
+}
+
+#[test]
+fn the_compressed_form_has_more_pieces_than_the_other_where_they_fit() {
+    let dir = folder("compressed-many");
+    // Forty times from rest to rest, 0.3 m there or back: 31 pieces are centimetres off.
+    let header = ["x", "y", "z", "yaw"].map(|name| (0..8).map(|k| format!(",{name}^{k}")).collect::<String>()).concat();
+    let mut rows = format!("duration{header}\n");
+    for piece in 0..40 {
+        let (from, way) = if piece % 2 == 0 { (0.0, 0.3) } else { (0.3, -0.3) };
+        let x = [35.0, -84.0, 70.0, -20.0].map(|c| format!(",{}", c * way)).concat();
+        rows += &format!("1,{from},0,0,0{x}{},1{}\n", ",0".repeat(8), ",0".repeat(15));
+    }
+    let (given, packed) = (file(&dir, "many.csv", rows.as_bytes()), dir.join("many.ctraj"));
+    let tight = ["--compressed", packed.to_str().unwrap(), "--tolerance-m", "0.001"];
+    let (code, stdout, stderr) = texts(&quatrack(&[&["refit", &given], &tight[..]].concat()));
+    assert_eq!(code, Some(0), "{stdout}{stderr}");
+    let (code, _, stderr) = texts(&quatrack(&["refit", &given, "--csv", "-", "--tolerance-m", "0.001"]));
+    assert!(code == Some(1) && stderr.contains("31 pieces are"), "the fit: {stderr}");
 }
 
 #[test]

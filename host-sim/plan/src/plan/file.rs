@@ -16,7 +16,7 @@ use crate::trajectory::waypoints::{self as rows, WaypointRow};
 use entries::{BoundsEntry, PlanFile, WaypointEntry, check};
 use legs::{fewest_spans, legs};
 use moved::moved;
-use waypoints::{headings, stops, waypoints};
+use waypoints::{headings, headings_at_ends, stops, waypoints};
 
 /// Longest and shortest flight, s; shorter ones have snaps beyond the solver's scaling.
 const DURATIONS_S: std::ops::RangeInclusive<f64> = 1e-2..=1e5;
@@ -51,7 +51,11 @@ pub(super) fn read(text: &str, over: &Overrides<'_>, budget: &Budget<'_>) -> Res
     let file = if rows::recognises(text) {
         PlanFile::of_rows(&rows::parse(text).map_err(PlanError::Rows)?)
     } else {
-        PlanFile::parse(text)?
+        let meant = |error| match rows::parse(text) {
+            Err(reason) if rows::are_numbers(text) => PlanError::Rows(reason),
+            _ => error,
+        };
+        PlanFile::parse(text).map_err(meant)?
     };
     build(file, over, budget)
 }
@@ -72,6 +76,10 @@ impl PlanFile {
 
 fn build(mut file: PlanFile, over: &Overrides<'_>, budget: &Budget<'_>) -> Result<FlightPlan, PlanError> {
     if let Some(duration_s) = over.duration_s {
+        // Times written at waypoints are stretched later, with those of the corridors.
+        if let (Some(_), Some(written_s)) = (&file.segment_shares, file.duration_s) {
+            timing::stretch(&mut file.corridors, duration_s / written_s);
+        }
         file.duration_s = Some(duration_s);
     }
     check_spline(&file)?;
@@ -80,12 +88,30 @@ fn build(mut file: PlanFile, over: &Overrides<'_>, budget: &Budget<'_>) -> Resul
     let mut notes = Vec::new();
     let stops = stops(&file, &waypoints, &mut notes)?;
     let mut corridors = file.corridors.clone();
+    headings_at_ends(&mut waypoints);
     moved(&over.transform, &mut file, &mut waypoints, &mut corridors)?;
     let stops: Vec<bool> = if over.transform.reverse { stops.into_iter().rev().collect() } else { stops };
-    let free = timing::times(&file, &mut waypoints, &bounds, &corridors, &stops, budget, &mut notes)?;
+    let free = timing::times(&file, &mut waypoints, &bounds, &mut corridors, &stops, budget, &mut notes)?;
     headings(&mut waypoints, &stops);
     let legs = legs(&file, &waypoints, &bounds, &corridors, &stops, free)?;
-    let legs = if free && file.duration_s.is_none() { roomy(legs, budget) } else { legs };
+    if !free {
+        return Ok(FlightPlan { legs, free, notes });
+    }
+    // A duration has been scaled already.
+    let (legs, time_scale) = match file.duration_s {
+        Some(_) => (legs, None),
+        None => (roomy(legs, budget), Some(over.transform.time_scale).filter(|scale| *scale != 1.0)),
+    };
+    let legs = match time_scale {
+        Some(scale) => legs.iter().filter_map(|leg| leg.stretched(scale)).collect(),
+        None => legs,
+    };
+    let total_s: f64 = legs.iter().map(Plan::duration_s).sum();
+    notes.push(if file.duration_s.is_some() || time_scale.is_some() {
+        format!("the times are in proportion to the least within the bounds, {total_s:.4} s in all")
+    } else {
+        format!("the times are the least within the bounds, {total_s:.4} s in all")
+    });
     Ok(FlightPlan { legs, free, notes })
 }
 

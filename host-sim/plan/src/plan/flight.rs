@@ -57,7 +57,10 @@ impl FlightPlan {
         for plan in &self.legs {
             budget.say("planning");
             let curve = plan.curve_within(budget).map_err(|reason| diagnose(&self.legs, &reason, budget))?;
-            let curve = heading::planned(plan, curve, budget)?;
+            let curve = match heading::planned(plan, curve, budget) {
+                Err(PlanError::HeadingRate { .. }) => return Err(heading::refused(&self.legs, budget)?),
+                planned => planned?,
+            };
             legs.push(PlannedLeg {
                 realised: plan.realised(&curve),
                 detour: detour::of(plan, &curve, budget),

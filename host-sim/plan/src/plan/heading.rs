@@ -12,17 +12,27 @@ pub(super) fn planned(plan: &Plan, curve: BSpline, budget: &Budget<'_>) -> Resul
         return Ok(curve);
     }
     let Some(points) = solve(plan, false, budget)? else {
-        // The least rate that does, as the first variable behind the points.
-        let least = solve(plan, true, budget)?.and_then(|points| largest_rate(plan, &points));
-        let bound = plan.bounds.heading_rate_max_rad_s.unwrap_or_default();
-        let needed = least.unwrap_or(f64::INFINITY);
-        return Err(PlanError::HeadingRate {
-            given_deg_s: bound.to_degrees(),
-            enough_deg_s: round_up(needed.to_degrees() * (1.0 + 1e-6)),
-            duration_s: round_up(plan.duration_s() * needed / bound * (1.0 + 1e-6)),
-        });
+        return Err(refused(std::slice::from_ref(plan), budget)?);
     };
     Ok(curve.with_heading(points)?)
+}
+
+/// The refusal of curves one after the other of which one turns too slowly: the least rate, and the least duration of the whole, that
+/// do for all.
+pub(super) fn refused(legs: &[Plan], budget: &Budget<'_>) -> Result<PlanError, PlanError> {
+    let mut needed: f64 = 0.0;
+    for leg in legs.iter().filter(|leg| leg.waypoints.iter().any(|waypoint| waypoint.heading_rad.is_some())) {
+        // The least rate that does, as the first variable behind the points.
+        let least = solve(leg, true, budget)?.and_then(|points| largest_rate(leg, &points));
+        needed = needed.max(least.unwrap_or(f64::INFINITY));
+    }
+    let bound = legs[0].bounds.heading_rate_max_rad_s.unwrap_or_default();
+    let duration_s: f64 = legs.iter().map(Plan::duration_s).sum();
+    Ok(PlanError::HeadingRate {
+        given_deg_s: bound.to_degrees(),
+        enough_deg_s: round_up(needed.to_degrees() * (1.0 + 1e-6)),
+        duration_s: round_up(duration_s * needed / bound * (1.0 + 1e-6)),
+    })
 }
 
 /// To four digits, away from 0.

@@ -28,7 +28,9 @@ pub struct Extremes {
     pub thrust_max_m_s2: f64,
     /// Largest rate at which the thrust axis turns, `sqrt(p^2 + q^2)`, rad/s: a plan bounds it.
     pub turn_rate_max_rad_s: f64,
-    /// Largest body rate `|(p, q, r)|` with `q3 = 0`, rad/s; not a number if the thrust vanishes or points straight down.
+    /// Largest rate of the heading, rad/s.
+    pub heading_rate_max_rad_s: f64,
+    /// Largest body rate `|(p, q, r)|`, that of the heading in it, rad/s; not a number if the thrust vanishes or points straight down.
     pub body_rate_max_rad_s: f64,
 }
 
@@ -54,6 +56,7 @@ impl Extremes {
             thrust_min_m_s2: f64::INFINITY,
             thrust_max_m_s2: 0.0,
             turn_rate_max_rad_s: 0.0,
+            heading_rate_max_rad_s: 0.0,
             body_rate_max_rad_s: 0.0,
         };
         let step_s = curve.duration_s() / INTERVALS as f64;
@@ -67,7 +70,10 @@ impl Extremes {
             extremes.tilt_max_rad = extremes.tilt_max_rad.max(thrust.xy().norm().atan2(thrust.z));
             extremes.thrust_min_m_s2 = extremes.thrust_min_m_s2.min(thrust.norm());
             extremes.thrust_max_m_s2 = extremes.thrust_max_m_s2.max(thrust.norm());
-            let rates = body_rates_rad_s(&sample);
+            extremes.heading_rate_max_rad_s = extremes.heading_rate_max_rad_s.max(sample.heading_rate_rad_s.abs());
+            let mut rates = body_rates_rad_s(&sample);
+            // The heading turns about the thrust axis, which turns nothing but p and q into each other.
+            rates.z += sample.heading_rate_rad_s;
             // `max` would drop a NaN.
             for (most, rate) in [
                 (&mut extremes.turn_rate_max_rad_s, rates.xy().norm()),

@@ -23,8 +23,9 @@ const POINTS: [usize; 4] = [0, 1, 3, 7];
 pub enum CompressedError {
     /// Beyond 16 bits.
     #[error(
-        "piece {piece}: a control point of {coordinate} is at {value:.1} {0}; the compressed form holds {1:.1}: move the \
-         trajectory's origin or fly it by pieces of polynomials", coordinate.unit(), f64::from(i16::MAX) / units(*coordinate)
+        "piece {piece}: a control point of {coordinate} is at {value:.1} {0}; the compressed form holds {1:.1}: {2} or \
+         fly it by pieces of polynomials", coordinate.unit(), f64::from(i16::MAX) / units(*coordinate),
+        if *coordinate == Coordinate::Yaw { "take whole turns off its yaw" } else { "move the trajectory's origin" }
     )]
     TooFar {
         /// The piece's number, from 1.

@@ -89,7 +89,8 @@ pub fn parse(name: &str, text: &str) -> Result<TrajectoryFile, FileError> {
     if text.trim().is_empty() {
         return Err(unrecognised("the file is empty".into()));
     }
-    if let Some(table) = Table::of(text).filter(looks_like_rows) {
+    let is_name = |name: &str| csv::is_name(name) || waypoints::is_name(name);
+    if let Some(table) = Table::of_named(text, is_name).filter(looks_like_rows) {
         return rows(name, &table);
     }
     if text.trim_start().starts_with('{') {

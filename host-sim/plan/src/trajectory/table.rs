@@ -2,7 +2,7 @@
 //!
 //! The first line with content decides the separator of columns: tabs, semicolons, commas or spaces. Quotes, trailing
 //! separators, blank lines, lines that begin with `#`, CRLF, a byte order mark, and an unnamed index in the first column
-//! are taken off. Where a comma does not separate columns, it is a decimal comma.
+//! are taken off; a comment may be the header. Where a comma does not separate columns, it is a decimal comma.
 
 /// The separator of a table's columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +44,26 @@ impl Table {
         let mut table = Self { separator, header, rows };
         if table.has_index() {
             table.header.iter_mut().chain(&mut table.rows).for_each(|row| drop(row.cells.remove(0)));
+        }
+        Some(table)
+    }
+
+    /// The same of a text whose header may be a comment, as NumPy writes it: the last one above the first row, if most of its words,
+    /// three or more, are names of columns.
+    pub(crate) fn of_named(text: &str, is_name: impl Fn(&str) -> bool) -> Option<Self> {
+        let mut table = Self::of(text)?;
+        if table.header.is_none() {
+            let first = table.rows.first().map_or(0, |row| row.line);
+            let comment = text.lines().zip(1..).take_while(|(_, line)| *line < first).filter_map(|(text, line)| {
+                let words =
+                    text.trim_start_matches(['\u{feff}', ' ']).strip_prefix('#')?.trim_matches(['#', ' ', '\r']);
+                (!words.is_empty()).then_some((words, line))
+            });
+            table.header = comment.last().and_then(|(words, line)| {
+                let cells = Separator::of(words).cells(words);
+                let names = cells.iter().filter(|cell| is_name(&cell.to_lowercase())).count();
+                (cells.len() > 2 && 2 * names > cells.len()).then_some(Row { line, cells })
+            });
         }
         Some(table)
     }
@@ -166,6 +186,20 @@ mod tests {
         // A first column that does not count is data, under any name.
         assert_eq!(cells(",a,b\n0.5,1,2\n")[0], ["0.5", "1", "2"]);
         assert_eq!(Table::of("\n# nothing\n,,\n"), None);
+    }
+
+    #[test]
+    fn a_comment_that_names_the_columns_is_the_header() {
+        let header = |text| Table::of_named(text, |name| ["t", "x", "y"].contains(&name)).unwrap().header;
+        let named = header("# a flight\n# T,x,y,w\n0,1,2,3\n").unwrap();
+        assert_eq!((named.line, named.cells.join(" ")), (2, "T x y w".to_owned()));
+        assert_eq!(header("#t x y\n0,1,2\n").unwrap().cells.len(), 3, "whatever separates them");
+        for prose in
+            ["# x and y of a flight\n0,1,2\n", "# t\n0,1,2\n", "0,1,2\n# t,x,y\n3,4,5\n", "# t,x,y\n# raw\n0,1,2\n"]
+        {
+            assert_eq!(header(prose), None, "{prose}");
+        }
+        assert_eq!(header("# t,x,y\na,b,c\n0,1,2\n").unwrap().line, 2, "one that is none comes first");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Waypoints as rows, as `uav_trajectories` and spreadsheets have them: text in, places and, if given, times out.
 //!
-//! Columns are `t,x,y,z` or `t,x,y,z,yaw` with times in s, or `x,y,z`, with a header or without; m and rad, `yaw_deg` is in
-//! degrees. Separators and the like are those of a table of rows.
+//! Columns are `t,x,y,z` or `t,x,y,z,yaw` with times in s, or `x,y,z`, with a header, which may be a comment, or without; m and rad,
+//! `yaw_deg` is in degrees. Separators and the like are those of a table of rows.
 
 use nalgebra::Vector3;
 
@@ -27,6 +27,9 @@ pub enum WaypointsError {
     /// Other columns.
     #[error("needs the columns t,x,y,z or t,x,y,z,yaw, or x,y,z without times (s, m, rad); has {0}")]
     Columns(String),
+    /// Two columns of one quantity.
+    #[error("{0} is given twice; keep one of the columns")]
+    Twice(&'static str),
     /// A row that is too short or too long.
     #[error("line {line}: {found} columns where {expected} are expected")]
     Ragged {
@@ -56,6 +59,19 @@ enum Column {
     YawDegrees,
     /// Something that waypoints do not have.
     Other,
+}
+
+impl Column {
+    const fn quantity(self) -> &'static str {
+        match self {
+            Self::Time => "the time",
+            Self::Axis(0) => "x",
+            Self::Axis(1) => "y",
+            Self::Axis(_) => "z",
+            Self::Yaw | Self::YawDegrees => "the yaw",
+            Self::Other => "another quantity",
+        }
+    }
 }
 
 /// The kind of rows, by their columns.
@@ -117,7 +133,9 @@ pub(super) fn recognise(table: &Table) -> Option<Kind> {
 /// # Errors
 /// [`WaypointsError`] for the first line that cannot be used.
 pub fn parse(text: &str) -> Result<Vec<WaypointRow>, WaypointsError> {
-    let Some(table) = Table::of(text) else { return Err(WaypointsError::Columns("nothing".into())) };
+    let Some(table) = Table::of_named(text, is_name) else {
+        return Err(WaypointsError::Columns("nothing".into()));
+    };
     let columns = columns(&table);
     if !matches!(recognise(&table), Some(Kind::Waypoints { .. })) {
         let found = match &table.header {
@@ -126,12 +144,30 @@ pub fn parse(text: &str) -> Result<Vec<WaypointRow>, WaypointsError> {
         };
         return Err(WaypointsError::Columns(found));
     }
+    for (index, column) in columns.iter().enumerate() {
+        if columns[..index].iter().any(|before| before.quantity() == column.quantity()) {
+            return Err(WaypointsError::Twice(column.quantity()));
+        }
+    }
     table.rows.iter().map(|row| waypoint(&columns, row)).collect()
+}
+
+/// Whether a name of a column, in lower case, is one that waypoints have.
+pub(super) fn is_name(name: &str) -> bool {
+    column(name) != Column::Other
 }
 
 /// Whether a text is rows of waypoints, rather than anything else that is read.
 pub fn recognises(text: &str) -> bool {
-    Table::of(text).is_some_and(|table| matches!(recognise(&table), Some(Kind::Waypoints { .. })))
+    Table::of_named(text, is_name).is_some_and(|table| matches!(recognise(&table), Some(Kind::Waypoints { .. })))
+}
+
+/// Whether a text is rows of numbers, three or more a row, under names that are none of waypoints or of a sampled flight.
+pub fn are_numbers(text: &str) -> bool {
+    let are_numbers = |row: &Row| row.cells.len() > 2 && row.cells.iter().all(|cell| finite(cell).is_some());
+    Table::of_named(text, is_name).is_some_and(|table| {
+        recognise(&table).is_none() && !table.rows.is_empty() && table.rows.iter().all(are_numbers)
+    })
 }
 
 fn waypoint(columns: &[Column], Row { line, cells }: &Row) -> Result<WaypointRow, WaypointsError> {
@@ -164,6 +200,17 @@ mod tests {
         assert_eq!((bare[1].time_s, bare[1].position_m, bare[1].line), (None, Vector3::new(0.0, 0.05, 1.73), 2));
         let german = parse("time [s];x [m];y [m];z [m];yaw_deg\n0;0,5;1;1;90\n").unwrap();
         assert_eq!((german[0].position_m.x, german[0].yaw_rad), (0.5, Some(90_f64.to_radians())));
+    }
+
+    #[test]
+    fn a_comment_names_the_columns_and_a_quantity_has_one() {
+        // `numpy.savetxt(header=...)` writes its header so.
+        let row = parse("# t,x,y,z,yaw_deg\n0,0,0,1,0\n3,2,0,1,90\n").unwrap()[1];
+        assert_eq!(row.yaw_rad, Some(90_f64.to_radians()));
+        let turned = parse("# t,y,x,z\n0,1,2,3\n").unwrap()[0];
+        assert_eq!(turned.position_m, Vector3::new(2.0, 1.0, 3.0));
+        assert_eq!(parse("time,x,y,z,x\n0,0,0,1,5\n").unwrap_err(), WaypointsError::Twice("x"));
+        assert_eq!(parse("t,x,y,z,yaw,yaw_deg\n0,0,0,1,0,0\n").unwrap_err(), WaypointsError::Twice("the yaw"));
     }
 
     #[test]

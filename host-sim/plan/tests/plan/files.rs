@@ -170,6 +170,7 @@ fn a_text_that_is_no_plan_is_refused_with_its_line() {
         (edited("[0, 1, 0]", "[0, 1]"), "invalid length 2"),
         (edited("spans = 10", "spans = = 10"), "line 2: "),
         ("\u{0}\u{1}".to_owned(), "line 1: "),
+        ("t,x_mm,y_mm,z_mm\n0,0,0,1000\n".to_owned(), "(s, m, rad); has t,x_mm,y_mm,z_mm"),
     ];
     for (text, expected) in cases {
         let line = refusal(&text);

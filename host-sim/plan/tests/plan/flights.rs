@@ -6,15 +6,15 @@ use quatrack_plan::plan::{Bounds, Budget, FlightPlan, Limit, Overrides, Plan, Pl
 use quatrack_plan::trajectory::Trajectory as _;
 use quatrack_plan::trajectory::transform::Transform;
 
-fn read(text: &str) -> Result<FlightPlan, PlanError> {
+pub(crate) fn read(text: &str) -> Result<FlightPlan, PlanError> {
     FlightPlan::from_toml(text, &Overrides::default(), &Budget::unlimited())
 }
 
-fn planned(text: &str) -> PlannedFlight {
+pub(crate) fn planned(text: &str) -> PlannedFlight {
     read(text).and_then(|plan| plan.solve(&Budget::unlimited())).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-fn refusal(text: &str) -> String {
+pub(crate) fn refusal(text: &str) -> String {
     let outcome = read(text).and_then(|plan| plan.solve(&Budget::unlimited()));
     let line = outcome.map(|_| "planned").expect_err("must be refused").to_string();
     assert!(!line.contains('\n'), "{line}");

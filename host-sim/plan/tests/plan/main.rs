@@ -6,5 +6,6 @@ mod flights;
 mod on_board_trajectory;
 mod paper;
 mod polynomial;
+mod times_and_headings;
 mod trajectory_csv;
 mod trajectory_file;

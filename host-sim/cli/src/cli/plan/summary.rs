@@ -6,9 +6,6 @@ use quatrack_plan::plan::{FlightPlan, Limit, PlannedFlight, PlannedLeg, Realised
 
 pub(super) fn summary(plan: &FlightPlan, flight: &PlannedFlight) -> String {
     let mut text: String = plan.notes().iter().map(|note| format!("note: {note}\n")).collect();
-    if plan.has_free_times() {
-        let _ = writeln!(text, "note: the times are the least within the bounds, {:.4} s in all", flight.duration_s());
-    }
     for (leg, number) in flight.legs.iter().zip(1..) {
         if flight.legs.len() > 1 {
             let _ = writeln!(text, "{}curve {number} of {}", if number > 1 { "\n" } else { "" }, flight.legs.len());
@@ -62,6 +59,7 @@ fn leg_summary(PlannedLeg { plan, curve, realised, .. }: &PlannedLeg) -> String 
             bounds.body_rate_max_rad_s,
             deg,
         ),
+        ("yaw rate, largest, deg/s", sampled.heading_rate_max_rad_s, None, bounds.heading_rate_max_rad_s, deg),
         ("body rate, largest, deg/s", sampled.body_rate_max_rad_s, None, None, deg),
     ];
     for (name, sampled, limit, bound, unit) in rows {

@@ -22,7 +22,8 @@ pub(super) fn moved(
         return Err(PlanError::TurnedCorridor);
     }
     let written_s = file.waypoints.iter().filter_map(|entry| entry.time_s).fold(0.0, f64::max);
-    let end_s = file.duration_s.unwrap_or(written_s);
+    // Corridors are in the times of the waypoints, where those are written.
+    let end_s = if written_s > 0.0 { written_s } else { file.duration_s.unwrap_or(0.0) };
     if transform.reverse {
         waypoints.reverse();
         file.waypoints.reverse();

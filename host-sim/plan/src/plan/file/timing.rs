@@ -14,7 +14,7 @@ pub(super) fn times(
     file: &PlanFile,
     waypoints: &mut [Waypoint],
     bounds: &Bounds,
-    corridors: &[CorridorEntry],
+    corridors: &mut [CorridorEntry],
     stops: &[bool],
     budget: &Budget<'_>,
     notes: &mut Vec<String>,
@@ -40,11 +40,13 @@ pub(super) fn times(
     let duration_s = file.duration_s.unwrap_or(end_s);
     let must = format!("from {} to {} s", DURATIONS_S.start(), DURATIONS_S.end());
     check(DURATIONS_S.contains(&duration_s), "duration_s", duration_s, must)?;
-    // Another duration than the waypoints' own stretches them; the same keeps them to the bit.
+    // Another duration than the waypoints' own stretches them, and the corridors with them; the same keeps them to the bit.
     let ratio = duration_s / end_s;
     let stretches = (ratio - 1.0).abs() > SAME_TIME;
     if stretches {
-        notes.push(format!("the times of the waypoints are stretched by {ratio:.6} to duration_s = {duration_s}"));
+        stretch(corridors, ratio);
+        let too = if corridors.is_empty() { "" } else { " and corridors" };
+        notes.push(format!("the times of the waypoints{too} are stretched by {ratio:.6} to duration_s = {duration_s}"));
     }
     let last = waypoints.len() - 1;
     let mut before_s: Option<f64> = None;
@@ -66,6 +68,13 @@ pub(super) fn times(
         waypoint.time_s = time_s;
     }
     Ok(false)
+}
+
+/// Corridors that last longer or shorter by a ratio.
+pub(super) fn stretch(corridors: &mut [CorridorEntry], ratio: f64) {
+    for time_s in corridors.iter_mut().flat_map(|corridor| [&mut corridor.from_s, &mut corridor.to_s]).flatten() {
+        *time_s *= ratio;
+    }
 }
 
 /// Times of the waypoints as written, s; the first is 0.

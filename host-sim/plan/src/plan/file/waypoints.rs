@@ -78,13 +78,21 @@ pub(super) fn stops(file: &PlanFile, waypoints: &[Waypoint], notes: &mut Vec<Str
     Ok(stops)
 }
 
-/// Headings at the start and at stops, where there are any at all: 0 at the start unless one is given there, and in between
-/// in proportion to time; behind the last one it stays.
+/// Headings at both ends, where there are any at all: 0 at the start and the last given one at the end, unless one is given there.
+pub(super) fn headings_at_ends(waypoints: &mut [Waypoint]) {
+    let given = waypoints.iter().rev().find_map(|waypoint| waypoint.heading_rad);
+    if let (Some(given), [first, .., last]) = (given, waypoints) {
+        first.heading_rad.get_or_insert(0.0);
+        last.heading_rad.get_or_insert(given);
+    }
+}
+
+/// The same, and at stops those in between in proportion to time.
 pub(super) fn headings(waypoints: &mut [Waypoint], stops: &[bool]) {
+    headings_at_ends(waypoints);
     if waypoints.iter().all(|waypoint| waypoint.heading_rad.is_none()) {
         return;
     }
-    waypoints[0].heading_rad.get_or_insert(0.0);
     for index in 1..waypoints.len() {
         if !stops[index] || waypoints[index].heading_rad.is_some() {
             continue;

@@ -24,12 +24,17 @@ pub(in crate::trajectory) fn recognises(table: &Table) -> bool {
     }
 }
 
+/// Whether a name of a column is one that pieces have.
+pub(in crate::trajectory) fn is_name(name: &str) -> bool {
+    Place::named(name).is_some()
+}
+
 /// Reads the text of a whole file.
 ///
 /// # Errors
 /// [`CsvError`] for the first line that cannot be used.
 pub fn parse(text: &str) -> Result<PiecewisePolynomial, CsvError> {
-    Table::of(text).map_or(Err(CsvError::Empty), |table| read(&table))
+    Table::of_named(text, is_name).map_or(Err(CsvError::Empty), |table| read(&table))
 }
 
 /// Reads a table.
