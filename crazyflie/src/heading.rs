@@ -2,8 +2,9 @@
 //! to the third, out: as [`crate::stream`] does for positions.
 //!
 //! The acceleration is the difference of successive rates, the jerk that of two accelerations, each carried on to the
-//! newest setpoint. A heading that moves while a rate of 0 is sent, as scripts do, gets the rate at which it moves. Nothing is
-//! differenced over a gap of more than [`GAP_MAX_MS`], or where no craft turns like that.
+//! newest setpoint. A heading that moves while a rate of 0 is sent, as scripts do, gets the rate at which it moves. No rate is
+//! differenced over a gap of more than [`GAP_MAX_MS`], no heading over more than [`EXTRAPOLATION_MAX_MS`], and nothing where no
+//! craft turns like that.
 
 use quatrack::{FifthOrderSample, Heading};
 
@@ -18,6 +19,8 @@ const JERK_MAX_RAD_S3: f32 = 400.0;
 /// Share of a new slope of the headings in the rate that is taken where none is sent: full-state packets have headings in steps
 /// of 0.16 degrees.
 const SLOPE_SHARE: f32 = 0.2;
+/// Largest slope that is taken for a turn where headings come more rarely than [`GAP_MAX_MS`], rad/s: a faster one is a new goal.
+const SLOW_SLOPE_MAX_RAD_S: f32 = 2.0;
 /// Rate below which a heading is taken to be at rest, rad/s.
 const REST_RAD_S: f32 = 1e-3;
 
@@ -79,7 +82,7 @@ impl HeadingStream {
 
     /// The rate at which headings move, smoothed; 0 where they jump.
     fn slope_rad_s(&self, heading: Heading, gap_ms: u32) -> f32 {
-        if !(1..=GAP_MAX_MS).contains(&gap_ms) {
+        if !(1..=EXTRAPOLATION_MAX_MS).contains(&gap_ms) {
             return 0.0;
         }
         let (old, new) = (self.heading, heading);
@@ -87,7 +90,8 @@ impl HeadingStream {
         let cos = old.cos_half() * new.cos_half() + old.sin_half() * new.sin_half();
         // Of a small angle; both quaternions of a heading are the same one.
         let slope = 2.0 * if cos < 0.0 { -sin } else { sin } / (gap_ms as f32 * 1e-3);
-        if slope.abs() > HEADING_RATE_MAX_RAD_S {
+        let most = if gap_ms > GAP_MAX_MS { SLOW_SLOPE_MAX_RAD_S } else { HEADING_RATE_MAX_RAD_S };
+        if slope.abs() > most {
             return 0.0;
         }
         let rate = self.rate_rad_s + SLOPE_SHARE * (slope - self.rate_rad_s);

@@ -60,19 +60,25 @@ const WHOLE: [Named<AtomicU8>; 3] = [
     ("learn", |parameters| &parameters.learn),
 ];
 
+/// How long a setpoint without a stamp counts as the one that was given before, if it is the same, ms. Then it is one that was sent
+/// again: a turn that has ended must not go on.
+const SAME_MS: u32 = 100;
+
 /// The object as the firmware calls it, at 1 kHz.
 ///
 /// vehicle: one that the object has tables for
 /// mass_kg: CF_MASS where it differs from the vehicle's, kg
 ///
 /// `step` takes objects with the fields of the firmware's setpoint_t, sensorData_t and state_t, in its units (degrees, g, pitch of
-/// the opposite sign): those of quatrack.crazyflie, of the firmware's own Python bindings, or any other. There is one controller in
-/// a process: a later one, or a flight of "crazyflie", ends this one.
+/// the opposite sign): those of quatrack.crazyflie, of the firmware's own Python bindings, or any other. A setpoint whose timestamp
+/// is 0 is dated by the tick at which it changes. There is one controller in a process: a later one, or a flight of "crazyflie", ends this one.
 #[pyclass(module = "quatrack")]
 pub(crate) struct CrazyflieController {
     number: u64,
     control: Control,
     tick: u32,
+    /// The last setpoint without a stamp, and the one that it got.
+    undated: Option<(Setpoint, u32)>,
 }
 
 /// The object's command, as control_t has it.
@@ -137,7 +143,7 @@ impl CrazyflieController {
             )));
         }
         ffi::quatrackService();
-        let mut new = Self { number: *number, control: Control::default(), tick: 1 };
+        let mut new = Self { number: *number, control: Control::default(), tick: 1, undated: None };
         // Motors off, until parameters have been looked at.
         for _ in 0..9 {
             new.call(&Setpoint::OFF, &SensorData::default(), &at_rest());
@@ -158,9 +164,14 @@ impl CrazyflieController {
         tick: Option<u32>,
     ) -> PyResult<CrazyflieControl> {
         let tick = tick.unwrap_or(self.tick);
-        let given = (self::setpoint(setpoint, tick)?, self::sensors(sensors)?, self::state(state)?);
+        let mut given = (self::setpoint(setpoint)?, self::sensors(sensors)?, self::state(state)?);
         let _own = self.own()?;
         self.tick = tick;
+        if given.0.timestamp == 0 {
+            let before = self.undated.filter(|(before, at)| *before == given.0 && tick.wrapping_sub(*at) <= SAME_MS);
+            let (_, stamp) = *self.undated.insert(before.unwrap_or((given.0, tick)));
+            given.0.timestamp = stamp;
+        }
         self.call(&given.0, &given.1, &given.2);
         Ok(CrazyflieControl { mode: self.control.control_mode, payload: self.control.payload })
     }
@@ -178,7 +189,13 @@ impl CrazyflieController {
         let whole = WHOLE.iter().find(|(known, _)| *known == name);
         match (FLOATS.iter().find(|(known, _)| *known == name), whole) {
             (Some((_, of)), _) => of(parameters).set(value),
-            (None, Some((_, of))) => of(parameters).store(value as u8, Relaxed),
+            (None, Some((_, of))) => {
+                let code = value as u8;
+                if f32::from(code) != value {
+                    return Err(refused(format!("{name} is {value}; it holds a whole number from 0 to 255")));
+                }
+                of(parameters).store(code, Relaxed);
+            }
             (None, None) => return Err(self.unknown(name)),
         }
         ffi::quatrackService();

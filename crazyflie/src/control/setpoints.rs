@@ -17,20 +17,39 @@ impl Controller {
         if self.flyer.flight == Flight::NoCraft {
             return Some(self.background.next());
         }
-        // One thing at a time: a setpoint that comes with the longest look of the observers is taken a call later, and is fitted
-        // another one later. It is dated by its stamp.
+        // One thing at a time: a setpoint waits for a call without the longest look of the observers, its heading for the next call,
+        // its fit for the one after, and the next setpoint for all of that, however fast they come. It is dated by its stamp.
+        self.inbox.note(setpoint, step);
         let is_busy = self.flyer.observe(sensors);
-        let news = if is_busy { self.inbox.glance(setpoint, step) } else { self.inbox.look(setpoint, step) };
-        let has_time = news == News::Nothing && !(is_busy || self.is_heading_due || self.flyer.stream.is_due());
+        let has_time = !is_busy && !self.catch_up() && !self.hear(setpoint, step);
+        self.flyer.look_ahead(&self.guard, step.wrapping_add(1));
+        if has_time { Some(self.background.next()) } else { self.background.put_off() }
+    }
+
+    /// The next thing that a motion has left to do, if any.
+    #[inline(always)]
+    fn catch_up(&mut self) -> bool {
+        if self.is_heading_due {
+            self.follow_heading();
+            true
+        } else if self.flyer.stream.is_due() {
+            self.flyer.stream.catch_up();
+            true
+        } else {
+            false
+        }
+    }
+
+    /// The setpoint, if it is a new one.
+    #[inline(always)]
+    fn hear(&mut self, setpoint: &abi::Setpoint, step: u32) -> bool {
+        let news = self.inbox.look(setpoint);
         match news {
-            News::Nothing if is_busy || has_time => {}
-            News::Nothing if self.is_heading_due => self.follow_heading(),
-            News::Nothing => self.flyer.stream.catch_up(),
+            News::Nothing => {}
             News::Motion => self.follow_motion(),
             News::Other => self.take(setpoint, step),
         }
-        self.flyer.look_ahead(&self.guard, step.wrapping_add(1));
-        if has_time { Some(self.background.next()) } else { self.background.put_off() }
+        news != News::Nothing
     }
 
     /// Takes a setpoint, and does as it asks.

@@ -91,6 +91,14 @@ impl Inbox {
         &self.newest
     }
 
+    /// At every call: remembers when a stamp was first seen, which dates a setpoint that has to wait.
+    #[inline(always)]
+    pub fn note(&mut self, setpoint: &abi::Setpoint, now_ms: u32) {
+        if setpoint.timestamp != self.stamp_ms || setpoint.timestamp == 0 {
+            (self.stamp_ms, self.seen_ms) = (setpoint.timestamp, now_ms);
+        }
+    }
+
     /// At a control step: whether a setpoint of another kind has come, which cannot wait for the next call.
     #[inline(always)]
     pub fn is_urgent(&mut self, setpoint: &abi::Setpoint, now_ms: u32) -> bool {
@@ -98,17 +106,9 @@ impl Inbox {
         comparison::is_another_kind(&self.kept, setpoint)
     }
 
-    /// At a call without time: nothing is taken, but a setpoint that has come is dated now.
+    /// At a call between that has time: everything. A motion is taken.
     #[inline(always)]
-    pub fn glance(&mut self, setpoint: &abi::Setpoint, now_ms: u32) -> News {
-        self.note(setpoint, now_ms);
-        News::Nothing
-    }
-
-    /// At the call between: everything. A motion is taken.
-    #[inline(always)]
-    pub fn look(&mut self, setpoint: &abi::Setpoint, now_ms: u32) -> News {
-        self.note(setpoint, now_ms);
+    pub fn look(&mut self, setpoint: &abi::Setpoint) -> News {
         if comparison::is_same(&self.kept, setpoint) {
             News::Nothing
         } else if self.is_along && self.goes_on(setpoint) {
@@ -135,14 +135,6 @@ impl Inbox {
                 self.is_along = request.is_along();
                 Change::Request(request)
             }
-        }
-    }
-
-    /// Remembers when a stamp was first seen.
-    #[inline(always)]
-    fn note(&mut self, setpoint: &abi::Setpoint, now_ms: u32) {
-        if setpoint.timestamp != self.stamp_ms || setpoint.timestamp == 0 {
-            (self.stamp_ms, self.seen_ms) = (setpoint.timestamp, now_ms);
         }
     }
 
@@ -202,20 +194,25 @@ mod tests {
         turn: Turn::Heading,
     });
 
+    fn look(inbox: &mut Inbox, setpoint: &Setpoint, now_ms: u32) -> News {
+        inbox.note(setpoint, now_ms);
+        inbox.look(setpoint)
+    }
+
     #[test]
     fn it_names_the_change() {
         let mut inbox = Inbox::new();
         assert!(inbox.is_urgent(&along(5, 1.0, 0.0), 105), "another kind cannot wait");
         assert_eq!(inbox.take(&along(5, 1.0, 0.0)), ALONG);
-        assert_eq!(inbox.look(&along(5, 1.0, 0.0), 106), News::Nothing);
+        assert_eq!(look(&mut inbox, &along(5, 1.0, 0.0), 106), News::Nothing);
         assert!(!inbox.is_urgent(&along(15, 1.1, 90.0), 115), "one more of them can");
-        assert_eq!(inbox.look(&along(15, 1.1, 90.0), 116), News::Motion);
+        assert_eq!(look(&mut inbox, &along(15, 1.1, 90.0), 116), News::Motion);
         let newest = inbox.newest();
         assert_eq!((newest.motion.position_m.x, newest.date_ms), (1.1, 115), "dated by when it was first seen");
         assert!((newest.heading.cos_sin().1 - 1.0).abs() < 1e-6);
         let mut moved = along(15, 1.1, 90.0);
         moved.velocity.x = 0.5;
-        assert_eq!(inbox.look(&moved, 118), News::Motion, "collision avoidance changes a stamped setpoint");
+        assert_eq!(look(&mut inbox, &moved, 118), News::Motion, "collision avoidance changes a stamped setpoint");
         assert_eq!(inbox.newest().date_ms, 115);
         assert!(inbox.is_urgent(&Setpoint { timestamp: 20, ..Setpoint::OFF }, 120));
         assert_eq!(inbox.take(&Setpoint::OFF), Change::Off);
@@ -229,7 +226,7 @@ mod tests {
             inbox.take(&along(5, 1.0, 0.0));
             let mut setpoint = along(15, 1.0, 0.0);
             change(&mut setpoint);
-            match inbox.look(&setpoint, 115) {
+            match look(&mut inbox, &setpoint, 115) {
                 News::Other => inbox.take(&setpoint) == Change::Bad,
                 _ => false,
             }
@@ -249,11 +246,11 @@ mod tests {
         let mut inbox = Inbox::new();
         inbox.is_urgent(&along(0, 1.0, 0.0), 100);
         inbox.take(&along(0, 1.0, 0.0));
-        assert_eq!(inbox.look(&along(0, 1.0, 0.0), 101), News::Nothing);
+        assert_eq!(look(&mut inbox, &along(0, 1.0, 0.0), 101), News::Nothing);
         let mut other = along(0, 1.0, 0.0);
         other.jerk.x = 1.0;
-        assert_eq!(inbox.look(&other, 103), News::Motion);
+        assert_eq!(look(&mut inbox, &other, 103), News::Motion);
         assert_eq!(inbox.newest().date_ms, 103);
-        assert_eq!(inbox.look(&other, 105), News::Nothing);
+        assert_eq!(look(&mut inbox, &other, 105), News::Nothing);
     }
 }

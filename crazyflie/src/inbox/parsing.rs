@@ -101,14 +101,11 @@ fn turn(setpoint: &abi::Setpoint) -> Option<Turn> {
 #[inline(never)]
 pub(super) fn headed(setpoint: &abi::Setpoint) -> Option<Headed> {
     let rate = units::heading_rate_rad_s(setpoint);
-    let heading = if is_by_yaw(setpoint) {
-        if !is_sound(setpoint.attitude.yaw) {
-            return None;
-        }
-        units::heading_of_yaw(setpoint.attitude.yaw)
-    } else {
-        units::heading_of_quaternion(&setpoint.attitude_quaternion)
-    };
+    if is_by_yaw(setpoint) {
+        let yaw_deg = setpoint.attitude.yaw;
+        return is_sound(yaw_deg + rate).then(|| (units::heading_of_yaw(yaw_deg), rate));
+    }
+    let heading = units::heading_of_quaternion(&setpoint.attitude_quaternion);
     let (cos, sin) = heading.cos_sin();
     is_sound(cos + sin + rate).then_some((heading, rate))
 }

@@ -29,6 +29,13 @@ class Vector:
     z: float = 0.0
 
 
+def _vector(name: str, array: ArrayLike) -> Vector:
+    part = np.asarray(array, dtype=float)
+    if part.shape != (3,):
+        raise ValueError(f"{name}: shape {part.shape}; give (3,)")
+    return Vector(*part.tolist())
+
+
 @dataclass
 class Attitude:
     """roll, pitch, yaw, degrees or degrees a second."""
@@ -87,14 +94,12 @@ class Setpoint:
         heading: float = 0.0,
     ) -> Setpoint:
         """As the high-level commander puts a point of a trajectory: SI, heading in rad."""
-        parts = (Vector(*np.asarray(part, dtype=float).tolist()) for part in (position, velocity, acceleration, jerk))
-        where, speed, change, jolt = parts
         return cls(
             attitude=Attitude(yaw=float(np.degrees(heading))),
-            position=where,
-            velocity=speed,
-            acceleration=change,
-            jerk=jolt,
+            position=_vector("position", position),
+            velocity=_vector("velocity", velocity),
+            acceleration=_vector("acceleration", acceleration),
+            jerk=_vector("jerk", jerk),
             mode=Modes(x=ABSOLUTE, y=ABSOLUTE, z=ABSOLUTE, yaw=ABSOLUTE),
         )
 

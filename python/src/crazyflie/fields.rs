@@ -36,13 +36,11 @@ fn modes(of: &Bound<'_, PyAny>) -> PyResult<Modes> {
     })
 }
 
-pub(super) fn setpoint(of: &Bound<'_, PyAny>, tick: u32) -> PyResult<Setpoint> {
+pub(super) fn setpoint(of: &Bound<'_, PyAny>) -> PyResult<Setpoint> {
     // The bindings of older firmware have no jerk.
     let jerk = if of.hasattr("jerk")? { vector(of, "jerk")? } else { Vector::default() };
-    let timestamp = of.getattr_opt("timestamp")?.map_or(Ok(0), |stamp| stamp.extract())?;
     Ok(Setpoint {
-        // One that nobody dated is new.
-        timestamp: if timestamp == 0 { tick } else { timestamp },
+        timestamp: of.getattr_opt("timestamp")?.map_or(Ok(0), |stamp| stamp.extract())?,
         attitude: angles(of, "attitude")?,
         attitude_rate: angles(of, "attitudeRate")?,
         attitude_quaternion: quaternion(of, "attitudeQuaternion")?,

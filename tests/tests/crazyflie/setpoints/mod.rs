@@ -5,4 +5,5 @@ pub(crate) mod flight;
 mod goals;
 pub(crate) mod orders;
 pub(crate) mod planner;
+mod rates;
 pub(crate) mod sent;
