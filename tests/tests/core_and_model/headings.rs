@@ -12,7 +12,7 @@ use quatrack_design::model::flat::FlatSample;
 use quatrack_plan::trajectory::Trajectory;
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::{Piece, PiecewisePolynomial};
-use quatrack_simulation::flight::closed_loop::{Flight, fly_sampled};
+use quatrack_simulation::flight::closed_loop::{Flight, LOST_M, fly_sampled};
 use quatrack_simulation::flight::core_loop::CoreLoop;
 use quatrack_simulation::flight::metrics::Metrics;
 use quatrack_simulation::flight::reference::Exact;
@@ -55,7 +55,7 @@ fn fly(
 ) -> Flight {
     let pieces = on_board::pieces(pieces);
     let mut core = CoreLoop::new(&pieces, Rate::from_hz(RATE_HZ).unwrap(), law, Limits::NONE).unwrap();
-    fly_sampled(&Exact(trajectory), RATE_HZ, |tick, _, x| core.step(tick, &disturb(tick, x)))
+    fly_sampled(&Exact(trajectory), RATE_HZ, LOST_M, |tick, _, x| core.step(tick, &disturb(tick, x)))
 }
 
 /// The same trajectory from a place beside it: the craft starts off its reference by so many metres.

@@ -129,6 +129,7 @@ fn gather(whole: &mut Table, folder: &Path, origin: &str) -> Result<Vec<(String,
         let end = path.extension().map_or_else(String::new, |end| format!(".{}", end.display()));
         let own = format!("{stem}{end}");
         whole.insert(key.to_owned(), Value::String(own.clone()));
+        let bytes = if key == "course" { with_its_vehicle(&path, bytes, origin, &mut files)? } else { bytes };
         files.push((own, bytes));
         Ok::<(), ScenarioError>(())
     };
@@ -139,4 +140,37 @@ fn gather(whole: &mut Table, folder: &Path, origin: &str) -> Result<Vec<(String,
         take(whole, "course", "course")?;
     }
     Ok(files)
+}
+
+/// The name of the vehicle's file that bounds a course.
+const OF_COURSE: &str = "course-vehicle.toml";
+
+/// A course with the vehicle's file that bounds it under a name of its own beside it, if it is a plan with one; else as it is.
+fn with_its_vehicle(
+    path: &Path,
+    bytes: Vec<u8>,
+    origin: &str,
+    files: &mut Vec<(String, Vec<u8>)>,
+) -> Result<Vec<u8>, ScenarioError> {
+    let Some(mut plan) = std::str::from_utf8(&bytes).ok().and_then(|text| text.parse::<Table>().ok()) else {
+        return Ok(bytes);
+    };
+    let vehicle = plan.get_mut("bounds").and_then(|bounds| bounds.get_mut("vehicle"));
+    let Some((vehicle, name)) =
+        vehicle.and_then(|vehicle| vehicle.as_str().map(str::to_owned).map(|name| (vehicle, name)))
+    else {
+        return Ok(bytes);
+    };
+    let there = path.with_file_name(&name);
+    if there.extension().is_none_or(|end| end != "toml") {
+        return Ok(bytes);
+    }
+    let of_vehicle = bounded::read(&there).map_err(|error| ScenarioError::Named {
+        origin: origin.to_owned(),
+        key: "course",
+        reason: format!("{}: bounds.vehicle = {name:?}: cannot be read ({error})", path.display()),
+    })?;
+    files.push((OF_COURSE.to_owned(), of_vehicle));
+    *vehicle = Value::String(OF_COURSE.to_owned());
+    Ok(plan.to_string().into_bytes())
 }

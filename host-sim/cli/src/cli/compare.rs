@@ -45,7 +45,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let named = args.scenario.scenario.is_some() || args.scenario.vehicle.is_some();
     let gains = args.gains.as_deref().map(|path| Ok((path, fly::table::source(path)?))).transpose()?;
     let own = gains.as_ref().filter(|_| !named).map(|(path, table)| table.own_vehicle(path)).transpose()?;
-    let scenario = args.scenario.checked_for(own.as_ref())?;
+    let scenario = args.scenario.checked_for(gains.is_some(), own.as_ref())?;
     let course = OwnCourse::of(&scenario, &TransformArgs::default())?;
     let note = course.line();
     let flown = scenario.flown(course.trajectory);

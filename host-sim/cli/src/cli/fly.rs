@@ -14,7 +14,7 @@ use clap::ValueEnum;
 use quatrack::{ErrorForm, FeedForward, Law as CoreLaw, Limits, Rate};
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
-use quatrack_simulation::flight::closed_loop::{Flight, fly_sampled};
+use quatrack_simulation::flight::closed_loop::{Flight, LOST_M, fly_sampled};
 use quatrack_simulation::flight::core_loop::CoreLoop;
 use quatrack_simulation::flight::reference::Exact;
 
@@ -37,7 +37,7 @@ use report::{DescribedFlight, report};
 /// with --gains, but for tables of the cascade, which are the law of a scenario.
 ///
 /// Exit code 0: flown to the end. 2: an input that cannot be used. 3: the craft was lost; the samples
-/// until then are printed and written.
+/// until then are printed and written. It is lost 5 m from its course or reference, or without a finite command.
 ///
 /// Examples:
 ///   quatrack fly --scenario my.toml --wind-m-s 1,0,0 --out out/windy --plot out/windy.png
@@ -174,5 +174,5 @@ fn fly_law(
     let pieces = on_board::checked(trajectory).map_err(|error| not_on_board(&args.trajectory, &error))?;
     let mut core = CoreLoop::new(&pieces, rate, law, limits)
         .map_err(|error| Failure::input(format!("{}: {error}", args.trajectory)))?;
-    Ok(fly_sampled(&Exact(trajectory), rate.hz(), |tick, _, x| core.step(tick, x)))
+    Ok(fly_sampled(&Exact(trajectory), rate.hz(), LOST_M, |tick, _, x| core.step(tick, x)))
 }

@@ -94,7 +94,12 @@ pub(crate) struct Named<'a, T> {
 impl<'a, T: Serialize> Named<'a, T> {
     /// The object of a value with keys.
     pub(crate) fn new(name: &str, value: &'a T) -> Self {
-        Self { schema: format!("quatrack/{name}/1"), value }
+        Self::of_form(name, 1, value)
+    }
+
+    /// The same where its keys have changed since the first form.
+    pub(crate) fn of_form(name: &str, form: u32, value: &'a T) -> Self {
+        Self { schema: format!("quatrack/{name}/{form}"), value }
     }
 }
 

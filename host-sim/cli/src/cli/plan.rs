@@ -141,8 +141,8 @@ pub(super) fn planned(
     let folder = path.parent().unwrap_or(Path::new(""));
     // A vehicle's file is beside the plan that names it.
     let find = |name: &str| {
-        let here = folder.join(name);
-        let choice = if here.is_file() { here.to_string_lossy().parse() } else { name.parse() };
+        let is_file = Path::new(name).extension().is_some_and(|end| end == "toml");
+        let choice = if is_file { folder.join(name).to_string_lossy().parse() } else { name.parse() };
         choice.map(|VehicleChoice(vehicle)| vehicle)
     };
     let bar = ProgressBar::new_spinner();

@@ -15,7 +15,7 @@ use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::poly4d::{MEMORY_BYTES, PIECES_MAX, StoredTrajectory};
 use quatrack_plan::trajectory::polynomial::{PiecewisePolynomial, csv};
 use quatrack_plan::trajectory::refit::refit;
-use quatrack_simulation::flight::closed_loop::fly_sampled;
+use quatrack_simulation::flight::closed_loop::{LOST_M, fly_sampled};
 use quatrack_simulation::flight::core_loop::CoreLoop;
 use quatrack_simulation::flight::deviation::Deviation;
 use quatrack_simulation::flight::metrics::Metrics;
@@ -231,7 +231,7 @@ fn compare(
         let pieces = on_board::pieces(flown);
         let law = Equilibrium { gain, error_form: ErrorForm::HeadingFrame, feed_forward };
         let mut core = CoreLoop::new(&pieces, rate, law, Limits::NONE).map_err(|error| error.to_string())?;
-        let flight = fly_sampled(&Exact(measured_from), rate.hz(), |tick, _, x| core.step(tick, x));
+        let flight = fly_sampled(&Exact(measured_from), rate.hz(), LOST_M, |tick, _, x| core.step(tick, x));
         Ok::<_, String>(Metrics::of(&flight).iae_m_s)
     };
     Ok(Comparison {

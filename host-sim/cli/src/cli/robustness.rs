@@ -42,7 +42,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let report = Report { certified: report, in_air: scenario::fly(&in_air, None)? };
     output::print(&format!("{}\nin vacuum, by the certificates:\n{}", report.in_air.text(), table(&report.certified)))?;
     if let Some(path) = &args.json {
-        output::write_json(path, &output::Named::new("robustness", &report))?;
+        output::write_json(path, &output::Named::of_form("robustness", 2, &report))?;
         output::print(&format!("wrote {}\n", path.display()))?;
     }
     Ok(())
@@ -84,6 +84,6 @@ fn table(report: &RobustnessReport) -> String {
 }
 
 fn cell(row: &Row) -> String {
-    let iae = row.iae.map_or_else(|| "lost".to_owned(), |iae| format!("{iae:.5}"));
+    let iae = row.iae_m_s.map_or_else(|| "lost".to_owned(), |iae| format!("{iae:.5}"));
     format!("{iae} ({:.4}; {})", row.max_error_m, row.saturated_steps)
 }

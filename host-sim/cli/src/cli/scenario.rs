@@ -179,7 +179,7 @@ impl ScenarioArgs {
     /// # Errors
     /// The value of the file or of a flag that is out of range, in one line.
     pub(super) fn checked(&self) -> Result<Scenario, Failure> {
-        self.checked_for(None)
+        self.checked_for(false, None)
     }
 
     /// The scenario; without a file or a vehicle that of a vehicle, and without a file or a word of the air in the vehicle's own air
@@ -205,11 +205,12 @@ impl ScenarioArgs {
         Ok(scenario)
     }
 
-    /// The same for the vehicle of a table where neither file nor flag names one.
+    /// The same for a table of gains where there is one: on its own vehicle where neither file nor flag names one. Any lag may be
+    /// told: the table refuses those that it is not certified for.
     ///
     /// # Errors
     /// As [`Self::checked`].
-    pub(super) fn checked_for(&self, own: Option<&Vehicle>) -> Result<Scenario, Failure> {
+    pub(super) fn checked_for(&self, table: bool, own: Option<&Vehicle>) -> Result<Scenario, Failure> {
         let (mut file, name, folder) = match (&self.scenario, &self.vehicle) {
             (Some(path), _) => {
                 let file = ScenarioFile::read(path).map_err(Failure::input)?;
@@ -220,10 +221,15 @@ impl ScenarioArgs {
             (None, None) => return Err(Failure::input("no craft to fly: give --scenario FILE or --vehicle VEHICLE")),
         };
         self.put_over(&mut file);
+        let lag_ms = if table { file.told.lag_ms.take() } else { None };
+        let told = |mut scenario: Scenario| {
+            scenario.told.lag_s = scenario.told.lag_s.or(lag_ms.map(|lag_ms| 1e-3 * lag_ms));
+            scenario
+        };
         if file.vehicle.is_empty()
             && let Some(vehicle) = own
         {
-            return Scenario::on(vehicle.clone(), &file, "flags", folder).map_err(Failure::input);
+            return Scenario::on(vehicle.clone(), &file, "flags", folder).map(told).map_err(Failure::input);
         }
         let has_flags = self.air.is_some() || self.alone() != ScenarioFile::default();
         let origin = match (name.is_empty(), has_flags) {
@@ -231,7 +237,7 @@ impl ScenarioArgs {
             (false, false) => name,
             (false, true) => format!("{name} with flags"),
         };
-        let scenario = Scenario::checked(&file, &origin, folder).map_err(|error| {
+        let scenario = Scenario::checked(&file, &origin, folder).map(told).map_err(|error| {
             let is_unknown = !file.vehicle.ends_with(".toml") && vehicles::by_name(&file.vehicle).is_err();
             let alike = if is_unknown { did_you_mean(&file.vehicle, vehicles::names()) } else { String::new() };
             Failure::input(format!("{error}{alike}"))

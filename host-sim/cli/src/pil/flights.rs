@@ -7,7 +7,7 @@ use quatrack_plan::plan;
 use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::plan::stored;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
-use quatrack_simulation::flight::closed_loop::{Flight, HeldCommand, fly_sampled};
+use quatrack_simulation::flight::closed_loop::{Flight, HeldCommand, REPRODUCED_LOST_M, fly_sampled};
 use quatrack_simulation::flight::core_loop;
 use quatrack_simulation::flight::reference::Exact;
 use quatrack_simulation::reproduction::table::{Controller, core_law};
@@ -111,7 +111,7 @@ impl HostCore {
 
 /// Flies a course under the commands of `control`, which is given the tick and the state as the board gets it.
 pub fn fly(plan: &PiecewisePolynomial, mut control: impl FnMut(u32, &State) -> Result<Command, String>) -> Flight {
-    fly_sampled(&Exact(plan), RATE_HZ, |tick, _, x: &StateVector| {
+    fly_sampled(&Exact(plan), RATE_HZ, REPRODUCED_LOST_M, |tick, _, x: &StateVector| {
         let command = control(tick, &core_loop::state(x))?;
         Ok(HeldCommand { input: core_loop::input(&command), limited: false })
     })

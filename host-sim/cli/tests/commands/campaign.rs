@@ -126,6 +126,38 @@ fn a_flight_of_a_campaign_is_flown_again() {
 }
 
 #[test]
+fn a_folder_holds_the_vehicle_that_bounds_its_course() {
+    let bench = Bench::new("campaign-bounds");
+    let [scenario, out, elsewhere] = ["s.toml", "out", "elsewhere"].map(|name| bench.path(name));
+    let vehicle = include_str!("../../../../gains/vehicles/crazyflie-2.1-legacy.toml");
+    fs::create_dir_all(bench.0.join("craft")).unwrap();
+    fs::write(bench.0.join("craft/mine.toml"), vehicle).unwrap();
+    let plan = "waypoints = [{ position_m = [0, 0, 1] }, { position_m = [1, 0, 1] }, { position_m = [2, 0.5, 1] }]\n[bounds]\nvehicle = \"craft/mine.toml\"\n";
+    fs::write(bench.0.join("plan.toml"), plan).unwrap();
+    let text = SCENARIO.replace("\"hover\"\nduration_s = 0.3", "\"plan.toml\"");
+    fs::write(&scenario, &text).unwrap();
+    flown(&["campaign", &scenario, "--runs", "1", "--out", &out]);
+    // Taken elsewhere, without the files that it was flown from.
+    fs::rename(&out, &elsewhere).unwrap();
+    for gone in ["craft/mine.toml", "plan.toml", "s.toml"] {
+        fs::remove_file(bench.0.join(gone)).unwrap();
+    }
+    let json = bench.path("again.json");
+    flown(&["campaign", "replay", &elsewhere, "--run", "0", "--law", "lee", "--json", &json]);
+    let again: serde_json::Value = serde_json::from_slice(&bench.bytes("again.json")).unwrap();
+    let rows = String::from_utf8(bench.bytes("elsewhere/rows.csv")).unwrap();
+    // The second row is Lee's; its fifth cell is the error, which is the same to the bit.
+    let iae_m_s: f64 = rows.lines().nth(2).unwrap().split(',').nth(4).unwrap().parse().unwrap();
+    assert_eq!(again["iae_m_s"].as_f64().unwrap(), iae_m_s);
+    flown(&["report", &elsewhere, "--without-paper", "--worst", "1"]);
+    // Its own copy is the one that counts.
+    fs::remove_file(bench.0.join("elsewhere/course-vehicle.toml")).unwrap();
+    let refused = quatrack(&["campaign", "replay", &elsewhere, "--run", "0"]);
+    let said = String::from_utf8(refused.stderr).unwrap();
+    assert!(refused.status.code() == Some(2) && said.contains("course-vehicle.toml"), "{said}");
+}
+
+#[test]
 fn a_flight_that_is_lost_before_it_is_measured_has_a_picture() {
     let bench = Bench::new("campaign-early");
     let [scenario, out, plot] = ["early.toml", "out", "early.svg"].map(|name| bench.path(name));

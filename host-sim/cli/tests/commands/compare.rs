@@ -40,6 +40,19 @@ fn laws_fly_and_their_table_and_picture_are_written() {
     assert!(svg.starts_with("<svg") && svg.contains(">lee</text>") && svg.contains(">quatrack</text>"));
 }
 
+#[test]
+fn robustness_has_its_error_under_the_same_key() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_quatrack"));
+    let flown = command.args(["robustness", "--json", "-"]).output().expect("the command starts");
+    let table: serde_json::Value = serde_json::from_slice(&flown.stdout).unwrap();
+    assert_eq!(table["schema"], "quatrack/robustness/2");
+    for rows in [&table["rows"], &table["in_air"]["rows"]] {
+        // The first case is the nominal one, of a law that is not lost.
+        let first = &rows.as_array().unwrap()[0];
+        assert!(first["iae_m_s"].is_f64() && first["iae"].is_null(), "{first}");
+    }
+}
+
 /// Lines of a message; the parser of arguments lists missing ones below it, and a way to help.
 fn message(said: &str) -> usize {
     let lines = said.split("\n\n").next().unwrap_or_default().lines();

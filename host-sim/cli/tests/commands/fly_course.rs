@@ -43,6 +43,23 @@ fn a_course_of_ones_own_is_looked_at_before_it_is_flown() {
 }
 
 #[test]
+fn a_craft_5_m_from_its_trajectory_is_lost() {
+    let (folder, _) = scenario("fly-lost", "");
+    let path = pieces(&folder, "rest.csv", [[0.0; 3]; 2]);
+    // With a thrust of 8 m/s^2 at most it falls 3.6 m in these 2 s; with 2 m/s^2 5 m in sqrt(10 / 7.81) = 1.13 s.
+    for (limits, lost) in [("0,8,20", None), ("0,2,20", Some("1.14 s: 5 m from the reference"))] {
+        let arguments = ["fly", "--controller", "lqr-e", "--trajectory", &path, "--limits", limits, "--json", "-"];
+        let flown = quatrack(&arguments);
+        let figures: serde_json::Value = serde_json::from_slice(&flown.stdout).unwrap();
+        let said = String::from_utf8(flown.stderr).unwrap();
+        assert_eq!(flown.status.code(), Some(if lost.is_some() { 3 } else { 0 }), "{limits}: {said}");
+        assert_eq!((figures["lost"].as_str(), figures["iae_m_s"].is_null()), (lost, lost.is_some()), "{figures}");
+    }
+    let help = String::from_utf8(quatrack(&["fly", "--help"]).stdout).unwrap();
+    assert!(help.contains("lost 5 m from"), "{help}");
+}
+
+#[test]
 fn a_slip_in_the_name_of_a_course_is_named_with_its_file_and_the_courses() {
     let (folder, path) = scenario("fly-slip", "vehicle = \"crazyflie-2.1\"\ncourse = \"eigth\"\n");
     let out = folder.join("out").to_str().unwrap().to_owned();

@@ -15,8 +15,11 @@ const SAMPLES_PER_SECOND: u64 = 100;
 /// Longest step of the plant under a held command, s. The plant's own error is then below 1e-9 m a second.
 const HOLD_STEP_MAX_S: f64 = 0.005;
 
-/// A position error beyond which a flight is lost, m.
-const LOST_M: f64 = 1e3;
+/// A position error beyond which a flight is lost, m, as in scenarios. The paper's flights stay within 2.6 m.
+pub const LOST_M: f64 = 5.0;
+
+/// The same where the paper's table is reproduced, which has the error of a whole flight however far it strays, m.
+pub const REPRODUCED_LOST_M: f64 = 1e3;
 
 /// One row of a flight.
 #[derive(Clone, Copy, Debug)]
@@ -87,15 +90,16 @@ impl Solver {
 }
 
 /// Flies `reference` from its start under continuous `feedback`, which is given the state, of unit quaternion norm, and
-/// the point to be at.
+/// the point to be at. `lost_m` is the position error beyond which it is lost.
 pub fn fly_continuous(
     reference: &dyn Reference,
     feedback: impl Fn(&StateVector, &ReferencePoint) -> InputVector,
     solver: Solver,
+    lost_m: f64,
 ) -> Flight {
     let input = |t_s: f64, x: &StateVector| feedback(&normalised(x), &reference.at(t_s));
     let mut right_hand_side = |t_s: f64, x: &StateVector| dynamics(&normalised(x), &input(t_s, x));
-    let mut recorder = Recorder::new(reference);
+    let mut recorder = Recorder::new(reference, lost_m);
     let mut x = reference.at(0.0).state;
     for k in 0..=sample_count(reference.duration_s()) {
         let t_s = k as f64 / SAMPLES_PER_SECOND as f64;
@@ -124,14 +128,16 @@ pub fn fly_continuous(
 
 /// Flies `reference` from its start under commands held between the ticks of a clock of `rate_hz`.
 ///
-/// `control` is given the tick, its time and the state, whose quaternion has norm 1; an error ends the flight.
+/// `control` is given the tick, its time and the state, whose quaternion has norm 1; an error ends the flight, and so does a
+/// position error of `lost_m`.
 pub fn fly_sampled(
     reference: &dyn Reference,
     rate_hz: u32,
+    lost_m: f64,
     mut control: impl FnMut(u32, f64, &StateVector) -> Result<HeldCommand, String>,
 ) -> Flight {
     let rate = u64::from(rate_hz);
-    let mut recorder = Recorder::new(reference);
+    let mut recorder = Recorder::new(reference, lost_m);
     let mut x = reference.at(0.0).state;
     let mut input = InputVector::zeros();
     // Time counts in units of 1 / (rate * 100) s, so that ticks and samples meet exactly.
@@ -184,19 +190,20 @@ fn sample_count(duration_s: f64) -> u64 {
 
 struct Recorder<'a> {
     reference: &'a dyn Reference,
+    lost_m: f64,
     flight: Flight,
 }
 
 impl<'a> Recorder<'a> {
-    fn new(reference: &'a dyn Reference) -> Self {
-        Self { reference, flight: Flight { samples: Vec::new(), saturated_steps: 0, lost: None } }
+    fn new(reference: &'a dyn Reference, lost_m: f64) -> Self {
+        Self { reference, lost_m, flight: Flight { samples: Vec::new(), saturated_steps: 0, lost: None } }
     }
 
     fn record(&mut self, time_s: f64, x: &StateVector, input: InputVector) -> std::ops::ControlFlow<()> {
         let sample = Sample { time_s, state: normalised(x), input, target: self.reference.at(time_s) };
         let error_m = sample.position_error_m().norm();
         // Written so that NaN fails it.
-        if error_m < LOST_M && input.iter().all(|value| value.is_finite()) {
+        if error_m < self.lost_m && input.iter().all(|value| value.is_finite()) {
             self.flight.samples.push(sample);
             std::ops::ControlFlow::Continue(())
         } else {

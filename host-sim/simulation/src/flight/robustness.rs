@@ -93,7 +93,7 @@ pub struct Row {
     /// Lag that the case starts from, ms: that of the design, but for the default table.
     pub lag_ms: f64,
     /// Sum of the position error's norm over samples of 10 ms, times 10 ms, m s; absent for a flight that was lost.
-    pub iae: Option<f64>,
+    pub iae_m_s: Option<f64>,
     /// Largest position error, m.
     pub max_error_m: f64,
     /// Control steps in which a motor was cut to its limits.
@@ -193,7 +193,7 @@ fn row(
         law,
         case: case.name,
         lag_ms: 1e3 * lag_s,
-        iae: flight.iae_m_s(),
+        iae_m_s: flight.iae_m_s(),
         max_error_m: flight.max_error_m(),
         saturated_steps: flight.saturated_steps,
     })

@@ -8,6 +8,8 @@ mod difference;
 
 use std::path::{Path, PathBuf};
 
+use quatrack_plan::bounded;
+
 use super::GainsError;
 use super::artifacts::{artifacts, default_folder};
 use super::design::Design;
@@ -46,12 +48,22 @@ pub struct Failed {
     pub error: GainsError,
 }
 
-/// Designs of a folder, in the order of their names; those of folders in it are not among them.
+/// Designs of a folder, in the order of their names; vehicles beside them and files of folders in it are not among them.
 ///
 /// # Errors
 /// The system's error about the folder.
 pub fn designs(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    with_extension(folder, &["toml"])
+    let mut paths = with_extension(folder, &["toml"])?;
+    paths.retain(|path| !is_vehicle(path));
+    Ok(paths)
+}
+
+/// Whether a file is a vehicle by its tables `[body]` and `[motors]`, which no design has. A damaged vehicle is one, too: the
+/// design that names it tells its fault.
+fn is_vehicle(path: &Path) -> bool {
+    let text = bounded::read_to_string(path).unwrap_or_default();
+    let file = text.parse::<toml::Table>().unwrap_or_default();
+    ["body", "motors"].iter().all(|table| file.get(*table).is_some_and(toml::Value::is_table))
 }
 
 /// Compares the files of a design.

@@ -59,6 +59,9 @@ pub enum GainsError {
     /// The file's name is no name for a table.
     #[error("the file's name is the table's name: {0}")]
     Name(NameError),
+    /// The vehicle's name is no name for a table.
+    #[error("the vehicle's name is the table's name: {0}")]
+    VehicleName(NameError),
     /// The vehicle is not known or cannot be used.
     #[error("vehicle = \"{vehicle}\": {reason}")]
     Vehicle {

@@ -21,7 +21,7 @@ use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use serde::Serialize;
 
-use crate::flight::closed_loop::fly_sampled;
+use crate::flight::closed_loop::{REPRODUCED_LOST_M, fly_sampled};
 use crate::flight::core_loop::CoreLoop;
 use crate::flight::metrics::Metrics;
 use crate::flight::reference::{Exact, Reference as _};
@@ -170,7 +170,7 @@ fn fly(trajectory: &PiecewisePolynomial, pieces: &[Piece], rate_hz: u32, law: La
     } else {
         CoreLoop::new(pieces, rate, law, Limits::NONE).ok()?
     };
-    Metrics::of(&fly_sampled(&Exact(trajectory), rate_hz, |tick, _, x| core.step(tick, x))).iae_m_s
+    Metrics::of(&fly_sampled(&Exact(trajectory), rate_hz, REPRODUCED_LOST_M, |tick, _, x| core.step(tick, x))).iae_m_s
 }
 
 /// The designs past the paper for one rate and one trajectory, as the core flies them.

@@ -16,7 +16,7 @@ use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use serde::Serialize;
 
 use super::published;
-use crate::flight::closed_loop::{Flight, SAMPLE_PERIOD_S, Solver, fly_continuous, fly_sampled};
+use crate::flight::closed_loop::{Flight, REPRODUCED_LOST_M, SAMPLE_PERIOD_S, Solver, fly_continuous, fly_sampled};
 use crate::flight::core_loop::CoreLoop;
 use crate::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
 use crate::flight::metrics::Metrics;
@@ -173,8 +173,9 @@ pub fn fly_cell(
     let published_flight = fly_published(trajectory, gain);
     let feedback = |feed_forward| Feedback { law: law(gain), feed_forward };
     let sampled = Sampled::new(trajectory, SAMPLE_PERIOD_S, |t, t_s| reference_point(&t.at(t_s)));
-    let exact = fly_continuous(&sampled, |x, target| feedback(false).input(x, target), Solver::PAPER);
-    let fed = fly_continuous(&Exact(trajectory), |x, target| feedback(true).input(x, target), TRUTH);
+    let exact =
+        fly_continuous(&sampled, |x, target| feedback(false).input(x, target), Solver::PAPER, REPRODUCED_LOST_M);
+    let fed = fly_continuous(&Exact(trajectory), |x, target| feedback(true).input(x, target), TRUTH, REPRODUCED_LOST_M);
     let mut saturated_steps = 0;
     let core_f32 = CORE_RATES_HZ
         .into_iter()
@@ -211,12 +212,18 @@ fn law(gain: AnyGain<'_>) -> Law<'_> {
 fn fly_published(trajectory: &PiecewisePolynomial, gain: AnyGain<'_>) -> Flight {
     let reference = Sampled::new(trajectory, SAMPLE_PERIOD_S, published::reference);
     match gain {
-        AnyGain::Equilibrium(gain) => {
-            fly_continuous(&reference, |x, target| published::equilibrium_input(gain, x, target), Solver::PAPER)
-        }
-        AnyGain::FlatOutput(gain) => {
-            fly_continuous(&reference, |x, target| published::flat_output_input(gain, x, target), Solver::PAPER)
-        }
+        AnyGain::Equilibrium(gain) => fly_continuous(
+            &reference,
+            |x, target| published::equilibrium_input(gain, x, target),
+            Solver::PAPER,
+            REPRODUCED_LOST_M,
+        ),
+        AnyGain::FlatOutput(gain) => fly_continuous(
+            &reference,
+            |x, target| published::flat_output_input(gain, x, target),
+            Solver::PAPER,
+            REPRODUCED_LOST_M,
+        ),
     }
 }
 
@@ -238,5 +245,5 @@ pub fn core_law(controller: Controller) -> CoreLaw<'static> {
 fn fly_core(trajectory: &PiecewisePolynomial, controller: Controller, rate_hz: u32) -> Option<Flight> {
     let pieces = on_board::pieces(trajectory);
     let mut core = CoreLoop::new(&pieces, Rate::from_hz(rate_hz)?, core_law(controller), Limits::NONE).ok()?;
-    Some(fly_sampled(&Exact(trajectory), rate_hz, |tick, _, x| core.step(tick, x)))
+    Some(fly_sampled(&Exact(trajectory), rate_hz, REPRODUCED_LOST_M, |tick, _, x| core.step(tick, x)))
 }

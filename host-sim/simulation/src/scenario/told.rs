@@ -88,7 +88,7 @@ impl ToldFigures {
         match self.lag_s {
             Some(lag_s) if !certified.holds_lag(lag_s as f32) => {
                 let [least, most] = certified.motor_lag_s.map(|lag_s| thousandths(1e3 * f64::from(lag_s)));
-                let must = format!("from {least} to {most} ms, for which the vehicle's table is certified");
+                let must = format!("from {least} to {most} ms, for which its table is certified");
                 Err(ToldError { key: "lag_ms", value: thousandths(1e3 * lag_s), must })
             }
             _ => Ok(()),

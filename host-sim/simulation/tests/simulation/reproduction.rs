@@ -6,7 +6,7 @@ use quatrack_plan::plan;
 use quatrack_plan::plan::paper::PaperTrajectory;
 use quatrack_plan::trajectory::file::{self, TrajectoryFile};
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
-use quatrack_simulation::flight::closed_loop::{SAMPLE_PERIOD_S, Solver, fly_continuous};
+use quatrack_simulation::flight::closed_loop::{LOST_M, REPRODUCED_LOST_M, SAMPLE_PERIOD_S, Solver, fly_continuous};
 use quatrack_simulation::flight::metrics::Metrics;
 use quatrack_simulation::flight::reference::{Exact, Sampled};
 use quatrack_simulation::integrator::Method;
@@ -95,7 +95,7 @@ fn the_paper_s_integrator_agrees_with_runge_kutta_to_four_digits() {
                 let law = |x: &_, target: &_| {
                     quatrack_simulation::reproduction::published::equilibrium_input(gain, x, target)
                 };
-                let flight = fly_continuous(&reference, law, Solver::Fixed { method, substeps: 1 });
+                let flight = fly_continuous(&reference, law, Solver::Fixed { method, substeps: 1 }, REPRODUCED_LOST_M);
                 Metrics::of(&flight).iae_m_s.unwrap()
             };
             let (third, fourth) = (iae(Method::BogackiShampine3), iae(Method::RungeKutta4));
@@ -108,12 +108,14 @@ fn the_paper_s_integrator_agrees_with_runge_kutta_to_four_digits() {
 fn a_flight_that_cannot_be_held_is_lost_and_has_no_iae() {
     let [mild, _] = paper_trajectories();
     let runaway = |_: &_, _: &_| quatrack_design::model::InputVector::new(1e3, 0.0, 0.0, 0.0);
-    let flight = fly_continuous(&Exact(&mild), runaway, Solver::PAPER);
-    let lost = flight.lost.as_ref().unwrap();
-    // 990 m/s^2 upwards: 1 km after sqrt(2000 / 990) s.
-    assert!((lost.time_s - 1.42).abs() < 0.02, "{lost:?}");
-    let metrics = Metrics::of(&flight);
-    assert_eq!((metrics.iae_m_s, metrics.iae_integral_m_s), (None, None));
+    // 990 m/s^2 upwards: 5 m after sqrt(10 / 990) s, 1 km after sqrt(2000 / 990) s.
+    for (lost_m, expected_s) in [(LOST_M, 0.1005), (REPRODUCED_LOST_M, 1.42)] {
+        let flight = fly_continuous(&Exact(&mild), runaway, Solver::PAPER, lost_m);
+        let lost = flight.lost.as_ref().unwrap();
+        assert!((lost.time_s - expected_s).abs() < 0.02, "{lost:?}");
+        let metrics = Metrics::of(&flight);
+        assert_eq!((metrics.iae_m_s, metrics.iae_integral_m_s), (None, None));
+    }
 }
 
 /// A public figure of eight, flown as published by the same independent implementation.

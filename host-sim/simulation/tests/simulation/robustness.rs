@@ -16,7 +16,7 @@ fn vehicle(name: &str) -> Vehicle {
 
 fn iae(report: &RobustnessReport, law: &str, lag_ms: f64, case: &str) -> Option<f64> {
     let found = report.rows.iter().find(|row| (row.law, row.lag_ms, row.case) == (law, lag_ms, case));
-    found.unwrap_or_else(|| panic!("no row of {law}, {lag_ms} ms, {case}")).iae
+    found.unwrap_or_else(|| panic!("no row of {law}, {lag_ms} ms, {case}")).iae_m_s
 }
 
 #[test]

@@ -11,7 +11,7 @@ use quatrack_design::model::{
     ATTITUDE, InputVector, POSITION, StateVector, VELOCITY, attitude, dynamics, position, velocity,
 };
 use quatrack_plan::plan::paper;
-use quatrack_simulation::flight::closed_loop::{HeldCommand, fly_sampled};
+use quatrack_simulation::flight::closed_loop::{HeldCommand, LOST_M, fly_sampled};
 use quatrack_simulation::flight::law::{Feedback, Law};
 use quatrack_simulation::flight::metrics::Metrics;
 use quatrack_simulation::flight::reference::{Exact, Reference};
@@ -186,7 +186,7 @@ fn along_the_w_the_table_brings_errors_back_at_less_cost_than_the_stationary_gai
     // Ten steps a knot follow the gains to a hundredth.
     assert!(along.interpolation_error < 0.01, "{}", along.interpolation_error);
     let fly = |gain_at: &dyn Fn(f64) -> SMatrix<f64, 4, 9>| {
-        let flight = fly_sampled(&reference, rate_hz, |_, t_s, x| {
+        let flight = fly_sampled(&reference, rate_hz, LOST_M, |_, t_s, x| {
             let gain = gain_at(t_s);
             let feedback = Feedback { law: Law::EquilibriumHeading(&gain), feed_forward: true };
             Ok(HeldCommand { input: feedback.input(x, &reference.at(t_s)), limited: false })

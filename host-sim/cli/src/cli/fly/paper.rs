@@ -9,7 +9,7 @@ use quatrack_design::design::codegen::rounded;
 use quatrack_design::design::synthesis::{self, EquilibriumWeights, FlatWeights, PAPER_MU};
 use quatrack_plan::trajectory::Trajectory;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
-use quatrack_simulation::flight::closed_loop::{Flight, HeldCommand, Solver, fly_continuous, fly_sampled};
+use quatrack_simulation::flight::closed_loop::{Flight, HeldCommand, LOST_M, Solver, fly_continuous, fly_sampled};
 use quatrack_simulation::flight::core_loop;
 use quatrack_simulation::flight::law::{EquilibriumGain, Feedback, FlatOutputGain, Law};
 use quatrack_simulation::flight::reference::{Exact, Reference};
@@ -134,7 +134,7 @@ fn fly_core(
 
 fn fly_f64_sampled(args: &Args, gain: &Gain, trajectory: &PiecewisePolynomial, rate: Rate, limits: Limits) -> Flight {
     let (reference, feedback) = (Exact(trajectory), feedback(args, gain));
-    fly_sampled(&reference, rate.hz(), |_, t_s, x| {
+    fly_sampled(&reference, rate.hz(), LOST_M, |_, t_s, x| {
         let input = feedback.input(x, &reference.at(t_s));
         let (input, limited) =
             core_loop::saturate(&input, &limits).ok_or_else(|| "the law has no finite command".to_owned())?;
@@ -157,5 +157,5 @@ fn fly_f64_continuous(
     }
     let feedback = feedback(args, gain);
     let solver = Solver::Fixed { method: Method::RungeKutta4, substeps: 2 };
-    Ok(fly_continuous(&Exact(trajectory), |x, target| feedback.input(x, target), solver))
+    Ok(fly_continuous(&Exact(trajectory), |x, target| feedback.input(x, target), solver, LOST_M))
 }

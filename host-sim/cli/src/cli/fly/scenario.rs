@@ -94,7 +94,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     args.refuse_older()?;
     let table = args.gains.as_deref().map(|path| Ok((path, table::source(path)?))).transpose()?;
     let own = table.as_ref().filter(|_| !named).map(|(path, table)| table.own_vehicle(path)).transpose()?;
-    let scenario = args.scenario.checked_for(own.as_ref())?;
+    let scenario = args.scenario.checked_for(table.is_some(), own.as_ref())?;
     args.out.as_deref().map_or(Ok(()), output::create_dir)?;
     let (figures, recording) = match &table {
         Some((path, table)) => {

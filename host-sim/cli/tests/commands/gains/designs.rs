@@ -39,6 +39,16 @@ fn a_design_of_another_craft_that_is_refused_is_told_that_weights_do_not_scale()
     let designed = quatrack(&["gains", "design", path]);
     assert!(designed.status.success(), "{}", String::from_utf8_lossy(&designed.stderr));
     assert!(String::from_utf8(designed.stdout).unwrap().contains("force_input = 8.03 for this mass"));
+    // Of a lag that is told the table's region counts, 20 to 40 ms, not the 11.85 to 30 ms of the table that `gains craft` makes.
+    let told = |lag_ms: &str| {
+        let hover = ["fly", "--gains", path, "--course", "hover", "--duration-s", "0.3"];
+        quatrack(&[&hover[..], &["--told-lag-ms", lag_ms]].concat())
+    };
+    assert_done(&told("35"));
+    for lag_ms in ["19", "45", "-1"] {
+        let named = format!("told.lag_ms = {lag_ms}: must be from 20 to 40 ms, for which its table is certified");
+        assert_refused(&told(lag_ms), 2, &[&named]);
+    }
 }
 
 #[test]
@@ -108,6 +118,26 @@ fn the_page_on_own_designs_prints_the_commands_output() {
 }
 
 #[test]
+fn a_vehicle_beside_its_designs_is_none_of_them() {
+    let dir = folder("beside");
+    let there = dir.to_str().unwrap();
+    fs::copy(format!("{GAINS}/vehicles/crazyflie-2.1-legacy.toml"), dir.join("my-craft.toml")).unwrap();
+    let named = "vehicle = \"my-craft.toml\"";
+    let design = design(&dir, "mine.toml", "lyap-f.toml", "vehicle = \"crazyflie-2.1\"", named);
+    assert_done(&quatrack(&["gains", "design", &design]));
+    let listed = stdout(&quatrack(&["gains", "list", there]));
+    assert!(listed.starts_with("mine ") && listed.lines().count() == 1, "{listed}");
+    // JSON, Rust and the binary table of the one design.
+    assert_eq!(stdout(&quatrack(&["gains", "check", there])), "3 files agree with their designs\n");
+    assert_eq!(stdout(&quatrack(&["gains", "generate", there])), "3 files agreed with their designs\n");
+    // Neither a design nor a vehicle.
+    fs::write(dir.join("other.toml"), "name = \"other\"\n[body]\nmass_kg = 1.0\n").unwrap();
+    for command in ["list", "check", "generate"] {
+        assert_refused(&quatrack(&["gains", command, there]), 2, &["other.toml: line 2, `[body]`"]);
+    }
+}
+
+#[test]
 fn a_vehicle_file_becomes_a_header_for_the_crazyflie_and_flies() {
     let dir = folder("craft");
     let vehicle = format!("{GAINS}/vehicles/crazyflie-2.1-legacy.toml");
@@ -135,6 +165,12 @@ fn a_vehicle_file_becomes_a_header_for_the_crazyflie_and_flies() {
         "{shown}"
     );
     assert!(shown.contains("crazyflie-2.1-legacy"), "{shown}");
+    // Its own name is at fault, not that of its file.
+    let long = dir.join("long.toml");
+    let text = fs::read_to_string(&vehicle).unwrap();
+    fs::write(&long, text.replace("\"crazyflie-2.1-legacy\"", "\"a-name-of-32-characters-in-total\"")).unwrap();
+    let refused = quatrack(&["gains", "craft", long.to_str().unwrap(), "--out", other.to_str().unwrap()]);
+    assert_refused(&refused, 2, &["long.toml: the vehicle's name is the table's name: name: 32 bytes; give 1 to 31"]);
     let mut damaged = bytes.clone();
     damaged[8] ^= 1;
     let broken = dir.join("damaged.bin");

@@ -76,7 +76,7 @@ impl Design {
     /// # Errors
     /// As [`Self::from_file`].
     pub fn for_vehicle(vehicle: &Vehicle, text: &str) -> Result<Self, GainsError> {
-        let name = Name::new(vehicle.name()).map_err(GainsError::Name)?;
+        let name = Name::new(vehicle.name()).map_err(GainsError::VehicleName)?;
         Self::of(&file::read(text)?, name, vehicle.clone(), Path::new(""))
     }
 
