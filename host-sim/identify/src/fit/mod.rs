@@ -3,6 +3,7 @@
 //! ```text
 //! whole            all figures of some flights
 //!   contradiction  two fits beside each other
+//!   slow_log       figures that a log slower than the grid does not tell
 //!   figures        each told with an interval, or refused with a manoeuvre
 //!     estimate     its interval by draws
 //!   model          the model of the most likely figures, and the share that it explains
@@ -39,6 +40,7 @@ mod posterior;
 mod prior;
 mod problem;
 mod refine;
+mod slow_log;
 mod steady;
 mod thrust;
 mod whole;

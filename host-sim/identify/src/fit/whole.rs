@@ -16,6 +16,7 @@ use super::model::{FlightFit, Model, Summary, flight_fits, summary};
 use super::posterior::{EXPLAINED_LEAST, Posterior};
 use super::prior::Base;
 use super::problem::{Drive, Prepared, prepared};
+use super::slow_log::{slowest, untold};
 use super::thrust::steeper;
 use crate::IdentifyError;
 use crate::filter::mean;
@@ -67,7 +68,8 @@ pub fn fit(flights: &[Flight], base: &Base) -> Result<Fit, IdentifyError> {
     };
     let mut figures = told(&posterior);
     let rough = summary(&sections, base, &posterior.values, &drags);
-    if 0.5 * (rough.explained[0] + rough.explained[1]) > EXPLAINED_LEAST {
+    let slow = slowest(flights);
+    if slow.is_none() && 0.5 * (rough.explained[0] + rough.explained[1]) > EXPLAINED_LEAST {
         let filtered = Posterior::filtered(&sections, base, flights.len(), &posterior.values, priors, &fixed);
         if let Some(filtered) = filtered {
             let all = told(&filtered);
@@ -92,6 +94,9 @@ pub fn fit(flights: &[Flight], base: &Base) -> Result<Fit, IdentifyError> {
     figures.yaw(&yaws);
     figures.biases(&flight_fits);
     figures.turning([x, y, thrust], yaws.forward.explained);
+    if let Some(flight) = slow {
+        figures.refuse(untold(&figures, flight));
+    }
     let explained = [x, y, thrust, drags[0].explained, drags[1].explained];
     Ok(Fit {
         base: base.clone(),

@@ -31,6 +31,11 @@ const LONGEST_REST: usize = 20;
 const SPOILT: usize = 2;
 
 impl Stream {
+    /// Median time between two samples, s.
+    pub(super) fn period_s(&self) -> f64 {
+        median(&self.times_s.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<_>>())
+    }
+
     /// Without samples that are missing, out of range, or stray from the median of five by more than outliers do.
     pub(super) fn cleaned(self, range: [f64; 2], look_for_outliers: bool) -> (Self, Removed) {
         let count = self.times_s.len();

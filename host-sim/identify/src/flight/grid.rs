@@ -17,6 +17,8 @@ const VOLTAGE_BRIDGED_S: f64 = 5.0;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grid {
     pub(super) start_s: f64,
+    /// Of the slowest of commands, gyroscope and accelerometer, s.
+    pub(super) period_s: f64,
     pub(super) position: Vec<Vector3<f64>>,
     pub(super) velocity: Vec<Vector3<f64>>,
     pub(super) attitude: Vec<UnitQuaternion<f64>>,
@@ -67,6 +69,7 @@ impl Grid {
         };
         let mut grid = Self {
             start_s,
+            period_s: [&gyro, &force, &motors].map(Stream::period_s).into_iter().fold(0.0, f64::max),
             attitude: attitudes(&q),
             other_unit,
             gyro: vectors(&g),

@@ -51,6 +51,8 @@ pub struct Flight {
     pub sections: Vec<Section>,
     /// By how much the pose comes later than the on-board streams, s.
     pub pose_shift_s: f64,
+    /// Median time between two samples of the motors' commands, the gyroscope or the accelerometer: the longest of the three, s.
+    pub period_s: f64,
     /// Root mean square of the on-board position against the pose, after the shift, m; where a log has both.
     pub estimate_rms_m: Option<f64>,
     /// Findings about the log.

@@ -59,6 +59,7 @@ pub fn prepare(log: &RawLog, map: &ColumnMap) -> Result<Flight, IdentifyError> {
         has_voltage: !grid.voltage.is_empty(),
         sections,
         pose_shift_s: shift_s,
+        period_s: grid.period_s,
         notes,
     })
 }

@@ -237,8 +237,7 @@ impl Reader<'_> {
             let good = clean.times_s.len();
             return Err(self.format(format!("{quantity}: {good} good samples; {LEAST} are the least")));
         }
-        let apart: Vec<f64> = clean.times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let apart_s = median(&apart);
+        let apart_s = clean.period_s();
         if apart_s > APART_S {
             return Err(self.format(format!(
                 "{quantity}: a sample every {apart_s:.3} s; one every {APART_S} s is the least that tells a motor's lag: log faster, \

@@ -10,6 +10,7 @@
 //! `STUDY_CRAFTS` says how many where it is set, `STUDY_VERBOSE` prints every figure of every craft.
 
 mod craft;
+mod slow;
 mod smooth;
 
 use std::collections::BTreeMap;
