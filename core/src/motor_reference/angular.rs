@@ -161,3 +161,30 @@ fn fault(thrust_m_s2: f32, axis_z: f32) -> ReferenceError {
         ReferenceError::NonFinite { field: Field::Acceleration, value: thrust_m_s2 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn motion(acceleration: [f32; 3]) -> Motion {
+        let zero = Vector3::zeros();
+        Motion { acceleration: Vector3::from(acceleration), jerk: zero, snap: zero, crackle: zero }
+    }
+
+    #[test]
+    fn a_turn_on_an_upright_axis_has_the_derivatives_of_its_heading() {
+        let turn = Turn::at(Heading::from_angle(0.7), [0.5, -1.5, 4.0]);
+        let turning = Turning::of(&motion([0.0; 3]), Some(&turn)).unwrap();
+        let found = [turning.rates, turning.acceleration, turning.jerk];
+        assert_eq!(found, [[0.0, 0.0, 0.5], [0.0, 0.0, -1.5], [0.0, 0.0, 4.0]]);
+    }
+
+    #[test]
+    fn each_singularity_alone_is_refused_by_name() {
+        // Upright with a thrust of 0.01 m/s^2; upside down with one of 10 m/s^2; and NaN, of which neither is true.
+        let refused = |z: f32| Turning::of(&motion([0.0, 0.0, z - GRAVITY_M_S2]), None).unwrap_err();
+        assert!(matches!(refused(0.01), ReferenceError::NoThrust { .. }), "{:?}", refused(0.01));
+        assert!(matches!(refused(-10.0), ReferenceError::Inverted { .. }), "{:?}", refused(-10.0));
+        assert!(Turning::of(&motion([f32::NAN, 0.0, 0.0]), None).is_err());
+    }
+}

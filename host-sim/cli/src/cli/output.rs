@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
+use clap::builder::{OsStringValueParser, TryMapValueParser, TypedValueParser as _, ValueParserFactory};
 use serde::Serialize;
 
 use super::Failure;
@@ -27,13 +28,22 @@ static IS_TAKEN: AtomicBool = AtomicBool::new(false);
 #[derive(Clone, Debug)]
 pub(crate) struct File(PathBuf);
 
-impl From<OsString> for File {
-    /// Of a command's arguments: no other argument takes standard output, so that `-` elsewhere means what it does there.
-    fn from(name: OsString) -> Self {
-        if name == "-" {
-            IS_TAKEN.store(true, Relaxed);
+impl ValueParserFactory for File {
+    type Parser = TryMapValueParser<OsStringValueParser, fn(OsString) -> Result<Self, &'static str>>;
+
+    fn value_parser() -> Self::Parser {
+        OsStringValueParser::new().try_map(Self::of)
+    }
+}
+
+impl File {
+    /// Of a command's arguments: no other argument takes standard output, so that `-` elsewhere means what it does there, and
+    /// only one of them may.
+    pub(super) fn of(name: OsString) -> Result<Self, &'static str> {
+        if name == "-" && IS_TAKEN.swap(true, Relaxed) {
+            return Err("standard output holds one file, and another argument has it; name a file");
         }
-        Self(name.into())
+        Ok(Self(name.into()))
     }
 }
 

@@ -20,7 +20,7 @@ impl FromStr for Picture {
             Some(end) if !(end.eq_ignore_ascii_case("svg") || end.eq_ignore_ascii_case("png")) => {
                 Err("a picture ends in .svg or .png".to_owned())
             }
-            _ => Ok(Self(File::from(std::ffi::OsString::from(name)))),
+            _ => Ok(Self(File::of(name.into())?)),
         }
     }
 }

@@ -136,6 +136,16 @@ fn the_compressed_form_has_more_pieces_than_the_other_where_they_fit() {
 }
 
 #[test]
+fn standard_output_holds_one_file() {
+    let (code, stdout, stderr) = texts(&quatrack(&["plan", "../../plans/mild.toml", "--json", "-", "--csv", "-"]));
+    assert!(code == Some(2) && stdout.is_empty(), "{stdout}");
+    assert!(
+        stderr.contains("'--csv <FILE>': standard output holds one file, and another argument has it; name a file"),
+        "{stderr}"
+    );
+}
+
+#[test]
 fn a_tolerance_holds_for_the_compressed_form_too() {
     let dir = folder("compressed-tolerance");
     let [packed, pieces] = ["w.ctraj", "w.csv"].map(|name| dir.join(name));

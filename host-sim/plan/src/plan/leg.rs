@@ -185,7 +185,9 @@ impl Plan {
                 match candidates.next() {
                     Some(j) if j < end => free = j + 1,
                     _ => {
-                        let waypoint = WaypointName { number, time_s: Some(waypoint.time_s) };
+                        // After a stop by its number alone: a leg's clock begins at its own start, which is not the file's.
+                        let time_s = (self.first_number == 1).then_some(waypoint.time_s);
+                        let waypoint = WaypointName { number, time_s };
                         return Err(PlanError::TooFewSpans { waypoint, spans: self.spans() });
                     }
                 }

@@ -155,6 +155,10 @@ fn more_exact_waypoints_than_spans_can_meet_are_named() {
     let crowded = [at(0.1), at(0.2), at(0.3)].concat();
     let line = refusal(&[HEAD, START, &crowded, END].concat());
     assert!(line.contains("waypoint 4 (time_s = 0.3): cannot be met exactly"), "{line}");
+    // After a stop the clock of its leg is not the file's.
+    let stop = "[[waypoints]]\ntime_s = 1.0\nposition_m = [1, 1, 0]\nstop = true\n";
+    let line = refusal(&[HEAD, START, stop, &[at(1.1), at(1.2), at(1.3)].concat(), END].concat());
+    assert!(line.contains("waypoint 5: cannot be met exactly"), "{line}");
 }
 
 #[test]
