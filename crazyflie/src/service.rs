@@ -1,23 +1,25 @@
 //! Around the controller, in the app's task and on its stack: which craft, parameters and sent tables in; the table to
 //! fly and the settings out, to be taken over between two control steps.
 
+mod handover;
+mod log;
+
 use core::sync::atomic::Ordering::Relaxed;
 
 use quatrack::Limits;
 use quatrack::gains::table::{CascadeTable, GainTable};
-use quatrack::nalgebra::Vector3;
 
-use crate::abi;
-use crate::control::{Controller, Mode, Settings};
+use crate::control::Mode;
 use crate::craft::{Craft, Platform};
-use crate::output::Output;
 use crate::own_craft::{OwnCraft, OwnCraftError};
 use crate::parameters;
 use crate::shared::Shared;
 use crate::tables::{Brought, Refusal, Table, Tuning};
 use crate::try_cell::TryCell;
-use crate::units;
 use crate::upload::{Packet, Sent, Status, Uploads};
+use handover::Arrival;
+pub use handover::Handover;
+pub use log::{log_counters, log_errors, log_learned};
 
 /// The state of the app's task.
 pub struct Service {
@@ -36,15 +38,6 @@ pub struct Service {
     limits: Limits,
 }
 
-/// How a craft has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Arrival {
-    /// From the app as it starts: everything begins anew.
-    Started,
-    /// Over the app channel: it waits until the one before does not fly.
-    Sent,
-}
-
 /// The table and tuning that the owner last asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Asked {
@@ -53,75 +46,6 @@ struct Asked {
     motor_lag_s: f32,
     /// Which of the sent tables, counted.
     upload: u8,
-}
-
-/// Values on their way to the stabilizer's task; those present have not been taken over yet.
-pub struct Handover {
-    craft: Option<(Craft, Arrival)>,
-    table: Option<Table>,
-    settings: Option<(Settings, Craft)>,
-    /// The controller has kept the table that it flew.
-    is_kept: bool,
-}
-
-impl Handover {
-    /// Nothing handed over.
-    pub(crate) const fn new() -> Self {
-        Self { craft: None, table: None, settings: None, is_kept: false }
-    }
-
-    /// The controller takes over the values that are present.
-    #[inline]
-    pub fn take_over(&mut self, controller: &mut Controller) {
-        // The settings come last and with everything else.
-        if self.settings.is_some() {
-            self.hand_to(controller);
-        }
-    }
-
-    /// The controller is selected: it takes over a craft that has come since, whatever it flew before.
-    pub fn select(&mut self, controller: &mut Controller) {
-        if let Some((_, arrival)) = &mut self.craft {
-            *arrival = Arrival::Started;
-            self.take_over(controller);
-        }
-    }
-
-    #[inline(never)]
-    fn hand_to(&mut self, controller: &mut Controller) {
-        match &self.craft {
-            Some((_, Arrival::Sent)) if Mode::is_flight(controller.mode() as u8) => {}
-            Some((craft, _)) => {
-                // The motors are off: there is time, and nothing is flown with a half of it.
-                controller.change_craft(craft);
-                self.craft = None;
-                while self.settings.is_some() {
-                    self.hand_one(controller);
-                }
-            }
-            None => self.hand_one(controller),
-        }
-    }
-
-    /// One thing a call: each takes long.
-    #[inline(never)]
-    fn hand_one(&mut self, controller: &mut Controller) {
-        match (&self.table, &self.settings) {
-            (Some(_), _) if !self.is_kept => {
-                controller.keep_table();
-                self.is_kept = true;
-            }
-            (Some(table), _) => {
-                controller.change_table(table);
-                (self.table, self.is_kept) = (None, false);
-            }
-            (None, Some((settings, craft))) => {
-                controller.set(settings, craft);
-                self.settings = None;
-            }
-            (None, None) => {}
-        }
-    }
 }
 
 impl Service {
@@ -254,51 +178,6 @@ impl Service {
 fn refuse(shared: &Shared, refusal: Refusal) {
     shared.log.refused_tables.fetch_add(1, Relaxed);
     shared.log.refusal.store(refusal as u16, Relaxed);
-}
-
-/// How far the last control step was off, into the log; in the stabilizer's task, between control steps.
-#[inline(never)]
-pub fn log_errors(shared: &Shared, controller: &Controller, state: &abi::State) {
-    let log = &shared.log;
-    // A conversion from a float cuts to the range, and takes NaN for 0.
-    let thousandths = |v: &Vector3<f32>| [(v.x * 1e3) as i16, (v.y * 1e3) as i16, (v.z * 1e3) as i16];
-    let outcome = controller.outcome();
-    log.error_mm.iter().zip(thousandths(&outcome.error_m)).for_each(|(to, value)| to.store(value, Relaxed));
-    let rotation = thousandths(&controller.rotation_error_rad(units::state(state).attitude));
-    log.rotation_mrad.iter().zip(rotation).for_each(|(to, value)| to.store(value, Relaxed));
-}
-
-/// Its outputs, limits and counts into the log; likewise.
-#[inline(never)]
-pub fn log_counters(shared: &Shared, controller: &Controller) {
-    let (log, outcome) = (&shared.log, controller.outcome());
-    let scale = 1e3 / controller.craft().airframe().figures().force_max_n;
-    let forces = match &outcome.output {
-        Output::Forces(forces) => *forces,
-        Output::Wrench(_) => [0.0; 4],
-    };
-    log.forces.iter().zip(forces).for_each(|(to, force)| to.store((force * scale) as u16, Relaxed));
-    log.limited.store(outcome.limited.bits(), Relaxed);
-    log.mode.store(controller.mode() as u8, Relaxed);
-    let counters = controller.counters();
-    log.reason.store(controller.why() as u16, Relaxed);
-    log.bad_states.store(counters.bad_states, Relaxed);
-    log.bad_setpoints.store(counters.bad_setpoints, Relaxed);
-    log.limited_steps.store(counters.limited_steps, Relaxed);
-    log.jumps.store(counters.jumps, Relaxed);
-}
-
-/// The figures that the cascade has learned into the log; likewise.
-#[inline(never)]
-pub fn log_learned(shared: &Shared, controller: &Controller) {
-    let Some((drag_per_s, moment_n_s, memory)) = controller.learned() else { return };
-    let learned = &shared.learned;
-    learned.drag_per_s.set(drag_per_s);
-    learned.moment_n_s.iter().zip(moment_n_s).for_each(|(to, moment)| to.set(moment));
-    learned.motor_share.set(memory.motor_share());
-    let v = memory.disturbance_m_s2();
-    learned.disturbance_m_s2.iter().zip([v.x, v.y, v.z]).for_each(|(to, part)| to.set(part));
-    learned.stands.set(if memory.stands() { 1.0 } else { 0.0 });
 }
 
 /// The table in use, its margin and its gain.
