@@ -55,13 +55,24 @@ pub struct Run {
 
 impl Campaign {
     fn checked(&self, table: Table) -> Result<Scenario, ScenarioError> {
-        let file: ScenarioFile = Value::Table(table).try_into().map_err(|error: toml::de::Error| {
-            let words: Vec<&str> = error.message().split_whitespace().collect();
-            ScenarioError::Named { origin: self.origin.clone(), key: "vary", reason: words.join(" ") }
+        let file = Self::file(table).map_err(|reason| ScenarioError::Named {
+            origin: self.origin.clone(),
+            key: "vary",
+            reason,
         })?;
+        self.checked_file(&file)
+    }
+
+    /// A scenario's file of its table, or the parser's message.
+    fn file(table: Table) -> Result<ScenarioFile, String> {
+        let words = |error: toml::de::Error| error.message().split_whitespace().collect::<Vec<_>>().join(" ");
+        Value::Table(table).try_into().map_err(words)
+    }
+
+    fn checked_file(&self, file: &ScenarioFile) -> Result<Scenario, ScenarioError> {
         match &self.vehicle {
-            Some(vehicle) => Scenario::on(vehicle.clone(), &file, &self.origin, &self.folder),
-            None => Scenario::checked(&file, &self.origin, &self.folder),
+            Some(vehicle) => Scenario::on(vehicle.clone(), file, &self.origin, &self.folder),
+            None => Scenario::checked(file, &self.origin, &self.folder),
         }
     }
 
@@ -77,6 +88,12 @@ impl Campaign {
         // 53 bits.
         table.insert("seed".to_owned(), Value::Integer(seed as i64));
         (table, drawn, seed)
+    }
+
+    /// A scenario's error without the name of the campaign's file, which is another one on another machine.
+    pub(crate) fn reason(&self, error: &ScenarioError) -> String {
+        let line = error.to_string();
+        line.strip_prefix(&format!("{}: ", self.origin)).map_or(line.clone(), str::to_owned)
     }
 
     /// The scenario of a run.

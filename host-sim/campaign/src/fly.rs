@@ -76,8 +76,8 @@ pub fn fly(
     let block = |index: u64| first + index * BLOCK..(first + (index + 1) * BLOCK).min(runs.end);
     let desk = Desk { shared: Mutex::default(), changed: Condvar::new() };
     thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
-            scope.spawn(|| {
+        for number in 1..=threads.max(1) {
+            let begun = thread::Builder::new().spawn_scoped(scope, || {
                 let over = Over(&desk);
                 let mut crew = Crew::default();
                 loop {
@@ -99,6 +99,11 @@ pub fn fly(
                     desk.changed.notify_all();
                 }
             });
+            if let Err(error) = begun {
+                drop(Over(&desk));
+                let reason = format!("--threads {threads}: thread {number} cannot begin ({error}); give fewer");
+                return Err(CampaignError::Asked(reason));
+            }
         }
         let over = Over(&desk);
         for index in 0..blocks {

@@ -7,40 +7,24 @@
 //! rows.parquet      the same, once all runs are there
 //! ```
 
+mod card;
 mod columns;
+mod partial;
 mod rows_on_disk;
 
-use std::fs::{self, File};
+use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use quatrack_plan::bounded;
-use serde::{Deserialize, Serialize};
 
 use crate::definition::{Asked, Campaign, Trajectories};
 use crate::error::CampaignError;
+use crate::row::Row;
 use crate::shard::Shard;
+pub use card::{Card, SCHEMA};
+use partial::{Partial, write};
 pub use rows_on_disk::Growing;
-
-/// The schema that the file states.
-pub const SCHEMA: &str = "quatrack/campaign/1";
-
-/// The definition of a campaign without its scenario.
-#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub struct Card {
-    /// [`SCHEMA`].
-    pub schema: String,
-    /// The campaign's seed.
-    pub seed: u64,
-    /// How many runs; each law flies them all.
-    pub runs: u64,
-    /// The laws, in the order of their rows.
-    pub laws: Vec<String>,
-    /// Names of the drawn figures, in the order of their columns.
-    pub drawn: Vec<String>,
-    /// SHA-256 of all that rows depend on.
-    pub digest: String,
-}
 
 /// A campaign's folder.
 #[derive(Clone, Debug)]
@@ -67,7 +51,7 @@ impl Folder {
         let folder = Self { path: path.to_owned(), card };
         let card_path = path.join("campaign.json");
         if card_path.exists() {
-            let before = read_card(&card_path)?;
+            let before = card::read(&card_path)?;
             if (Card { runs, ..before.clone() }) != folder.card {
                 return Err(CampaignError::folder(
                     path,
@@ -93,6 +77,16 @@ impl Folder {
                     format!("holds shards of {} runs; give --runs {0}, or choose another --out", before.runs),
                 ));
             }
+            folder.is_still()?;
+            // It has not all runs any more.
+            let columns = path.join("rows.parquet");
+            if columns.exists() {
+                fs::remove_file(&columns)
+                    .map_err(|error| CampaignError::file(&columns, "cannot be removed", &error))?;
+            }
+        } else if let Err(refused) = folder.refuse_others_files(campaign) {
+            // Unless a shard that begins at the same time has come first.
+            return if card_path.exists() { Self::begin(path, campaign, runs) } else { Err(refused) };
         }
         for (name, bytes) in campaign.files() {
             write(&path.join(name), bytes)?;
@@ -104,6 +98,23 @@ impl Folder {
         Ok(folder)
     }
 
+    /// Refuses a folder with files of the campaign's names that are not its own. Those of a shard that begins beside this one are.
+    fn refuse_others_files(&self, campaign: &Campaign) -> Result<(), CampaignError> {
+        let own = campaign.files().iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice()));
+        for (name, bytes) in own.chain([("scenario.toml", campaign.text().as_bytes())]) {
+            let there = self.path.join(name);
+            if there.exists() && bounded::read(&there).ok().as_deref() != Some(bytes) {
+                let reason = "is there and would be replaced by the campaign's own; choose another --out";
+                return Err(CampaignError::folder(&there, reason));
+            }
+        }
+        if let Some(shard) = self.shard_files()?.first() {
+            let reason = "is there without a campaign.json; choose another --out";
+            return Err(CampaignError::folder(&self.path.join(shard.file_name()), reason));
+        }
+        Ok(())
+    }
+
     /// One that is there.
     ///
     /// # Errors
@@ -113,7 +124,7 @@ impl Folder {
         if !card.exists() {
             return Err(CampaignError::folder(path, "no campaign is here (no campaign.json); give the --out of one"));
         }
-        Ok(Self { path: path.to_owned(), card: read_card(&card)? })
+        Ok(Self { path: path.to_owned(), card: card::read(&card)? })
     }
 
     /// The campaign that it flies.
@@ -140,7 +151,26 @@ impl Folder {
         &self.path
     }
 
-    /// Shards whose rows are here.
+    /// The files of rows that a summary reads: the whole campaign's, or all shards', in their order.
+    ///
+    /// # Errors
+    /// [`CampaignError`] where there are none, or shards of different numbers, whose runs would count twice.
+    pub fn parts(&self) -> Result<Vec<Shard>, CampaignError> {
+        let shards = self.shard_files()?;
+        if shards.contains(&Shard::WHOLE) {
+            return Ok(vec![Shard::WHOLE]);
+        }
+        let Some(first) = shards.first() else {
+            return Err(CampaignError::folder(&self.path, "holds no rows; fly the campaign first"));
+        };
+        if let Some(other) = shards.iter().find(|other| other.count() != first.count()) {
+            let reason = format!("holds shard {other} beside others of {}; move one kind away", first.count());
+            return Err(CampaignError::folder(&self.path, reason));
+        }
+        Ok(shards)
+    }
+
+    /// Shards whose rows are here, in their order.
     ///
     /// # Errors
     /// [`CampaignError::File`].
@@ -152,7 +182,36 @@ impl Folder {
             let name = name.to_string_lossy();
             found.extend(if name == "rows.csv" { Some(Shard::WHOLE) } else { Shard::of_file(&name) });
         }
+        found.sort_unstable();
         Ok(found)
+    }
+
+    /// Puts the rows of shards, in their order, in the place of those of the whole campaign: all of them, or none.
+    ///
+    /// # Errors
+    /// [`CampaignError`], also where the shards have not all runs.
+    pub fn replace_rows(&self, shards: &[(Shard, &Self)]) -> Result<(), CampaignError> {
+        let path = self.path.join(Shard::WHOLE.file_name());
+        self.is_still()?;
+        let (partial, mut file) = Partial::beside(&path)?;
+        let refused = |error: std::io::Error| CampaignError::file(&path, "cannot be written", &error);
+        file.write_all(self.header().as_bytes()).map_err(refused)?;
+        let mut count = 0;
+        for (shard, folder) in shards {
+            let mut rows = folder.rows(*shard)?.peekable();
+            while rows.peek().is_some() {
+                let block: Vec<Row> = rows.by_ref().take(BLOCK).collect::<Result<_, _>>()?;
+                count += block.len() as u64;
+                file.write_all(&Row::to_csv(&block)).map_err(refused)?;
+            }
+        }
+        let all = self.card.runs * self.card.laws.len() as u64;
+        if count != all {
+            let reason = format!("the shards have {count} rows of {all}; fly them to their end and merge again");
+            return Err(CampaignError::folder(&path, reason));
+        }
+        file.sync_all().map_err(refused)?;
+        partial.rename(&path).map_err(refused)
     }
 
     /// Writes all rows as Parquet.
@@ -164,32 +223,5 @@ impl Folder {
     }
 }
 
-fn read_card(path: &Path) -> Result<Card, CampaignError> {
-    let text = bounded::read_to_string(path).map_err(|error| CampaignError::file(path, "cannot be read", &error))?;
-    let card: Card = serde_json::from_str(&text)
-        .map_err(|error| CampaignError::folder(path, format!("is no campaign ({error})")))?;
-    if card.schema != SCHEMA || card.laws.is_empty() {
-        return Err(CampaignError::folder(
-            path,
-            format!("is {}, not {SCHEMA}; read it with the version that wrote it", card.schema),
-        ));
-    }
-    Ok(card)
-}
-
-/// Writes a file under a name of this process beside it and renames it: shards that begin at once do not meet.
-pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), CampaignError> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(format!(".{}.partial", std::process::id()));
-    let partial = PathBuf::from(partial);
-    let written = (|| {
-        let mut file = File::create(&partial)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        fs::rename(&partial, path)
-    })();
-    written.map_err(|error: std::io::Error| {
-        let _ = fs::remove_file(&partial);
-        CampaignError::file(path, "cannot be written", &error)
-    })
-}
+/// Rows in memory at a time.
+const BLOCK: usize = 4096;

@@ -55,8 +55,7 @@ pub fn file(recording: &Recording, law: &str, half_arm_m: f64) -> Result<Vec<u8>
         let schema = writer.add_schema(schema, "jsonschema", text.as_bytes())?;
         channels.push(writer.add_channel(schema, topic, "json", &BTreeMap::new())?);
     }
-    let rows = recording.flight.samples.iter().zip(&recording.around);
-    for (sequence, (sample, around)) in rows.enumerate() {
+    for (sequence, (sample, around)) in recording.shown().iter().enumerate() {
         let time_ns = (sample.time_s * 1e9).round() as u64;
         let messages = [
             (sequence % 10 == 0).then(|| scene(recording, sequence, time_ns, law, half_arm_m)),

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use crate::error::CampaignError;
 use crate::folder::Folder;
-use crate::row::Row;
 use crate::shard::Shard;
 
 /// A shard that is not whole.
@@ -76,28 +75,19 @@ pub fn look(folders: &[Folder]) -> Result<Found<'_>, CampaignError> {
 /// # Errors
 /// [`CampaignError`].
 pub fn join(shards: &[(Shard, &Folder)], out: &Folder) -> Result<u64, CampaignError> {
-    let is_there = matches!(shards, [(Shard::WHOLE, folder)] if folder.path() == out.path());
+    let is_there = matches!(shards, [(Shard::WHOLE, folder)] if is_same(folder.path(), out.path()));
     if !is_there {
-        let path = out.path().join(Shard::WHOLE.file_name());
-        if path.exists() {
-            std::fs::remove_file(&path).map_err(|error| CampaignError::file(&path, "cannot be replaced", &error))?;
-        }
-        let mut file = out.grow(Shard::WHOLE)?;
-        for (shard, folder) in shards {
-            let mut rows = folder.rows(*shard)?.peekable();
-            while rows.peek().is_some() {
-                let block: Vec<Row> = rows.by_ref().take(BLOCK).collect::<Result<_, _>>()?;
-                let next = block.last().map_or(0, |row| row.run + 1);
-                file.append(&Row::to_csv(&block), next)?;
-            }
-        }
+        out.replace_rows(shards)?;
     }
     out.write_parquet()?;
     Ok(out.card().runs)
 }
 
-/// Rows in memory at a time.
-const BLOCK: usize = 4096;
+/// Whether two paths lead to one folder.
+fn is_same(a: &Path, b: &Path) -> bool {
+    let [a, b] = [a, b].map(|path| path.canonicalize().ok());
+    a.is_some() && a == b
+}
 
 /// A folder for the campaign of another, to merge into.
 ///

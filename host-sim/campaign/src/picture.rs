@@ -5,7 +5,6 @@ use std::fmt::Write as _;
 use crate::error::CampaignError;
 use crate::folder::Folder;
 use crate::row::{Outcome, Row};
-use crate::shard::Shard;
 use crate::summary::View;
 
 const COLOURS: [&str; 10] =
@@ -29,11 +28,7 @@ fn width(number: usize) -> f64 {
 pub fn svg(folder: &Folder, view: &View) -> Result<String, CampaignError> {
     let card = folder.card();
     let mut rows: Vec<Row> = Vec::new();
-    let mut shards = folder.shard_files()?;
-    if shards.contains(&Shard::WHOLE) {
-        shards = vec![Shard::WHOLE];
-    }
-    for shard in shards {
+    for shard in folder.parts()? {
         for row in folder.rows(shard)? {
             rows.push(row?);
         }

@@ -11,7 +11,6 @@ use crate::definition::Campaign;
 use crate::error::CampaignError;
 use crate::folder::Folder;
 use crate::row::{Outcome, Row};
-use crate::shard::Shard;
 use crate::statistics::quantile;
 use crate::summary::{Summary, View};
 use flights::{Replayed, replayed};
@@ -72,11 +71,7 @@ pub fn page(folder: &Folder, campaign: &Campaign, view: &View, paper: Option<&Pa
     let summary = Summary::of(folder, view)?;
     let card = folder.card();
     let mut rows: Vec<Vec<Row>> = card.laws.iter().map(|_| Vec::new()).collect();
-    let mut shards = folder.shard_files()?;
-    if shards.contains(&Shard::WHOLE) {
-        shards = vec![Shard::WHOLE];
-    }
-    for shard in shards {
+    for shard in folder.parts()? {
         for row in folder.rows(shard)? {
             let row = row?;
             if let Some(law) = card.laws.iter().position(|law| *law == row.law.name())

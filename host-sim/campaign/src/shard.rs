@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::str::FromStr;
 
 /// One part of several.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Shard {
     index: u64,
     count: u64,

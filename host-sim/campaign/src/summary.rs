@@ -10,8 +10,7 @@ use serde::Serialize;
 use crate::error::CampaignError;
 use crate::folder::Folder;
 use crate::row::{Outcome, Row};
-use crate::shard::Shard;
-use crate::statistics::{quantile, ranks, spearman, wilson};
+use crate::statistics::{Explained, explained, quantile, ranks, spearman, wilson};
 
 /// The schema that the file states.
 pub const SCHEMA: &str = "quatrack/campaign-summary/1";
@@ -67,7 +66,7 @@ pub struct LawSummary {
     pub max_error_m: [Option<f64>; 3],
     /// The worst first: lost ones as early as they were, then by the largest error.
     pub worst: Vec<Worst>,
-    /// By their weight, the heaviest first.
+    /// The strongest first: by what its parts explain, or its correlation squared, whichever is more.
     pub matters: Vec<Matter>,
 }
 
@@ -86,14 +85,18 @@ pub struct Worst {
     pub replay: String,
 }
 
-/// The rank correlation of a figure with the largest error.
+/// How a figure goes with the largest error, a lost flight being worse than any other.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Matter {
     /// The figure.
     pub figure: String,
-    /// Spearman's rank correlation with the largest error, a lost flight being worse than any other.
+    /// The share of the variance of the errors' ranks that equal parts of the figure explain ([`explained`]): also where both too
+    /// little and too much of it do harm.
+    pub explained: f64,
+    /// Spearman's rank correlation: positive where more of the figure does harm.
     pub rank_correlation: f64,
-    /// Whether chance alone would give as much in less than one of twenty campaigns: beyond 1.96/sqrt(n - 1).
+    /// Whether chance alone would give as much of one of the two in less than one of twenty campaigns: each in one of forty, the
+    /// correlation beyond 2.24/sqrt(n - 1).
     pub beyond_chance: bool,
 }
 
@@ -103,17 +106,10 @@ impl Summary {
     /// # Errors
     /// [`CampaignError`].
     pub fn of(folder: &Folder, view: &View) -> Result<Self, CampaignError> {
-        let mut shards = folder.shard_files()?;
-        if shards.contains(&Shard::WHOLE) {
-            shards = vec![Shard::WHOLE];
-        }
-        if shards.is_empty() {
-            return Err(CampaignError::folder(folder.path(), "holds no rows; fly the campaign first"));
-        }
         let card = folder.card();
         let mut laws: Vec<Gathered> = card.laws.iter().map(|_| Gathered::new(card.drawn.len())).collect();
         let mut runs_flown = 0;
-        for shard in shards {
+        for shard in folder.parts()? {
             runs_flown += folder.flown(shard)?;
             for row in folder.rows(shard)? {
                 let row = row?;
@@ -188,17 +184,21 @@ impl Gathered {
         let flights = self.max_error_m.len() as u64;
         let rates = (flights > 0).then(|| (self.successes as f64 / flights as f64, wilson(self.successes, flights)));
         let error_ranks = ranks(&self.max_error_m);
-        let chance = NORMAL_95 / ((flights.max(2) - 1) as f64).sqrt();
+        let freedom = (flights.max(2) - 1) as f64;
         let mut matters: Vec<Matter> = names
             .iter()
             .zip(&self.drawn)
             .filter_map(|(figure, drawn)| {
-                let rank_correlation = spearman(&ranks(drawn), &error_ranks)?;
-                let beyond_chance = rank_correlation.abs() > chance;
-                Some(Matter { figure: figure.clone(), rank_correlation, beyond_chance })
+                let ranks = ranks(drawn);
+                let rank_correlation = spearman(&ranks, &error_ranks)?;
+                let Explained { share, beyond_chance } = explained(&ranks, &error_ranks)?;
+                let beyond_chance = beyond_chance || rank_correlation.abs() > NORMAL_97 / freedom.sqrt();
+                Some(Matter { figure: figure.clone(), explained: share, rank_correlation, beyond_chance })
             })
             .collect();
-        matters.sort_by(|a, b| b.rank_correlation.abs().total_cmp(&a.rank_correlation.abs()));
+        // A few flights tell a line better than their parts do.
+        let weight = |matter: &Matter| matter.explained.max(matter.rank_correlation.powi(2));
+        matters.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
         let percentiles = |mut values: Vec<f64>| {
             values.sort_by(f64::total_cmp);
             PERCENT.map(|percent| quantile(&values, 0.01 * percent).filter(|value| value.is_finite()))
@@ -219,22 +219,44 @@ impl Gathered {
     }
 }
 
-/// As [`wilson`]'s.
-const NORMAL_95: f64 = 1.959_963_984_540_054;
+/// Two-sided 97.5 % of a normal distribution, in deviations.
+const NORMAL_97: f64 = 2.241_402_727_604_947;
 
 impl Worst {
     fn of(row: &Row, folder: &Path) -> Self {
         let (run, law) = (row.run, row.law.name());
         let dir = folder.display().to_string();
-        // As a shell takes it.
-        let dir =
-            if dir.contains([' ', '\'', '"', '$', '\\']) { format!("'{}'", dir.replace('\'', r"'\''")) } else { dir };
+        let dir = as_argument(&dir);
         Self {
             run,
             seed: row.seed,
             lost_s: row.lost_s,
             max_error_m: row.max_error_m,
             replay: format!("quatrack campaign replay {dir} --run {run} --law {law} --plot run-{run}-{law}.svg"),
+        }
+    }
+}
+
+/// A path as a shell and the command take it.
+fn as_argument(path: &str) -> String {
+    let path = if path.starts_with('-') { format!("./{path}") } else { path.to_owned() };
+    let is_plain = |c: char| c.is_alphanumeric() || "/._-+,:@%=".contains(c);
+    if path.chars().all(is_plain) { path } else { format!("'{}'", path.replace('\'', r"'\''")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shell_gets_the_path_as_it_is() {
+        for path in
+            ["a&b", "x;y", "(a)", "#a", "a*", "it's", "two words", "a\"b", "$HOME", "-dash", "~a", "a`b", "plain/a-1.b"]
+        {
+            let echoed =
+                std::process::Command::new("sh").args(["-c", &format!("printf %s {}", as_argument(path))]).output();
+            let expected = if path.starts_with('-') { format!("./{path}") } else { path.to_owned() };
+            assert_eq!(String::from_utf8(echoed.unwrap().stdout).unwrap(), expected);
         }
     }
 }

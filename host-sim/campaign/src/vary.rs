@@ -19,8 +19,10 @@ use written::{EXAMPLE, distribution, finite, is_distribution};
 
 /// Farthest that a normal draw lies from its mean, in deviations; a draw beyond, two in a billion, is taken again.
 const FARTHEST: f64 = 6.0;
-/// How often a draw beyond its bounds is repeated before it is put on the nearer one.
-const TRIES: u32 = 1000;
+/// Least share of a distribution that its bounds may leave: every hundredth draw at least is within them.
+const SHARE_LEAST: f64 = 0.01;
+/// How often a draw beyond its bounds is repeated; that of [`SHARE_LEAST`] fails all of them once in 10^43.
+const TRIES: u32 = 10_000;
 
 /// A distribution.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +63,32 @@ impl Kind {
         }
     }
 
+    /// The middle of what can be drawn; of a choice the first.
+    pub fn middle(&self) -> f64 {
+        match self {
+            Self::Uniform([least, most]) => 0.5 * least + 0.5 * most,
+            Self::Normal([middle, _], [least, most]) | Self::LogNormal([middle, _], [least, most]) => {
+                middle.max(*least).min(*most)
+            }
+            Self::Choice(values) => values.first().copied().unwrap_or_default(),
+        }
+    }
+
+    /// The numbers that a scenario has to take so that it takes every draw: all of a choice, of the others both ends and the middle.
+    pub fn to_look_at(&self) -> Vec<f64> {
+        let [least, most] = self.bounds();
+        if let Self::Choice(values) = self { values.clone() } else { vec![least, self.middle(), most] }
+    }
+
+    /// What to do about a number that no scenario takes.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Choice(_) => "leave it out",
+            Self::Uniform(_) => "narrow the distribution, or write the numbers that may be as a choice",
+            Self::Normal(..) | Self::LogNormal(..) => "narrow the distribution, or give it min and max",
+        }
+    }
+
     fn draw(&self, draws: &mut Draws) -> f64 {
         let within = |[least, most]: [f64; 2], mut value: Box<dyn FnMut() -> f64 + '_>| {
             let mut drawn = value();
@@ -93,6 +121,17 @@ impl Varied {
     /// Its value in a run of a campaign: the drawn number.
     pub fn drawn(&self, seed: u64, run: u64) -> f64 {
         self.kind.draw(&mut Draws::new(seed, run, &self.name()))
+    }
+
+    /// Whether a scenario has the figure itself.
+    fn is_stated(&self, scenario: &Table) -> bool {
+        let Some((last, tables)) = self.path.split_last() else { return false };
+        let table = tables.iter().try_fold(scenario, |table, key| table.get(key).and_then(Value::as_table));
+        let own = table.and_then(|table| table.get(last));
+        match (self.index, own) {
+            (Some(index), Some(Value::Array(list))) => index < list.len(),
+            (_, own) => own.is_some(),
+        }
     }
 
     /// Puts a drawn number into a scenario's table.
@@ -178,16 +217,20 @@ fn walk(
             }
             Value::Array(list) => {
                 for (index, entry) in list.iter().enumerate() {
+                    let one = |kind, relative| Varied { path: path.clone(), index: Some(index), kind, relative };
                     match entry {
                         Value::Table(table) if is_distribution(table) => {
                             let (kind, relative) = distribution(table).map_err(refused)?;
-                            found.push(Varied { path: path.clone(), index: Some(index), kind, relative });
+                            let varied = one(kind, relative);
+                            // The scenario's list is whole, also before anything is drawn.
+                            if !varied.is_stated(scenario) && !relative {
+                                varied.put(scenario, varied.kind.middle()).map_err(refused)?;
+                            }
+                            found.push(varied);
                         }
                         Value::Integer(_) | Value::Float(_) => {
                             let fixed = finite(entry).map_err(refused)?;
-                            let kind = Kind::Choice(vec![fixed]);
-                            let fixed = Varied { path: path.clone(), index: Some(index), kind, relative: false };
-                            fixed.put(scenario, finite(entry).map_err(refused)?).map_err(refused)?;
+                            one(Kind::Choice(vec![fixed]), false).put(scenario, fixed).map_err(refused)?;
                         }
                         _ => return Err(refused("a list holds distributions and numbers".to_owned())),
                     }

@@ -77,18 +77,31 @@ impl Campaign {
         Ok(campaign)
     }
 
-    /// Every figure at both its ends, the others as they are: so that every drawn figure is one that a scenario takes.
+    /// Every figure at both its ends and in its middle, or at every number of a choice: so that every drawn figure is one that a scenario takes.
+    /// The others are in the middle of what can be drawn; or not there, where the file does not have them.
     fn look_at_bounds(&self) -> Result<(), CampaignError> {
+        let mut middle = self.nominal.clone();
+        for varied in self.varied.iter().filter(|varied| !varied.relative) {
+            // There was a place for it, or its own turn says why not.
+            let _ = varied.put(&mut middle, varied.kind.middle());
+        }
         for varied in &self.varied {
-            for end in varied.kind.bounds() {
-                let mut table = self.nominal.clone();
-                let refused =
-                    |reason: String| CampaignError::Vary { origin: self.origin.clone(), key: varied.name(), reason };
-                varied.put(&mut table, end).map_err(refused)?;
-                self.checked(table).map_err(|error| {
-                    let line = error.to_string();
-                    let why = line.strip_prefix(&format!("{}: ", self.origin)).unwrap_or(&line);
-                    refused(format!("can draw {end}: {why}; narrow the distribution, or give it min and max"))
+            for number in varied.kind.to_look_at() {
+                let with = |others: &Table| {
+                    let mut table = others.clone();
+                    varied.put(&mut table, number).map_err(|reason| (varied, reason))?;
+                    let file = Self::file(table).map_err(|reason| (varied, reason))?;
+                    self.checked_file(&file).map(|_| ()).map_err(|error| {
+                        let why = self.reason(&error);
+                        // Another one in its middle may be at fault.
+                        let others = self.varied.iter().find(|other| why.starts_with(&format!("{} = ", other.name())));
+                        let blamed = others.unwrap_or(varied);
+                        let drawn = if *blamed == *varied { number } else { blamed.kind.middle() };
+                        (blamed, format!("can draw {drawn}: {why}; {}", blamed.kind.remedy()))
+                    })
+                };
+                with(&middle).or_else(|fault| with(&self.nominal).map_err(|_| fault)).map_err(|(blamed, reason)| {
+                    CampaignError::Vary { origin: self.origin.clone(), key: blamed.name(), reason }
                 })?;
             }
         }

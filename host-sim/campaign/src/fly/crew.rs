@@ -42,7 +42,7 @@ impl Crew {
         let laws = campaign.laws();
         let mut rows: Vec<Row> = Vec::with_capacity(drawn.len() * laws.len());
         for (run, drawn) in runs.zip(&drawn) {
-            rows.extend(laws.iter().map(|law| blank(run, *law, drawn)));
+            rows.extend(laws.iter().map(|law| blank(run, *law, drawn, campaign)));
         }
         for (number, law) in laws.iter().enumerate() {
             let most = if law.flies_alone() { 1 } else { PlantGroup::MOST };
@@ -114,7 +114,7 @@ impl Crew {
 }
 
 /// Before it is flown.
-fn blank(run: u64, law: Law, drawn: &Run) -> Row {
+fn blank(run: u64, law: Law, drawn: &Run, campaign: &Campaign) -> Row {
     Row {
         run,
         law,
@@ -124,7 +124,7 @@ fn blank(run: u64, law: Law, drawn: &Run) -> Row {
         max_error_m: None,
         saturated_steps: None,
         lost_s: None,
-        reason: drawn.scenario.as_ref().err().map_or_else(String::new, |error| one_line(&error.to_string())),
+        reason: drawn.scenario.as_ref().err().map_or_else(String::new, |error| one_line(&campaign.reason(error))),
         drawn: drawn.drawn.clone(),
     }
 }

@@ -3,7 +3,7 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Write as _};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::Folder;
 use crate::error::CampaignError;
@@ -22,13 +22,20 @@ impl Folder {
     /// The file of a shard's rows, cut after the last whole run, for this process alone.
     ///
     /// # Errors
-    /// [`CampaignError`], also where another process grows it.
+    /// [`CampaignError`], also where another process grows it, where shards of another number are here, and where the file is not
+    /// one of this campaign's rows.
     pub fn grow(&self, shard: Shard) -> Result<Growing, CampaignError> {
+        if let Some(other) = self.shard_files()?.into_iter().find(|other| other.count() != shard.count()) {
+            // Shards beside the whole are those that it was merged from.
+            if other != Shard::WHOLE {
+                let reason = format!("holds shard {other}; fly --shard I/{}, or choose another --out", other.count());
+                return Err(CampaignError::folder(&self.path, reason));
+            }
+        }
         let path = self.path.join(shard.file_name());
         let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
         let mut file = opened.map_err(|error| CampaignError::file(&path, "cannot be opened", &error))?;
-        file.try_lock()
-            .map_err(|error| CampaignError::folder(&path, format!("is being written by another process ({error})")))?;
+        lock(&file, &path)?;
         let runs = shard.runs(self.card.runs);
         let (next_run, kept) =
             self.whole_runs(&file, runs.start).map_err(|e| CampaignError::file(&path, "cannot be read", &e))?;
@@ -44,7 +51,17 @@ impl Folder {
         Ok(Growing { file, path, next_run })
     }
 
-    fn header(&self) -> String {
+    /// Refuses where another process grows a file of rows.
+    pub(super) fn is_still(&self) -> Result<(), CampaignError> {
+        for shard in self.shard_files()? {
+            let path = self.path.join(shard.file_name());
+            let file = File::open(&path).map_err(|error| CampaignError::file(&path, "cannot be read", &error))?;
+            lock(&file, &path)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn header(&self) -> String {
         row::header(&self.card.drawn).join(",") + "\n"
     }
 
@@ -63,7 +80,9 @@ impl Folder {
         let (mut line, mut next_run) = (Vec::new(), first);
         reader.read_until(b'\n', &mut line)?;
         if line != self.header().as_bytes() {
-            return Ok((first, 0));
+            // A writer that was killed at once leaves a part of it.
+            let is_part = self.header().as_bytes().starts_with(&line);
+            return if is_part { Ok((first, 0)) } else { Err(foreign("the first line is not the header")) };
         }
         let header = line.len() as u64;
         let mut kept = header;
@@ -74,16 +93,22 @@ impl Folder {
         loop {
             let row = match lines.read_record(&mut cells) {
                 Ok(true) => Row::of_cells(&cells).filter(|row| row.drawn.len() == self.card.drawn.len()),
-                Ok(false) => None,
+                Ok(false) => return Ok((next_run, kept)),
                 Err(error) => match error.into_kind() {
                     csv::ErrorKind::Io(error) => return Err(error),
                     _ => None,
                 },
             };
             let place = header + lines.position().byte();
+            // A line that a killed writer left behind has no end.
+            if place > ended {
+                return Ok((next_run, kept));
+            }
             match (row, laws.next()) {
-                (Some(row), Some(law)) if row.run == next_run && row.law.name() == law && place <= ended => {}
-                _ => return Ok((next_run, kept)),
+                (Some(row), Some(law)) if row.run == next_run && row.law.name() == law => {}
+                _ => {
+                    return Err(foreign(&format!("line {} is not the row of run {next_run}", lines.position().line())));
+                }
             }
             if laws.len() == 0 {
                 laws = self.card.laws.iter();
@@ -93,7 +118,7 @@ impl Folder {
         }
     }
 
-    /// The rows of a shard in their order; an error for a line that is no row.
+    /// The rows of a shard in their order.
     ///
     /// # Errors
     /// [`CampaignError::File`].
@@ -101,11 +126,10 @@ impl Folder {
         let path = self.path.join(shard.file_name());
         let mut file = File::open(&path).map_err(|error| CampaignError::file(&path, "cannot be read", &error))?;
         // A part line that a killed writer left behind is not read.
-        let (next_run, kept) = self
+        let (_, kept) = self
             .whole_runs(&file, shard.runs(self.card.runs).start)
             .and_then(|whole| file.rewind().map(|()| whole))
             .map_err(|error| CampaignError::file(&path, "cannot be read", &error))?;
-        let _ = next_run;
         let records = csv::ReaderBuilder::new().from_reader(file.take(kept)).into_records();
         Ok(records.map(move |record| {
             let row = record.ok().as_ref().and_then(Row::of_cells);
@@ -126,6 +150,18 @@ impl Folder {
         let whole = self.whole_runs(&file, first);
         whole.map(|(next, _)| next - first).map_err(|error| CampaignError::file(&path, "cannot be read", &error))
     }
+}
+
+/// For this process alone, until the file is closed.
+fn lock(file: &File, path: &Path) -> Result<(), CampaignError> {
+    let refused = |error| CampaignError::folder(path, format!("is being written by another process ({error})"));
+    file.try_lock().map_err(refused)
+}
+
+/// The error of a file whose lines a campaign has not written so.
+fn foreign(fault: &str) -> std::io::Error {
+    let remedy = "put back the file as it was flown, or move it away and fly it again";
+    std::io::Error::new(std::io::ErrorKind::InvalidData, format!("{fault}; {remedy}"))
 }
 
 impl Growing {

@@ -68,9 +68,9 @@ fn replay(campaign: &Campaign, row: &Row, kind: &'static str) -> Option<Replayed
     let scenario: Scenario = campaign.run(row.run).scenario.ok()?;
     let mut law = row.law.start(&scenario.vehicle, &scenario.told).ok()?;
     let recording = scenario.record(law.as_mut(), &scenario.flown(campaign.trajectory().cloned())).ok()?;
-    let samples = recording.flight.samples.iter().zip(&recording.around);
+    let samples = recording.shown();
     let digits = |value: f64| (value * 1e4).round() / 1e4;
-    let rows = samples.step_by(STRIDE).map(|(sample, around)| {
+    let rows = samples.iter().step_by(STRIDE).map(|(sample, around)| {
         let (state, turn) = (&sample.state, sample.state.attitude.quaternion());
         let values = [sample.time_s]
             .into_iter()

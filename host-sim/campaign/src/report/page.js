@@ -6,7 +6,7 @@
   get("conditions").textContent = DATA.conditions;
   get("note").textContent =
     (summary.within_m === null ? "Success: flown to its end." : `Success: flown to its end within ${summary.within_m} m.`) +
-    " Percentiles count a lost flight as worse than any other.";
+    " Percentiles count a lost flight as worse than any other. Flights that were refused, for figures without sense together, count for nothing.";
 
   const table = (names, rows) => {
     const made = document.createElement("table");
@@ -22,20 +22,20 @@
     rows.forEach((row) => add(row, "td"));
     return made;
   };
-  const number = (value, digits = 4) => (value === null ? "lost" : value.toFixed(digits));
+  const number = (value, digits = 4, absent = "lost") => (value === null ? absent : value.toFixed(digits));
   const percent = (value) => (value === null ? "-" : (100 * value).toFixed(2) + " %");
 
   get("laws").append(
     table(
-      ["law", "flights", "success", "95 % interval", "lost", "IAE 50 %, m s", "95 %", "99 %", "most 50 %, m", "95 %", "99 %"],
+      ["law", "flights", "success", "95 % interval", "lost", "refused", "IAE 50 %, m s", "95 %", "99 %", "most 50 %, m", "95 %", "99 %"],
       summary.laws.map((law) => [
         law.law,
         String(law.flights),
         percent(law.success_rate),
         law.success_interval_95 === null ? "-" : law.success_interval_95.map(percent).join(" to "),
         String(law.lost),
-        ...law.iae_m_s.map((value) => number(value)),
-        ...law.max_error_m.map((value) => number(value)),
+        String(law.refused),
+        ...[...law.iae_m_s, ...law.max_error_m].map((value) => number(value, 4, law.flights > 0 ? "lost" : "-")),
       ]),
     ),
   );
@@ -54,11 +54,12 @@
     matters.slice(0, 12).forEach((matter, i) => {
       const y = 22 + 26 * i;
       c.fillStyle = matter.beyond_chance ? COLOURS[which % COLOURS.length] : "#c9ced4";
-      const length = matter.rank_correlation * 0.34 * canvas.width;
-      c.fillRect(Math.min(middle, middle + length), y - 9, Math.abs(length), 14);
+      c.fillRect(middle, y - 9, matter.explained * 0.36 * canvas.width, 14);
       c.fillStyle = "#1b1f24";
       c.textAlign = "left";
-      c.fillText(`${matter.rank_correlation.toFixed(3)}  ${matter.figure}`, 10, y + 3);
+      const sign = matter.rank_correlation < 0 ? "\u2212" : "+";
+      const correlation = sign + Math.abs(matter.rank_correlation).toFixed(2);
+      c.fillText(`${matter.explained.toFixed(2)}  ${correlation}  ${matter.figure}`, 10, y + 3);
     });
     c.strokeStyle = "#9aa3ad";
     line(c, middle, 6, middle, canvas.height - 6);

@@ -23,7 +23,7 @@ impl fmt::Display for Summary {
             let interval = law
                 .success_interval_95
                 .map_or_else(|| "-".to_owned(), |[least, most]| format!("{:.2} to {:.2}", 100.0 * least, 100.0 * most));
-            let (iae, most) = (three(&law.iae_m_s), three(&law.max_error_m));
+            let (iae, most) = (three(&law.iae_m_s, law.flights), three(&law.max_error_m, law.flights));
             writeln!(f, "{:<width$}{:>9}{rate:>10}{interval:>17}  {iae:>30}  {most:>30}", law.law, law.flights)?;
         }
         for law in &self.laws {
@@ -33,8 +33,9 @@ impl fmt::Display for Summary {
     }
 }
 
-fn three(values: &[Option<f64>; 3]) -> String {
-    values.map(|value| value.map_or_else(|| "lost".to_owned(), |value| format!("{value:.4}"))).join("  ")
+fn three(values: &[Option<f64>; 3], flights: u64) -> String {
+    let absent = if flights > 0 { "lost" } else { "-" };
+    values.map(|value| value.map_or_else(|| absent.to_owned(), |value| format!("{value:.4}"))).join("  ")
 }
 
 fn write_law(f: &mut fmt::Formatter<'_>, law: &LawSummary) -> fmt::Result {
@@ -43,10 +44,11 @@ fn write_law(f: &mut fmt::Formatter<'_>, law: &LawSummary) -> fmt::Result {
         write!(f, ", {} never flown (see the column reason)", law.refused)?;
     }
     if !law.matters.is_empty() {
-        write!(f, "; rank correlation with the largest error:")?;
+        write!(f, "; share of the largest errors' ranks that a figure explains, and its rank correlation with them:")?;
         for matter in law.matters.iter().take(6) {
             let faint = if matter.beyond_chance { "" } else { " (chance)" };
-            write!(f, "\n  {:>6.3}  {}{faint}", matter.rank_correlation, matter.figure)?;
+            let (share, correlation) = (matter.explained, matter.rank_correlation);
+            write!(f, "\n  {share:>6.3}  {correlation:>+6.3}  {}{faint}", matter.figure)?;
         }
     }
     for worst in &law.worst {

@@ -28,6 +28,8 @@ fn draws_have_the_distribution_that_is_asked_for() {
     let cut = one("a = { normal = [0.0, 1.0], min = 0.0 }");
     close(below(&cut, 0.6745), 0.5);
     assert_eq!(below(&cut, 0.0), 0.0);
+    // Beyond 2.2 deviations lie 1.39 %, half of them beyond 2.46.
+    close(below(&one("a = { normal = [0.0, 1.0], min = 2.2 }"), 2.46), 0.5);
 }
 
 #[test]
@@ -45,6 +47,24 @@ fn a_draw_goes_where_its_name_says() {
     assert_eq!(scenario["errors"]["lag_ms"].as_float(), Some(50.0));
     let wind: Vec<_> = scenario["air"]["wind_m_s"].as_array().unwrap().iter().map(|v| v.as_float().unwrap()).collect();
     assert_eq!((wind, scenario["air"]["of"].as_str()), (vec![2.0, 0.5, -1.0], Some("vehicle")));
+}
+
+#[test]
+fn a_list_is_whole_before_anything_is_drawn() {
+    for (text, nominal) in [
+        ("a = [0, 0, { normal = [0.5, 0.1] }]", vec![0.0, 0.0, 0.5]),
+        ("a = [{ uniform = [1, 3] }, { choice = [7, 8] }, { normal = [0.0, 1.0], min = 1.0 }]", vec![2.0, 7.0, 1.0]),
+        ("a = [{ uniform = [1, 3] }, 4]", vec![2.0, 4.0]),
+    ] {
+        let mut scenario = Table::new();
+        all(&text.parse().unwrap(), &mut scenario).unwrap();
+        let list: Vec<f64> = scenario["a"].as_array().unwrap().iter().map(|v| v.as_float().unwrap()).collect();
+        assert_eq!(list, nominal, "{text}");
+    }
+    // What the scenario states stays.
+    let mut scenario: Table = "a = [9.0, 9.0]".parse().unwrap();
+    all(&"a = [{ uniform = [1, 3] }, { uniform = [1, 3] }]".parse().unwrap(), &mut scenario).unwrap();
+    assert_eq!(scenario["a"].as_array().unwrap()[0].as_float(), Some(9.0));
 }
 
 #[test]
@@ -68,6 +88,9 @@ fn distributions_without_sense_are_refused_by_name() {
         ("a = { normal = [1.0, -1.0] }", "a", "not negative"),
         ("a = { log_normal = [0.0, 1.0] }", "a", "positive"),
         ("a = { normal = [1.0, 0.1], min = 5.0 }", "a", "nothing to draw"),
+        // 0.135 % of a normal distribution lies beyond three deviations.
+        ("a = { normal = [1.0, 0.05], min = 1.15 }", "a", "leave 1.3e-1 % of the distribution, 1 % is the least"),
+        ("a = { log_normal = [1.0, 0.5], min = 2.0, max = 2.0 }", "a", "write uniform"),
         ("a = { uniform = [0.0, 1.0], min = 0.5 }", "a", "own ends"),
         ("a = { choice = [] }", "a", "nothing to choose"),
         ("a = { choice = [1], normal = [1, 1] }", "a", "one distribution"),

@@ -2,7 +2,7 @@
 
 use toml::{Table, Value};
 
-use super::{FARTHEST, Kind};
+use super::{FARTHEST, Kind, SHARE_LEAST};
 
 /// Names of the distributions.
 const KINDS: [&str; 4] = ["uniform", "normal", "log_normal", "choice"];
@@ -55,10 +55,14 @@ pub(super) fn distribution(table: &Table) -> Result<(Kind, bool), String> {
             }
             if kind == "normal" {
                 let far = FARTHEST * deviation;
-                Kind::Normal([middle, deviation], bounds([middle - far, middle + far])?)
+                let [least, most] = bounds([middle - far, middle + far])?;
+                enough(share([least - middle, most - middle], deviation))?;
+                Kind::Normal([middle, deviation], [least, most])
             } else {
                 let far = (FARTHEST * deviation).exp();
-                Kind::LogNormal([middle, deviation], bounds([middle / far, middle * far])?)
+                let [least, most] = bounds([middle / far, middle * far])?;
+                enough(share([(least / middle).ln(), (most / middle).ln()], deviation))?;
+                Kind::LogNormal([middle, deviation], [least, most])
             }
         }
         _ if min.is_some() || max.is_some() => {
@@ -75,4 +79,24 @@ pub(super) fn distribution(table: &Table) -> Result<(Kind, bool), String> {
         _ => Kind::Choice(numbers),
     };
     Ok((kind, relative))
+}
+
+/// The share of a normal distribution of mean 0 between two numbers.
+fn share(ends: [f64; 2], deviation: f64) -> f64 {
+    if deviation == 0.0 {
+        return 1.0;
+    }
+    let [least, most] = ends.map(|end| 0.5 * libm::erf(end / (deviation * std::f64::consts::SQRT_2)));
+    most - least
+}
+
+/// Draws beyond the bounds are drawn again: that has to come to an end.
+fn enough(share: f64) -> Result<(), String> {
+    if share >= SHARE_LEAST {
+        return Ok(());
+    }
+    let [left, least] = [share, SHARE_LEAST].map(|share| 100.0 * share);
+    Err(format!(
+        "min and max leave {left:.1e} % of the distribution, {least} % is the least; widen them, or write uniform"
+    ))
 }

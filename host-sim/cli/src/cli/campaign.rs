@@ -10,6 +10,8 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use quatrack_campaign::definition::Asked;
+use quatrack_campaign::row::Outcome;
+use quatrack_campaign::summary::View;
 use quatrack_campaign::{Campaign, CampaignError, Folder, Shard, fly};
 use quatrack_plan::bounded;
 use quatrack_plan::trajectory::on_board;
@@ -67,6 +69,17 @@ enum Command {
 /// Every error of a campaign is one of its inputs.
 fn refused(error: CampaignError) -> Failure {
     Failure::input(error)
+}
+
+/// The bounds of a success that a command's flags name.
+///
+/// # Errors
+/// A distance without sense.
+pub(crate) fn view(within_m: Option<f64>, worst: usize) -> Result<View, Failure> {
+    if within_m.is_some_and(|within| within.is_nan() || within <= 0.0) {
+        return Err(Failure::input("--within-m: must be a positive number of metres"));
+    }
+    Ok(View { within_m, worst })
 }
 
 fn trajectories(name: &str) -> Result<PiecewisePolynomial, String> {
@@ -134,6 +147,7 @@ fn fly_all(args: &Args, scenario: &Path, runs: u64) -> Result<(), Failure> {
     let before = begun.get().unwrap_or(0);
     let resumed = if before > 0 { format!(", {before} of them before") } else { String::new() };
     output::print(&format!("{count} runs{resumed} of {}: {}\n", laws.join(", "), rows.display()))?;
+    note_refused(&folder, args.shard)?;
     if args.shard == Shard::WHOLE {
         folder.write_parquet().map_err(refused)?;
         output::print(&format!("wrote {}\n", args.out.join("rows.parquet").display()))?;
@@ -141,4 +155,21 @@ fn fly_all(args: &Args, scenario: &Path, runs: u64) -> Result<(), Failure> {
         output::print(&format!("quatrack campaign summary {dir} prints their summary\n"))?;
     }
     Ok(())
+}
+
+/// Says how many flights of a shard were refused, and why the first one was.
+fn note_refused(folder: &Folder, shard: Shard) -> Result<(), Failure> {
+    let (mut flights, mut refused, mut first) = (0_u64, 0_u64, None);
+    for row in folder.rows(shard).map_err(self::refused)? {
+        let row = row.map_err(self::refused)?;
+        flights += 1;
+        if row.outcome == Outcome::Refused {
+            refused += 1;
+            first.get_or_insert((row.run, row.reason));
+        }
+    }
+    let Some((run, reason)) = first else { return Ok(()) };
+    output::print(&format!(
+        "note: {refused} of {flights} flights were refused, which no share counts; run {run}: {reason}\n"
+    ))
 }

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use super::campaign::view;
 use quatrack_campaign::report::{Paper, page};
-use quatrack_campaign::summary::View;
 use quatrack_campaign::{CampaignError, Folder};
 
 use super::{Failure, output, reproduce};
@@ -36,11 +36,11 @@ pub(crate) struct Args {
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let refused = |error: CampaignError| Failure::input(error);
+    let view = view(args.within_m, args.worst)?;
     let folder = Folder::open(&args.folder).map_err(refused)?;
     let trajectories = |name: &str| super::fly::trajectory(name).map_err(|failure| failure.line);
     let campaign = folder.campaign(&trajectories).map_err(refused)?;
     let paper = if args.without_paper { None } else { Some(reproduced()?) };
-    let view = View { within_m: args.within_m, worst: args.worst };
     let html = page(&folder, &campaign, &view, paper.as_ref()).map_err(refused)?;
     let path = args.out.as_deref().map_or_else(|| args.folder.join("report.html"), Path::to_path_buf);
     output::write(&path, html.as_bytes())?;

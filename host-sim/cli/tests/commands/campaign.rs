@@ -1,5 +1,7 @@
 //! `quatrack campaign` and `quatrack report` as their user meets them.
 
+mod folders;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -115,7 +117,10 @@ fn a_flight_of_a_campaign_is_flown_again() {
     assert_eq!(again["iae_m_s"], figures["iae_m_s"]);
     let summary_json = bench.path("summary.json");
     let summary = flown(&["campaign", "summary", &out, "--worst", "1", "--json", &summary_json]);
-    assert!(summary.contains("quatrack campaign replay") && summary.contains("rank correlation"), "{summary}");
+    assert!(
+        summary.contains("quatrack campaign replay") && summary.contains("rank correlation with them"),
+        "{summary}"
+    );
     let summary: serde_json::Value = serde_json::from_slice(&bench.bytes("summary.json")).unwrap();
     assert_eq!(
         (&summary["schema"], &summary["laws"][1]["flights"]),
@@ -166,7 +171,7 @@ fn a_flight_that_is_lost_before_it_is_measured_has_a_picture() {
                 errors.mass_factor = { uniform = [1.9, 2.0] }\n";
     fs::write(&scenario, weak).unwrap();
     flown(&["campaign", &scenario, "--runs", "1", "--out", &out]);
-    let replay = quatrack(&["campaign", "replay", &out, "--run", "0", "--plot", &plot]);
+    let replay = quatrack(&["campaign", "replay", &out, "--run", "0", "--plot", &plot, "--out", &out]);
     let (printed, said) = (String::from_utf8(replay.stdout).unwrap(), String::from_utf8(replay.stderr).unwrap());
     assert_eq!(replay.status.code(), Some(3), "{said}");
     assert!(printed.contains("early.svg") && !printed.contains("no picture"), "{printed}");
@@ -177,6 +182,14 @@ fn a_flight_that_is_lost_before_it_is_measured_has_a_picture() {
     let rows = String::from_utf8(bench.bytes("out/rows.csv")).unwrap();
     let lost_s: f64 = rows.lines().nth(1).unwrap().split(',').nth(7).unwrap().parse().unwrap();
     assert!((0.5..2.0).contains(&lost_s) && said.contains(&format!("at {lost_s:.2} s")), "{said}{rows}");
+    // The log and the page's replay have its way until then: a row each 10 and 20 ms.
+    let log = String::from_utf8(bench.bytes("out/flight.csv")).unwrap();
+    assert!(log.lines().count() as f64 > 100.0 * lost_s, "{log}");
+    flown(&["report", &out, "--without-paper"]);
+    let page = String::from_utf8(bench.bytes("out/report.html")).unwrap();
+    let flights = page.split("\"rows\":").nth(1).unwrap();
+    let rows = flights.split("]]").next().unwrap().matches('[').count();
+    assert!(rows as f64 > 50.0 * lost_s, "{rows} rows");
 }
 
 #[cfg(unix)]

@@ -52,7 +52,7 @@ const STATE: [&str; 13] =
     ["x_m", "y_m", "z_m", "v_x_m_s", "v_y_m_s", "v_z_m_s", "q_w", "q_x", "q_y", "q_z", "p_rad_s", "q_rad_s", "r_rad_s"];
 
 impl Recording {
-    /// The rows that a picture shows: those that were measured, or all until the craft was lost where nothing was.
+    /// The rows that pictures and logs show: those that were measured, or all until the craft was lost where nothing was.
     pub fn shown(&self) -> Vec<(RigidSample, Around)> {
         let measured = self.flight.samples.iter().copied().zip(self.around.iter().copied());
         self.before.iter().copied().chain(measured).collect()
@@ -70,7 +70,7 @@ impl Recording {
         names.extend(["wind_x_m_s", "wind_y_m_s", "wind_z_m_s"].map(str::to_owned));
         let mut text = names.join(",");
         text.push('\n');
-        for (sample, around) in self.flight.samples.iter().zip(&self.around) {
+        for (sample, around) in &self.shown() {
             let (s, e, [least_n, most_n]) = (&sample.state, &around.estimate, &around.thrust_limits_n);
             let truth = state(&s.position_m, &s.velocity_m_s, &s.attitude, &s.body_rates_rad_s);
             let estimate = state(&e.position_m, &e.velocity_m_s, &e.attitude, &e.body_rates_rad_s);

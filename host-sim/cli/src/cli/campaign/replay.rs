@@ -50,6 +50,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let law = args.law.or(campaign.laws().first().copied()).unwrap_or_default();
     if let Some(path) = &args.scenario_out {
+        let own = args.folder.join("scenario.toml");
+        if path.canonicalize().is_ok_and(|path| own.canonicalize().is_ok_and(|own| own == path)) {
+            let reason = "is the scenario of the whole campaign; name another file beside it";
+            return Err(Failure::input(format!("--scenario-out {}: {reason}", path.display())));
+        }
         let (mut table, ..) = campaign.table(args.run);
         table.insert("law".to_owned(), law.name().into());
         output::write(path, table.to_string().as_bytes())?;

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use quatrack_campaign::Folder;
 use quatrack_campaign::picture::svg;
-use quatrack_campaign::summary::{Summary, View};
+use quatrack_campaign::summary::Summary;
 
-use super::refused;
+use super::{refused, view};
 use crate::cli::picture::{self, Picture};
 use crate::cli::{Failure, output};
 
@@ -32,11 +32,8 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
-    if args.within_m.is_some_and(|within| within.is_nan() || within <= 0.0) {
-        return Err(Failure::input("--within-m: must be a positive number of metres"));
-    }
+    let view = view(args.within_m, args.worst)?;
     let folder = Folder::open(&args.folder).map_err(refused)?;
-    let view = View { within_m: args.within_m, worst: args.worst };
     let summary = Summary::of(&folder, &view).map_err(refused)?;
     output::print(&summary.to_string())?;
     if let Some(path) = &args.picture {
