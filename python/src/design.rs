@@ -45,7 +45,8 @@ impl Feedback {
         from_matrix(py, &self.gain)
     }
 
-    /// Poles of the closed loop, complex, sorted by real part: 1/s, or per sample in discrete time; shape (n,).
+    /// Poles of the closed loop with the gain as it is returned, complex, sorted by real part: 1/s, or per sample; shape (n,).
+    /// All are stable: a gain that is stable with more digits alone is refused.
     #[getter]
     fn poles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         shaped(py, &[self.poles.len()], self.poles.clone())

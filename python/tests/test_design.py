@@ -73,6 +73,24 @@ def test_equations_without_an_answer_are_refused(call, text):
         call()
 
 
+def test_the_poles_are_those_of_the_gain_that_is_returned():
+    # Three fast modes and one input: the best poles are at 1e-4, and the rounding of the gain moves them out to tenths.
+    fast, drive = np.diag([1e4, 2e4, 3e4]), np.ones((3, 1))
+    feedback = q.dlqr(fast, drive, np.eye(3), np.eye(1))
+    assert 0.01 < np.abs(feedback.poles).max() < 1.0
+    assert np.abs(np.linalg.eigvals(fast - drive @ feedback.gain)).max() < 1.0
+    with pytest.raises(q.QuatrackError, match="its gain rounded to 16 digits leaves the closed loop the pole"):
+        q.dlqr(10 * fast, drive, np.eye(3), np.eye(1))
+
+
+@pytest.mark.parametrize("factor", [1e-200, 1e200])
+def test_sizes_that_hide_the_answer_are_named(factor):
+    a, b = (factor * part for part in DOUBLE[:2])
+    for solve in (q.lqr, q.care):
+        with pytest.raises(q.QuatrackError, match="^A has the largest entry 1.000e-?200, .*from 1e-20 to 1e20: choose other units"):
+            solve(a, b, *DOUBLE[2:])
+
+
 def test_a_vector_is_no_matrix():
     with pytest.raises(ValueError, match=r"b: shape \(2,\); give a matrix"):
         q.lqr(DOUBLE[0], [0.0, 1.0], np.eye(2), np.eye(1))

@@ -14,7 +14,8 @@
 //!    solution for `Q + |Q| I`, from which Newton's method descends to the stabilising one (Hewer 1971).
 //! 5. Newton steps with residuals in 32 digits refine P until the corrections are below the rounding of an f64; after
 //!    doubling in 32 digits in coordinates in which P is about the identity, where few digits are lost.
-//! 6. The result counts only if the corrections have vanished and every pole lies inside the unit circle.
+//! 6. The result counts only if the corrections have vanished and every pole lies inside the unit circle, with the gain
+//!    in 32 digits and with the one that is returned, in 16.
 //!
 //! [`dlqr`] demands Q >= 0 (with S: `Q - S R^-1 S' >= 0`), and then P >= 0; [`dare`] takes any symmetric Q.
 
@@ -23,6 +24,7 @@ use num_complex::Complex64;
 
 use super::DesignError;
 use super::attempts::{self, ACCURATE};
+use super::closed_loop;
 use super::dare_equation::{Problem, Refined, spectral_radius};
 use super::dare_existence::{require_detectable, require_stabilisable};
 use super::discretise::require_fitting;
@@ -31,9 +33,12 @@ use super::doubling::{doubling, doubling_in_16_digits};
 use super::equation::Equation;
 use super::existence::require_positive_semidefinite;
 use super::require_symmetric;
+use super::sizes::or_size;
 
 /// A start whose first correction is above this share of P has lost too much in rounding to be refined where it is.
 const ROUGH: f64 = 1e-4;
+/// In messages.
+const EQUATION: &str = "the discrete Riccati equation";
 
 /// Solution of the discrete Riccati equation.
 #[derive(Debug, Clone)]
@@ -42,7 +47,7 @@ pub struct DareSolution {
     pub p: DMatrix<f64>,
     /// `K = (R + B' P B)^-1 (B' P A + S')`, m x n, for u = -K x.
     pub gain: DMatrix<f64>,
-    /// Eigenvalues of `A - B K`, per sample, sorted by real part.
+    /// Eigenvalues of `A - B K` with K as it is here, rounded to 16 digits, per sample, sorted by real part.
     pub poles: Vec<Complex64>,
     /// Frobenius norm of the residual of P over the sum of the norms of the four terms, evaluated in 32 digits.
     pub relative_residual: f64,
@@ -81,7 +86,7 @@ pub fn dlqr_with_cross(
         DesignError::NotPositiveSemidefinite { eigenvalue } => DesignError::CrossWeight { eigenvalue },
         other => other,
     })?;
-    problem.solve()
+    problem.solve(b).map_err(|error| or_size(error, [("A", a), ("B", b), ("Q", q), ("R", r)]))
 }
 
 /// The stabilising solution for any symmetric Q and R > 0, without a cross weight.
@@ -90,18 +95,22 @@ pub fn dlqr_with_cross(
 /// [`DesignError::Matrix`] for matrices that do not fit, are empty or not finite; [`DesignError::NotSymmetric`];
 /// [`DesignError::NotPositiveDefinite`] for R; [`DesignError::NotStabilisable`], [`DesignError::NotDetectableSampled`]
 /// and [`DesignError::ClosedLoopOnCircle`] where no stabilising solution exists; [`DesignError::Inaccurate`] where none
-/// was found to working precision.
+/// was found to working precision; [`DesignError::RoundedGain`] where its gain in 16 digits does not stabilise;
+/// [`DesignError::Size`] where one of the latter is met and a matrix is far from 1.
 pub fn dare(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
     q: &DMatrix<f64>,
     r: &DMatrix<f64>,
 ) -> Result<DareSolution, DesignError> {
-    Problem::new(a, b, q, r, &DMatrix::zeros(b.nrows(), b.ncols()))?.solve()
+    Problem::new(a, b, q, r, &DMatrix::zeros(b.nrows(), b.ncols()))?
+        .solve(b)
+        .map_err(|error| or_size(error, [("A", a), ("B", b), ("Q", q), ("R", r)]))
 }
 
 impl Problem {
-    fn solve(&self) -> Result<DareSolution, DesignError> {
+    /// `b`: as given, before R became a part of it.
+    fn solve(&self, b: &DMatrix<f64>) -> Result<DareSolution, DesignError> {
         let d = Equation::new(self.a.hi.clone(), self.factor.clone(), self.q.hi.clone()).balanced().scale;
         let Refined { p, feedback, poles, last_correction, .. } = self.scaled(&d).stabilising()?;
         let unscale = |m: &DMatrix<f64>| DMatrix::from_fn(d.len(), d.len(), |i, j| m[(i, j)] / d[i] / d[j]);
@@ -123,7 +132,11 @@ impl Problem {
         for (mut column, scale) in gain.column_iter_mut().zip(d.iter()) {
             column.unscale_mut(*scale);
         }
-        Ok(DareSolution { p, gain, poles, relative_residual, last_correction })
+        let [poles, in_16_digits] = closed_loop::poles(&self.a.hi, b, &gain)?;
+        match poles.iter().chain(&in_16_digits).max_by(|x, y| x.norm().total_cmp(&y.norm())) {
+            Some(pole) if pole.norm() >= 1.0 => Err(DesignError::RoundedGain { equation: EQUATION, pole: *pole }),
+            _ => Ok(DareSolution { p, gain, poles, relative_residual, last_correction }),
+        }
     }
 
     /// The best P that was found, stabilising or not.
@@ -146,5 +159,5 @@ impl Problem {
 }
 
 fn inaccurate(residual: f64) -> DesignError {
-    DesignError::Inaccurate { equation: "the discrete Riccati equation", residual }
+    DesignError::Inaccurate { equation: EQUATION, residual }
 }

@@ -160,6 +160,32 @@ pub enum DesignError {
         /// The given delay, s.
         delay_s: f64,
     },
+    /// A matrix so large or so small that nothing is known of the equation.
+    #[error(
+        "{name} has the largest entry {largest:.3e}, and no answer was found; Riccati equations are solved where the largest entries \
+         of A, B, Q and R are from {least:e} to {most:e}: choose other units of time, states, inputs or cost"
+    )]
+    Size {
+        /// Name of the matrix.
+        name: &'static str,
+        /// Its largest entry, without its sign.
+        largest: f64,
+        /// The least that is in range.
+        least: f64,
+        /// The most.
+        most: f64,
+    },
+    /// The equation has an answer, but its gain is stable with more digits than it is returned with alone.
+    #[error(
+        "{equation} was solved, but its gain rounded to 16 digits leaves the closed loop the pole {}: A and B are too large \
+         beside the closed loop; sample faster, or remove the fastest unstable modes", complex(.pole)
+    )]
+    RoundedGain {
+        /// The equation.
+        equation: &'static str,
+        /// The pole farthest out, 1/s or per sample.
+        pole: Complex64,
+    },
     /// The answer is not good to working precision.
     #[error("{equation} was not solved to working precision; scale the states or the weights")]
     Inaccurate {

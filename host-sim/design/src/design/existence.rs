@@ -13,6 +13,8 @@ use crate::analysis::{balance, eigenvalues, moves, staircase};
 
 /// States up to which a singular value decomposition per unstable eigenvalue costs little.
 const MAX_PBH_STATES: usize = 40;
+/// In messages.
+pub(super) const EQUATION: &str = "the Riccati equation";
 
 /// Refuses a Q with a negative eigenvalue, after its diagonal has been brought to about 1.
 pub(super) fn require_positive_semidefinite(q: &DMatrix<f64>) -> Result<(), DesignError> {
@@ -128,7 +130,7 @@ pub(super) fn marginal_pole(equation: &Equation, refined: &Refined, nearest: Com
 
 /// Why there is no solution: an eigenvalue on the axis, or only too little accuracy.
 pub(super) fn no_solution(equation: &Equation, residual: f64) -> DesignError {
-    let inaccurate = DesignError::Inaccurate { equation: "the Riccati equation", residual };
+    let inaccurate = DesignError::Inaccurate { equation: EQUATION, residual };
     let h = balance(&equation.hamiltonian()).0;
     let tolerance = 10.0 * h.nrows() as f64 * f64::EPSILON * h.norm();
     let Ok(mut nearest) = eigenvalues(&h) else { return inaccurate };

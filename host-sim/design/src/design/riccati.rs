@@ -12,7 +12,8 @@
 //!    32 digits does for up to 100 states; where that fails too, the ordered Schur form, or the sign function in 32 digits.
 //! 5. Newton-Kleinman steps with residuals in 32 digits refine P until the corrections are below the rounding of an f64;
 //!    after doubling in 32 digits in coordinates in which P is about the identity, where few digits are lost.
-//! 6. The result counts only if the corrections have vanished and every pole of the closed loop is stable.
+//! 6. The result counts only if the corrections have vanished and every pole of the closed loop is stable, with the gain in
+//!    32 digits and with the one that is returned, in 16.
 //!
 //! **Conditions.** A stabilising solution exists and is unique if (A, B) is stabilisable and the Hamiltonian has no
 //! eigenvalue on the imaginary axis; for Q >= 0 the latter says that Q sees every mode of A there. [`lqr`] demands
@@ -27,14 +28,16 @@ use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 use super::attempts::ACCURATE;
+use super::closed_loop;
 use super::equation::Equation;
 use super::existence::{
-    marginal_pole, no_solution, require_detectable, require_positive_semidefinite, require_stabilisable,
+    EQUATION, marginal_pole, no_solution, require_detectable, require_positive_semidefinite, require_stabilisable,
 };
 use super::input_weight::InputWeight;
 use super::lyapunov_operator::LyapunovOperator;
 use super::newton::Refined;
 use super::riccati_attempts::{Solution, solution};
+use super::sizes::or_size;
 use super::{DesignError, require_symmetric};
 use crate::analysis::{MatrixError, require_finite, require_square};
 
@@ -50,7 +53,7 @@ pub struct RiccatiSolution {
     pub p: DMatrix<f64>,
     /// `K = R^-1 B' P`, m x n, for u = -K x.
     pub gain: DMatrix<f64>,
-    /// Eigenvalues of `A - B K`, 1/s, sorted by real part.
+    /// Eigenvalues of `A - B K` with K as it is here, rounded to 16 digits, 1/s, sorted by real part.
     pub poles: Vec<Complex64>,
     /// Frobenius norm of the residual of P over the sum of the norms of the four terms, evaluated in 32 digits.
     pub relative_residual: f64,
@@ -89,14 +92,15 @@ pub fn lqr(
 /// [`DesignError::Matrix`] for matrices that do not fit, are empty or not finite; [`DesignError::NotSymmetric`];
 /// [`DesignError::NotPositiveDefinite`] for R; [`DesignError::NotStabilisable`], [`DesignError::NotDetectable`] and
 /// [`DesignError::HamiltonianOnAxis`] where no stabilising solution exists; [`DesignError::Inaccurate`] where none was
-/// found to working precision.
+/// found to working precision; [`DesignError::RoundedGain`] where its gain in 16 digits does not stabilise;
+/// [`DesignError::Size`] where one of the latter is met and a matrix is far from 1.
 pub fn care(
     a: &DMatrix<f64>,
     b: &DMatrix<f64>,
     q: &DMatrix<f64>,
     r: &DMatrix<f64>,
 ) -> Result<RiccatiSolution, DesignError> {
-    solve(a, b, q, r, Poles::Stable)
+    solve(a, b, q, r, Poles::Stable).map_err(|error| or_size(error, [("A", a), ("B", b), ("Q", q), ("R", r)]))
 }
 
 /// The strong solution: as [`care`], but closed-loop poles on the imaginary axis are accepted.
@@ -109,7 +113,7 @@ pub fn strong_care(
     q: &DMatrix<f64>,
     r: &DMatrix<f64>,
 ) -> Result<RiccatiSolution, DesignError> {
-    solve(a, b, q, r, Poles::StableOrMarginal)
+    solve(a, b, q, r, Poles::StableOrMarginal).map_err(|error| or_size(error, [("A", a), ("B", b), ("Q", q), ("R", r)]))
 }
 
 fn solve(
@@ -178,8 +182,16 @@ fn solve(
         }
         return Err(no_solution(equation, relative_residual));
     }
+    let gain = weight.gain(&given.factor, &p);
+    let [poles, in_16_digits] = closed_loop::poles(a, b, &gain)?;
+    match poles.iter().chain(&in_16_digits).max_by(|x, y| x.re.total_cmp(&y.re)) {
+        Some(pole) if accepted == Poles::Stable && pole.re >= 0.0 => {
+            return Err(DesignError::RoundedGain { equation: EQUATION, pole: *pole });
+        }
+        _ => {}
+    }
     Ok(RiccatiSolution {
-        gain: weight.gain(&given.factor, &p),
+        gain,
         relative_residual,
         last_correction: refined.last_correction,
         condition: condition(equation, &refined)?,

@@ -24,6 +24,8 @@ pub(super) fn blamed(
         DesignError::Inaccurate { .. }
         | DesignError::HamiltonianOnAxis { .. }
         | DesignError::ClosedLoopOnCircle { .. }
+        | DesignError::RoundedGain { .. }
+        | DesignError::Size { .. }
         | DesignError::NotStabilisable { .. } => far_apart(model, weights?),
         _ => None,
     }
