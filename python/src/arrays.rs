@@ -137,6 +137,19 @@ impl<const W: usize> Quantity<W> {
     }
 }
 
+impl Quantity<1> {
+    /// Times from an argument of shape () or (N,); NaN is none.
+    pub(crate) fn read_times(value: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let times = Self::read("time", value)?;
+        let row = times.rows().position(|[t_s]| t_s.is_nan());
+        match (row, times.crafts) {
+            (None, _) => Ok(times),
+            (Some(_), None) => Err(PyValueError::new_err("time: nan; must be a number, s")),
+            (Some(row), Some(_)) => Err(PyValueError::new_err(format!("time: nan in row {row}; must be a number, s"))),
+        }
+    }
+}
+
 /// Quantities that belong together: the leading axis is that of those that have one, and all of these have the same.
 #[derive(Default)]
 pub(crate) struct Together {

@@ -19,7 +19,7 @@ use crate::arrays::shaped;
 use crate::error::refused;
 use crate::long_call::{Cancelled, long_call};
 use crate::trajectory::by_name;
-use crate::values::Source;
+use crate::values::{self, Source};
 
 /// Said by a flight that is told to stop; nobody but this module sees it.
 struct Stopped;
@@ -79,7 +79,7 @@ pub(crate) fn campaign<'py>(
     runs: u64,
     out: PathBuf,
     laws: Option<Vec<String>>,
-    seed: Option<u64>,
+    seed: Option<&Bound<'py, PyAny>>,
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let threads = threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, NonZeroUsize::get));
@@ -88,7 +88,7 @@ pub(crate) fn campaign<'py>(
     }
     let laws =
         laws.unwrap_or_default().iter().map(|law| Law::from_str(law)).collect::<Result<_, _>>().map_err(refused)?;
-    let asked = Asked { seed, laws };
+    let asked = Asked { seed: seed.filter(|seed| !seed.is_none()).map(values::seed).transpose()?, laws };
     let (path, made) = match Source::read("scenario", scenario)? {
         Source::Path(path) => (path, None),
         Source::Text(text) => {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use quatrack_identify::log::ColumnMap;
 use quatrack_identify::{Report, vehicle_toml};
@@ -24,7 +25,7 @@ pub(crate) struct Identified {
 
 /// Identifies a craft from logs of its flights.
 ///
-/// logs: paths of CSV files, plain or by gzip, or of the micro SD deck's binary logs
+/// logs: paths of CSV files, plain or by gzip, or of the micro SD deck's binary logs; or the path of one
 /// columns: "cflib", "nanobench" or "usd", the path of a map of columns, or its keys as a dictionary
 /// vehicle: whose arm, limits and torque per thrust are believed; the map's where left out, else the Crazyflie 2.1
 /// mass_kg: as flown; the map's where left out, else the vehicle's
@@ -34,11 +35,12 @@ pub(crate) struct Identified {
 #[pyo3(signature = (logs, *, columns=None, vehicle=None, mass_kg=None))]
 pub(crate) fn identify(
     py: Python<'_>,
-    logs: Vec<PathBuf>,
+    logs: &Bound<'_, PyAny>,
     columns: Option<&Bound<'_, PyAny>>,
     vehicle: Option<&Bound<'_, PyAny>>,
     mass_kg: Option<f64>,
 ) -> PyResult<Identified> {
+    let logs = paths(logs)?;
     let map = map(columns)?;
     let named = || map.vehicle.as_deref().unwrap_or("crazyflie-2.1").to_owned();
     let craft = match vehicle {
@@ -56,6 +58,18 @@ pub(crate) fn identify(
         })
     };
     long_call(py, move |_| work())?.map_err(refused)
+}
+
+/// The path of one log, or those of many.
+fn paths(logs: &Bound<'_, PyAny>) -> PyResult<Vec<PathBuf>> {
+    if let Ok(path) = logs.extract::<PathBuf>() {
+        return Ok(vec![path]);
+    }
+    let kind = |value: &Bound<'_, PyAny>| value.get_type().name().map_or("?".to_owned(), |name| name.to_string());
+    let refused = |kind: String| PyTypeError::new_err(format!("logs: {kind}; give a path, or a list of paths"));
+    let logs = logs.try_iter().map_err(|_| refused(kind(logs)))?;
+    logs.map(|log| log.and_then(|log| log.extract().map_err(|_| refused(format!("{} among them", kind(&log))))))
+        .collect()
 }
 
 fn map(columns: Option<&Bound<'_, PyAny>>) -> PyResult<ColumnMap> {

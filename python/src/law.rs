@@ -60,7 +60,7 @@ impl Options<'_, '_> {
     fn craft(&self) -> PyResult<Option<(Vehicle, ToldFigures)>> {
         let Some(value) = self.vehicle.filter(|value| !value.is_none()) else { return Ok(None) };
         let vehicle = vehicle::argument(value)?;
-        let told = vehicle::told(&vehicle, self.mass_kg, self.lag_s, self.drag_per_s, self.moment_n_m_per_m_s);
+        let told = vehicle::told(&vehicle, self.mass_kg, self.lag_s, self.drag_per_s, self.moment_n_m_per_m_s)?;
         Ok(Some((vehicle, told)))
     }
 }
@@ -144,16 +144,14 @@ impl OwnedLaw {
                 )));
             }
             Some(craft) => Some(craft),
-            None => built_in().map(|vehicle| {
-                let told = vehicle::told(
-                    &vehicle,
-                    options.mass_kg,
-                    options.lag_s,
-                    options.drag_per_s,
-                    options.moment_n_m_per_m_s,
-                );
-                (vehicle, told)
-            }),
+            None => {
+                let Options { mass_kg, lag_s, drag_per_s, moment_n_m_per_m_s, .. } = *options;
+                let told = |vehicle: Vehicle| {
+                    let told = vehicle::told(&vehicle, mass_kg, lag_s, drag_per_s, moment_n_m_per_m_s)?;
+                    Ok::<_, PyErr>((vehicle, told))
+                };
+                built_in().map(told).transpose()?
+            }
         };
         let accepted = core.accept_for(&head.vehicle, head.rate).map_err(refused)?;
         let cascade = match (core.cascade(), &craft) {

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_simulation::scenario::Scenario as SimScenario;
@@ -12,7 +13,7 @@ use crate::error::refused;
 use crate::long_call::long_call;
 use crate::reference::Reference;
 use crate::trajectory;
-use crate::values::Source;
+use crate::values::{self, Source};
 use crate::vehicle::Vehicle;
 
 /// A craft, its air, its deviations, a course and a law.
@@ -50,9 +51,12 @@ pub(crate) struct Course {
 
 #[pymethods]
 impl Course {
-    /// The reference at a time or at many, s since the start of the flight.
+    /// The reference at a time or at many, s since the start of the flight. Finite: an eight goes on after the end of its measurement.
     fn at(&self, time: &Bound<'_, PyAny>) -> PyResult<Reference> {
-        let times = Quantity::<1>::read("time", time)?;
+        let times = Quantity::read_times(time)?;
+        if let Some([t_s]) = times.rows().find(|[t_s]| t_s.is_infinite()) {
+            return Err(PyValueError::new_err(format!("time: {t_s}; must be finite, s")));
+        }
         let flown = self.scenario.flown(self.trajectory.clone());
         let points: Vec<_> = times.rows().map(|[t_s]| flown.course.at(t_s)).collect();
         Ok(Reference::of_points(times.crafts, &points))
@@ -102,8 +106,8 @@ impl Scenario {
     }
 
     /// The same with noise and gusts from another seed.
-    fn with_seed(&self, seed: u64) -> Self {
-        Self(SimScenario { seed, ..self.0.clone() })
+    fn with_seed(&self, seed: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Ok(Self(SimScenario { seed: values::seed(seed)?, ..self.0.clone() }))
     }
 
     /// True mass, kg.

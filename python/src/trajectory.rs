@@ -155,9 +155,9 @@ impl Trajectory {
         shaped(py, &[self.0.pieces().len(), 4, POWERS], numbers)
     }
 
-    /// The flat output at a time or at many, s.
+    /// The flat output at a time or at many, s. Before its start and after its end, at infinity too, it is at rest there.
     fn at(&self, time: &Bound<'_, PyAny>) -> PyResult<Reference> {
-        let times = Quantity::<1>::read("time", time)?;
+        let times = Quantity::read_times(time)?;
         let points: Vec<FifthOrder> = times.rows().map(|[t_s]| FlatTrajectory::at(&self.0, t_s)).collect();
         Ok(Reference::of_points(times.crafts, &points))
     }

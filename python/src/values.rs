@@ -8,6 +8,8 @@ use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
+use crate::error::refused;
+
 /// A file that a command reads: by its path, or its contents as a dictionary.
 pub(crate) enum Source {
     Path(PathBuf),
@@ -65,7 +67,7 @@ fn entry(path: &str, value: &Bound<'_, PyAny>, left: u32) -> PyResult<Value> {
         return value.extract().map(Value::Boolean);
     }
     if value.is_instance_of::<PyInt>() {
-        return value.extract().map(Value::Integer);
+        return whole(path, value).map(Value::Integer);
     }
     if value.is_instance_of::<PyFloat>() {
         return value.extract().map(Value::Float);
@@ -81,6 +83,23 @@ fn entry(path: &str, value: &Bound<'_, PyAny>, left: u32) -> PyResult<Value> {
         return value.call_method0("__fspath__")?.extract().map(Value::String);
     }
     Err(PyTypeError::new_err(format!("{path}: {}; give a number, text, list or dictionary", value.get_type().name()?)))
+}
+
+/// A whole number as a file has them: TOML's are of 64 bits with a sign.
+fn whole(path: &str, value: &Bound<'_, PyAny>) -> PyResult<i64> {
+    value.extract().map_err(|_| {
+        let is_seed = path.rsplit('.').next() == Some("seed");
+        let seed = if is_seed { "; Scenario.with_seed and campaign's seed take more, to 2^64 - 1" } else { "" };
+        refused(format!("{path}: {value}; must be from {} to {}, as in a file{seed}", i64::MIN, i64::MAX))
+    })
+}
+
+/// A seed of an argument.
+pub(crate) fn seed(value: &Bound<'_, PyAny>) -> PyResult<u64> {
+    if !value.hasattr("__index__")? {
+        return Err(PyTypeError::new_err(format!("seed: {}; give a whole number", value.get_type().name()?)));
+    }
+    value.extract().map_err(|_| refused(format!("seed: {value}; must be from 0 to {}", u64::MAX)))
 }
 
 /// A value of a report.

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyType};
 use quatrack_design::vehicle::Vehicle as DesignVehicle;
-use quatrack_simulation::scenario::ToldFigures;
+use quatrack_simulation::scenario::{ToldError, ToldFigures};
 use quatrack_simulation::vehicles;
 
 use crate::arrays::{array, from_matrix};
@@ -36,15 +36,19 @@ pub(crate) fn argument(value: &Bound<'_, PyAny>) -> PyResult<DesignVehicle> {
     .map_err(refused)
 }
 
-/// The figures of a craft that a law is told.
+/// The figures of a craft that a law is told, within the ranges of a scenario's `[told]`.
 pub(crate) fn told(
     vehicle: &DesignVehicle,
     mass_kg: Option<f64>,
     lag_s: Option<f64>,
     drag_per_s: Option<f64>,
     moment_n_m_per_m_s: Option<[f64; 2]>,
-) -> ToldFigures {
-    ToldFigures { mass_kg: mass_kg.unwrap_or(vehicle.mass_kg()), lag_s, drag_per_s, moment_n_m_per_m_s }
+) -> PyResult<ToldFigures> {
+    let told = ToldFigures { mass_kg: mass_kg.unwrap_or(vehicle.mass_kg()), lag_s, drag_per_s, moment_n_m_per_m_s };
+    let refused_of = |ToldError { key, value, must }| {
+        refused(format!("{key}: {value}; must be {must}; leave it out for the vehicle's own"))
+    };
+    told.taken_of(vehicle).map(|()| told).map_err(refused_of)
 }
 
 #[pymethods]

@@ -112,6 +112,24 @@ def test_an_own_craft_flies_the_certified_table_of_its_kind(tmp_path):
         q.Controller("quatrack", str(own), lag_s=0.005)
 
 
+@pytest.mark.parametrize(
+    "told, text",
+    [
+        ({"lag_s": 0.2}, "^lag_s: 0.2; must be from 0.004 to 0.126 s, .*; leave it out for the vehicle's own"),
+        ({"lag_s": float("nan")}, "^lag_s: NaN; must be"),
+        ({"mass_kg": 0.3}, "^mass_kg: 0.3; must be from 0.0[0-9]* to 0.0[0-9]* kg, half to twice the vehicle's"),
+        ({"drag_per_s": 1.5}, "^drag_per_s: 1.5; must be from 0 to 1 1/s"),
+        ({"moment_n_m_per_m_s": [0.0, 0.1]}, "^moment_n_m_per_m_s: 0.1; must be from 0 to 0.002 N m per m/s"),
+    ],
+)
+def test_a_controller_is_told_what_a_scenario_is_told(told, text):
+    for law in (*LAWS, q.GainTable.builtin("cascade-brushless-50ms")):
+        with pytest.raises(q.QuatrackError, match=text):
+            q.Controller(law, CRAFT, **told)
+    with pytest.raises(q.QuatrackError, match=text):
+        q.Controller(q.GainTable.builtin("cascade-brushless-50ms"), **told)
+
+
 def test_gains_along_a_trajectory_follow_its_player():
     controller = q.Controller(q.GainTable.builtin("along-aggressive"))
     player = q.Trajectory.paper("aggressive").player(controller.rate_hz)

@@ -128,6 +128,39 @@ def test_errors_are_those_of_the_command(keys, text):
         q.Scenario(keys)
 
 
+def test_laws_of_one_name_are_refused_before_any_flies():
+    def never(given):
+        raise AssertionError("flown")
+
+    for laws, name in [
+        ([never, never], "never"),
+        (["lee", "quatrack", "lee"], "lee"),
+        ([("quatrack", never), "quatrack"], "quatrack"),
+        ([never, q.GainTable.builtin("cascade-100ms"), q.GainTable.builtin("cascade-100ms")], "cascade-100ms"),
+    ]:
+        with pytest.raises(q.QuatrackError, match=f"^laws: {name} is there twice; .* a name of its own"):
+            q.compare(SHORT, laws)
+
+
+@pytest.mark.parametrize("seed", [2**63, -(2**63) - 1, 2**64])
+def test_a_whole_number_that_no_file_holds_is_named(seed):
+    range_of_toml = "must be from -9223372036854775808 to 9223372036854775807"
+    with pytest.raises(q.QuatrackError, match=f"^scenario.seed: {seed}; {range_of_toml}, .*Scenario.with_seed"):
+        q.Scenario(SHORT | {"seed": seed})
+    with pytest.raises(q.QuatrackError, match=f"^scenario.noise.position_m: {seed}; {range_of_toml}, as in a file$"):
+        q.Scenario(SHORT | {"noise": {"position_m": seed}})
+
+
+def test_seeds_go_to_64_bits():
+    scenario = q.Scenario(SHORT)
+    assert scenario.with_seed(2**64 - 1).seed == 2**64 - 1
+    for seed in (-1, 2**64):
+        with pytest.raises(q.QuatrackError, match=f"^seed: {seed}; must be from 0 to 18446744073709551615"):
+            scenario.with_seed(seed)
+    with pytest.raises(TypeError, match="^seed: float; give a whole number"):
+        scenario.with_seed(1.0)
+
+
 def test_numpy_scalars_and_paths_are_values_of_a_scenario():
     keys = SHORT | {"seed": np.int64(3), "noise": {"position_m": np.float64(1e-3)}, "air": {"wind_m_s": np.zeros(3)}}
     assert q.Scenario(keys).seed == 3

@@ -44,6 +44,17 @@ def test_a_known_craft_is_known_again(log):
     assert "drag_x_per_s" in str(told)
 
 
+def test_the_path_of_one_log_will_do(log):
+    assert q.identify(str(log), mass_kg=0.027).figures == q.identify([log], mass_kg=0.027).figures
+    for one in ("/nonexistent.csv", log.parent / "none.csv"):
+        with pytest.raises(q.QuatrackError, match="/non[a-z]*.csv: cannot be read"):
+            q.identify(one)
+    with pytest.raises(TypeError, match="^logs: int; give a path, or a list of paths"):
+        q.identify(3)
+    with pytest.raises(TypeError, match="^logs: int among them; give a path, or a list of paths"):
+        q.identify([log, 3])
+
+
 def test_what_is_wrong_is_said_in_a_line(log):
     with pytest.raises(q.QuatrackError, match="27 g are 0.027"):
         q.identify([log], mass_kg=27.0)

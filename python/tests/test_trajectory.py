@@ -64,6 +64,21 @@ def test_trajectories_that_cannot_be_flown_are_refused():
         q.Trajectory.load("none.csv")
 
 
+def test_times_are_numbers():
+    mild = q.Trajectory.paper("mild")
+    course = q.Scenario({"vehicle": "crazyflie-2.1", "course": "eight"}).course()
+    for follows in (mild, course):
+        with pytest.raises(ValueError, match="^time: nan; must be a number, s"):
+            follows.at(np.nan)
+        with pytest.raises(ValueError, match="^time: nan in row 2; must be a number, s"):
+            follows.at([0.0, 1.0, np.nan])
+    # A trajectory is at rest beyond its ends, however far; an eight has no place at infinity.
+    ends = mild.at([-np.inf, np.inf])
+    assert np.array_equal(ends.position, mild.at([-1.0, mild.duration + 1.0]).position) and (ends.velocity == 0.0).all()
+    with pytest.raises(ValueError, match="^time: inf; must be finite"):
+        course.at([1.0, np.inf])
+
+
 def test_a_player_gives_the_trajectorys_samples():
     mild = q.Trajectory.paper("mild")
     player = mild.player(500)

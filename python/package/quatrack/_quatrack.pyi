@@ -413,7 +413,7 @@ def campaign(
     threads: int | None = None,
 ) -> dict[str, Any]: ...
 def identify(
-    logs: Sequence[str | os.PathLike[str]],
+    logs: str | os.PathLike[str] | Iterable[str | os.PathLike[str]],
     *,
     columns: _Source | None = None,
     vehicle: _AnyVehicle | None = None,

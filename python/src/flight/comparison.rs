@@ -7,12 +7,14 @@ use quatrack_simulation::scenario::compare::Table;
 
 use super::Flight;
 use super::laws::{Flies, flown};
+use crate::error::refused;
 use crate::scenario;
 
 /// Flies laws on one scenario, each from the same start with the same noise and gusts.
 ///
 /// scenario: as for fly
-/// laws: names, GainTables, callables, or pairs of a name and a callable; all built-in ones where left out
+/// laws: names, GainTables, callables, or pairs of a name and a callable; all built-in ones where left out. Each has a name of its
+///     own, by which its flight is found
 ///
 /// Returns a Comparison, whose text is the command's table.
 #[pyfunction]
@@ -29,6 +31,12 @@ pub(crate) fn compare<'py>(
         Some(laws) => laws.try_iter()?.map(|law| Flies::argument(&law?)).collect::<PyResult<_>>()?,
         None => Law::ALL.map(Flies::Named).into(),
     };
+    let names: Vec<&str> = flies.iter().map(Flies::name).collect();
+    if let Some((_, twice)) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
+        return Err(refused(format!(
+            "laws: {twice} is there twice; give each law once, and a callable a name of its own as (name, law)"
+        )));
+    }
     let (mut flights, mut grounded) = (Vec::new(), Vec::new());
     for law in flies {
         let of = law.name().to_owned();

@@ -47,7 +47,6 @@ impl ToldFigures {
     /// The entries of a file for a vehicle, within the ranges that the laws take.
     pub(super) fn checked(told: &Told, checks: &Checks<'_>, vehicle: &Vehicle) -> Result<Self, ScenarioError> {
         let own_kg = vehicle.mass_kg();
-        let bounds = [0.5 * own_kg, 2.0 * own_kg];
         let lag_meaning = "the motors' lag in ms that laws take of this vehicle; leave it out for its own";
         let lag_s = |ms: f64| {
             let range = lag_range_ms(vehicle);
@@ -58,11 +57,50 @@ impl ToldFigures {
         let moment_meaning = "in N m per m/s, as far as the core takes it; leave it out for the vehicle's own";
         let moment = |value| checks.each("told.moment_n_m_per_m_s", Some(value), MOMENT_N_M_PER_M_S, moment_meaning);
         Ok(Self {
-            mass_kg: checks.one("told.mass_kg", told.mass_kg, own_kg, bounds, "in kg, half to twice the vehicle's")?,
+            mass_kg: checks.one(
+                "told.mass_kg",
+                told.mass_kg,
+                own_kg,
+                bounds_kg(own_kg),
+                "in kg, half to twice the vehicle's",
+            )?,
             lag_s: told.lag_ms.map(lag_s).transpose()?,
             drag_per_s: told.drag_per_s.map(drag).transpose()?,
             moment_n_m_per_m_s: told.moment_n_m_per_m_s.map(moment).transpose()?,
         })
+    }
+
+    /// Whether these are figures that laws take of a vehicle: those of `[told]`.
+    ///
+    /// # Errors
+    /// [`ToldError`] for the first that is out of its range, in SI.
+    pub fn taken_of(&self, vehicle: &Vehicle) -> Result<(), ToldError> {
+        let refused = |key, value, [least, most]: [f64; 2], unit: &str| {
+            Err(ToldError { key, value, must: format!("from {least} to {most} {unit}") })
+        };
+        let within = |key, value: f64, range: [f64; 2], unit: &str| {
+            if (range[0]..=range[1]).contains(&value) { Ok(()) } else { refused(key, value, range, unit) }
+        };
+        within("mass_kg", self.mass_kg, bounds_kg(vehicle.mass_kg()), "kg, half to twice the vehicle's")?;
+        if let Some(lag_s) = self.lag_s {
+            // In thousandths as the range is: the lag of the vehicle itself may be its end.
+            let [least, most] = lag_range_ms(vehicle);
+            if !(least..=most).contains(&thousandths(1e3 * lag_s)) {
+                refused(
+                    "lag_s",
+                    lag_s,
+                    [least / 1e3, most / 1e3],
+                    "s, the motors' lag that laws take of this vehicle",
+                )?;
+            }
+        }
+        if let Some(drag_per_s) = self.drag_per_s {
+            within("drag_per_s", drag_per_s, DRAG_PER_S, "1/s, drag over mass")?;
+        }
+        for moment_n_m_per_m_s in self.moment_n_m_per_m_s.into_iter().flatten() {
+            within("moment_n_m_per_m_s", moment_n_m_per_m_s, MOMENT_N_M_PER_M_S, "N m per m/s")?;
+        }
+        Ok(())
     }
 
     /// Whether a table is certified for the figures told of a vehicle.
@@ -96,6 +134,11 @@ impl ToldFigures {
     }
 }
 
+/// The masses that the laws take of a vehicle, kg.
+fn bounds_kg(own_kg: f64) -> [f64; 2] {
+    [0.5 * own_kg, 2.0 * own_kg]
+}
+
 /// The lags that the laws take of a vehicle, ms: of one that is not built in, the region of the table that `quatrack gains craft` makes.
 pub(super) fn lag_range_ms(vehicle: &Vehicle) -> [f64; 2] {
     if vehicles::is_built_in(vehicle) {
@@ -126,6 +169,27 @@ mod tests {
         assert!(Air { drag_per_s: DRAG_PER_S[1] as f32, ..Air::NONE }.checked().is_ok());
         let moment_n_s = [MOMENT_N_M_PER_M_S[1] as f32; 2];
         assert!(Air { moment_n_s, ..Air::NONE }.checked().is_ok());
+    }
+
+    #[test]
+    fn figures_are_taken_to_the_ends_of_their_ranges() {
+        let vehicle = vehicles::by_name("crazyflie-2.1").unwrap();
+        let own = ToldFigures { mass_kg: vehicle.mass_kg(), lag_s: None, drag_per_s: None, moment_n_m_per_m_s: None };
+        for told in [
+            ToldFigures { lag_s: Some(0.126), drag_per_s: Some(1.0), moment_n_m_per_m_s: Some([2e-3, 0.0]), ..own },
+            ToldFigures { lag_s: Some(0.004), mass_kg: 2.0 * own.mass_kg, ..own },
+        ] {
+            assert_eq!(told.taken_of(&vehicle), Ok(()));
+        }
+        for (told, key) in [
+            (ToldFigures { lag_s: Some(0.127), ..own }, "lag_s"),
+            (ToldFigures { lag_s: Some(f64::NAN), ..own }, "lag_s"),
+            (ToldFigures { mass_kg: 0.3, ..own }, "mass_kg"),
+            (ToldFigures { drag_per_s: Some(1.1), ..own }, "drag_per_s"),
+            (ToldFigures { moment_n_m_per_m_s: Some([0.0, 3e-3]), ..own }, "moment_n_m_per_m_s"),
+        ] {
+            assert_eq!(told.taken_of(&vehicle).map_err(|error| error.key), Err(key));
+        }
     }
 
     #[test]
