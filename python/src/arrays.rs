@@ -123,6 +123,11 @@ impl<const W: usize> Quantity<W> {
         (0..self.len()).map(|row| self.row(row))
     }
 
+    /// As an array of the shape that it was given in, a row for all as one row.
+    pub(crate) fn held<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.array(py, self.crafts)
+    }
+
     /// As an array for so many crafts.
     pub(crate) fn array<'py>(&self, py: Python<'py>, crafts: Option<usize>) -> PyResult<Bound<'py, PyAny>> {
         let numbers = match (crafts, self.crafts) {

@@ -2,7 +2,7 @@
 
 use std::num::NonZeroUsize;
 
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use quatrack::{ErrorForm, FeedForward};
 
@@ -13,13 +13,13 @@ use crate::law::{Options, OwnedLaw};
 use crate::reference::Reference;
 use crate::state::State;
 
-/// A law of the core with its memory, of one craft or of many; to be stepped at its rate.
+/// A law of the core with its memory, of one craft or of many; to be stepped at its rate. It is neither copied nor pickled.
 ///
 /// law: "quatrack" (the cascade), "actuator-aware", "lqr-e", "lyap-e", "lqr-f", "lyap-f", or a GainTable of any kind
 /// vehicle: a Vehicle, a name, a path or the keys of a vehicle file; laws of motor forces need it, the paper's end with thrust and
 ///     body rates without it
 /// mass_kg, lag_s: figures that the law is told where they differ from its file, kg and s
-/// drag_per_s, moment_n_m_per_m_s: the air that the cascade is told, 1/s and N m per m/s
+/// drag_per_s, moment_n_m_per_m_s: the air that the cascade is told, 1/s and N m per m/s; all four in the ranges of a scenario's [told]
 /// feed_forward: whether the paper's laws add the reference's own input
 /// error_form: "heading" or "paper", how the E laws form their error
 /// standing: whether the flight begins on the ground with the motors off; in the air at hover otherwise
@@ -172,6 +172,14 @@ impl Controller {
         };
         let rows: Vec<[f32; 3]> = crafts.iter().map(air).collect();
         array(py, *leading, rows).map(Some)
+    }
+
+    /// For pickle and copy: refused, since a copy without its memory would fly on as if it had just started.
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(PyTypeError::new_err(
+            "Controller: its memory of the flight is not copied; make another from the same arguments, a GainTable and a \
+             Vehicle among them can be copied, and begin its flight anew",
+        ))
     }
 
     fn __repr__(&self) -> String {

@@ -12,6 +12,7 @@ use quatrack_simulation::gains::{Design, json_document};
 use crate::arrays::shaped;
 use crate::error::refused;
 use crate::long_call::long_call;
+use crate::pickle::{Reduced, by_constructor};
 use crate::values::{Source, from_json};
 
 macro_rules! built_in {
@@ -194,6 +195,11 @@ impl GainTable {
         dictionary.set_item("motor_lag_max_s", certificate.motor_lag_max_s)?;
         dictionary.set_item("f32_distance", certificate.f32_distance)?;
         Ok(dictionary)
+    }
+
+    /// For pickle and copy: its bytes.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        by_constructor::<Self>(py, (self.to_bytes(py),))
     }
 
     fn __repr__(&self) -> String {

@@ -15,9 +15,11 @@
 //!     law           a law with its borrowed parts
 //! estimator
 //! gains, trajectory, design
+//!   player          a trajectory as a board plays it
 //!   state, reference, vehicle
 //!     long_call     without the interpreter's lock, ended by Ctrl-C
 //!     values        dictionaries
+//!     pickle        objects taken apart
 //!     arrays        NumPy
 //!       error
 //! ```
@@ -37,7 +39,9 @@ mod identify;
 mod law;
 mod long_call;
 mod own_law;
+mod pickle;
 mod plant;
+mod player;
 mod reference;
 mod reproduction;
 mod scenario;
@@ -74,6 +78,8 @@ mod _quatrack {
     #[pymodule_export]
     use crate::plant::Plant;
     #[pymodule_export]
+    use crate::player::Player;
+    #[pymodule_export]
     use crate::reference::Reference;
     #[pymodule_export]
     use crate::reproduction::{Reproduction, reproduce};
@@ -82,7 +88,7 @@ mod _quatrack {
     #[pymodule_export]
     use crate::state::State;
     #[pymodule_export]
-    use crate::trajectory::{Player, Trajectory, plan};
+    use crate::trajectory::{Trajectory, plan};
     #[pymodule_export]
     use crate::vehicle::Vehicle;
 

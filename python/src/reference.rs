@@ -1,13 +1,14 @@
 //! References, for one craft or for many.
 
+mod rows;
+
 use pyo3::prelude::*;
-use quatrack::nalgebra::Vector3;
-use quatrack::{FifthOrderSample, FlatSample, Progress};
-use quatrack_plan::trajectory::fifth_order::FifthOrder;
+use pyo3::types::PyType;
+use quatrack::Progress;
 
 use crate::arrays::{Quantity, Together, array};
-use crate::error::refused_of;
-use crate::state::{State, single};
+use crate::pickle::{Reduced, by_restoring};
+use crate::state::State;
 
 /// The flat output and its derivatives at one time; of N crafts with a leading axis N.
 ///
@@ -28,75 +29,6 @@ pub(crate) struct Reference {
     pub(crate) heading: [Quantity<1>; 4],
     /// Where on which trajectory that is; of a player, which is of one craft.
     pub(crate) progress: Option<Progress>,
-}
-
-impl Reference {
-    /// The number of rows.
-    pub(crate) fn len(&self) -> usize {
-        self.crafts.unwrap_or(1)
-    }
-
-    /// Heading and its derivatives of a row.
-    #[inline]
-    fn turn(&self, craft: usize) -> [[f32; 1]; 4] {
-        self.heading.each_ref().map(|rows| single(rows.row(craft)))
-    }
-
-    /// One row, to the jerk, as the core takes it.
-    #[inline]
-    pub(crate) fn flat(&self, craft: usize) -> FlatSample {
-        let [position, velocity, acceleration, jerk] = &self.position;
-        let of = |rows: &Quantity<3>| Vector3::from(single(rows.row(craft)));
-        let [[heading_rad], [heading_rate_rad_s], ..] = self.turn(craft);
-        FlatSample {
-            position_m: of(position),
-            velocity_m_s: of(velocity),
-            acceleration_m_s2: of(acceleration),
-            jerk_m_s3: of(jerk),
-            heading_rad,
-            heading_rate_rad_s,
-        }
-    }
-
-    /// One row with all that is known of it.
-    #[inline]
-    pub(crate) fn sample(&self, craft: usize) -> FifthOrderSample {
-        let [.., [heading_acceleration_rad_s2], [heading_jerk_rad_s3]] = self.turn(craft);
-        let [snap, crackle] = match &self.beyond {
-            Some(beyond) => beyond.each_ref().map(|rows| single(rows.row(craft))),
-            None => [[0.0; 3]; 2],
-        };
-        FifthOrderSample {
-            flat: self.flat(craft),
-            snap_m_s4: Vector3::from(snap),
-            crackle_m_s5: Vector3::from(crackle),
-            heading_acceleration_rad_s2,
-            heading_jerk_rad_s3,
-        }
-    }
-
-    /// Of points of a course.
-    pub(crate) fn of_points(crafts: Option<usize>, points: &[FifthOrder]) -> Self {
-        let order = |k: usize| Quantity::of_rows(crafts, points.iter().map(|point| point.position[k].into()));
-        let turn = |k: usize| Quantity::of_rows(crafts, points.iter().map(|point| [point.heading[k]]));
-        Self {
-            crafts,
-            position: [0, 1, 2, 3].map(order),
-            beyond: Some([4, 5].map(order)),
-            heading: [0, 1, 2, 3].map(turn),
-            progress: None,
-        }
-    }
-
-    /// The core's references.
-    fn mapped(&self) -> PyResult<Vec<quatrack::Reference>> {
-        let of = |craft| self.crafts.map(|_| craft);
-        (0..self.len())
-            .map(|craft| {
-                quatrack::Reference::from_flat(&self.flat(craft)).map_err(|error| refused_of(of(craft), error))
-            })
-            .collect()
-    }
 }
 
 #[pymethods]
@@ -222,6 +154,31 @@ impl Reference {
     fn thrust<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let thrust: Vec<[f64; 1]> = self.mapped()?.iter().map(|r| [f64::from(r.input().thrust_m_s2)]).collect();
         array(py, self.crafts, thrust)
+    }
+
+    /// For pickle and copy: the quantities as they are, and a player's place on its trajectory.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let position = self.position.iter().map(|rows| rows.held(py)).collect::<PyResult<Vec<_>>>()?;
+        let beyond = |rows: &[Quantity<3>; 2]| rows.iter().map(|rows| rows.held(py)).collect::<PyResult<Vec<_>>>();
+        let heading = self.heading.iter().map(|rows| rows.held(py)).collect::<PyResult<Vec<_>>>()?;
+        let progress = self.progress.map(|Progress { trajectory, tick }| (trajectory, tick));
+        by_restoring::<Self>(py, (position, self.beyond.as_ref().map(beyond).transpose()?, heading, progress))
+    }
+
+    /// From what `__reduce__` returns.
+    #[classmethod]
+    fn _restored(
+        _cls: &Bound<'_, PyType>,
+        position: [Bound<'_, PyAny>; 4],
+        beyond: Option<[Bound<'_, PyAny>; 2]>,
+        heading: [Bound<'_, PyAny>; 4],
+        progress: Option<(u32, u32)>,
+    ) -> PyResult<Self> {
+        let [at, velocity, acceleration, jerk] = &position;
+        let [snap, crackle] = beyond.as_ref().map_or([None; 2], |beyond| beyond.each_ref().map(Some));
+        let [a, b, c, d] = heading.each_ref().map(Some);
+        let rows = Self::new(at, Some(velocity), Some(acceleration), Some(jerk), snap, crackle, a, b, c, d)?;
+        Ok(Self { progress: progress.map(|(trajectory, tick)| Progress { trajectory, tick }), ..rows })
     }
 
     fn __repr__(&self) -> String {

@@ -8,6 +8,7 @@ use quatrack_simulation::plant::RigidState;
 
 use crate::arrays::{Quantity, Together};
 use crate::error::refused_of;
+use crate::pickle::{Reduced, by_constructor};
 
 /// State of a craft and readings of its inertial sensors; of N crafts with a leading axis N.
 ///
@@ -168,6 +169,15 @@ impl State {
     #[getter]
     fn specific_force<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.specific_force.as_ref().map(|rows| rows.array(py, self.crafts)).transpose()
+    }
+
+    /// For pickle and copy: the quantities as they are.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let optional = |rows: &Option<Quantity<3>>| rows.as_ref().map(|rows| rows.held(py)).transpose();
+        let (position, attitude, velocity) =
+            (self.position.held(py)?, self.attitude.held(py)?, self.velocity.held(py)?);
+        let (body_rates, specific_force) = (optional(&self.body_rates)?, optional(&self.specific_force)?);
+        by_constructor::<Self>(py, (position, attitude, velocity, body_rates, specific_force))
     }
 
     fn __repr__(&self) -> String {

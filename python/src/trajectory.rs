@@ -1,4 +1,4 @@
-//! Trajectories: pieces, files, plans; and their player on board.
+//! Trajectories: pieces, files, plans.
 
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -6,14 +6,11 @@ use std::path::{Path, PathBuf};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
-use quatrack::nalgebra::Vector3;
-use quatrack::{Bookmark, Player as CorePlayer, Progress, Rate, Trajectory as CoreTrajectory};
 use quatrack_plan::bounded;
 use quatrack_plan::plan::Plan;
 use quatrack_plan::trajectory::bspline::BSpline;
 use quatrack_plan::trajectory::fifth_order::{FifthOrder, FlatTrajectory};
 use quatrack_plan::trajectory::file::{self, TrajectoryFile};
-use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::{Piece, PiecewisePolynomial, csv};
 use quatrack_plan::trajectory::refit::refit;
 use quatrack_simulation::gains::OnBoardTrajectory;
@@ -21,6 +18,8 @@ use quatrack_simulation::gains::OnBoardTrajectory;
 use crate::arrays::{Quantity, array, matrix, shaped};
 use crate::error::refused;
 use crate::long_call::long_call;
+use crate::pickle::{Reduced, by_restoring};
+use crate::player::Player;
 use crate::reference::Reference;
 use crate::values::Source;
 
@@ -77,26 +76,30 @@ pub(crate) fn plan(py: Python<'_>, problem: &Bound<'_, PyAny>) -> PyResult<Traje
     long_call(py, move |_| of_plan(&name, &read))?.map(Trajectory).map_err(refused)
 }
 
+/// Pieces as arrays.
+fn pieces(durations: &Bound<'_, PyAny>, coefficients: &Bound<'_, PyAny>) -> PyResult<Vec<Piece>> {
+    let durations = Quantity::<1>::read("durations", durations)?;
+    let flat = coefficients.py().import("numpy")?.call_method1("reshape", (coefficients, (-1, 4 * POWERS)))?;
+    let coefficients = matrix("coefficients", &flat)?;
+    if coefficients.nrows() != durations.len() {
+        return Err(PyValueError::new_err(format!(
+            "coefficients: {} pieces, but durations has {}; give as many of both, coefficients of shape (pieces, 4, 8)",
+            coefficients.nrows(),
+            durations.len()
+        )));
+    }
+    let piece = |i: usize| Piece {
+        duration_s: durations.row(i)[0],
+        coefficients: std::array::from_fn(|c| std::array::from_fn(|k| coefficients[(i, c * POWERS + k)])),
+    };
+    Ok((0..coefficients.nrows()).map(piece).collect())
+}
+
 #[pymethods]
 impl Trajectory {
     #[new]
     fn new(durations: &Bound<'_, PyAny>, coefficients: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let durations = Quantity::<1>::read("durations", durations)?;
-        let flat = coefficients.py().import("numpy")?.call_method1("reshape", (coefficients, (-1, 4 * POWERS)))?;
-        let coefficients = matrix("coefficients", &flat)?;
-        if coefficients.nrows() != durations.len() {
-            return Err(PyValueError::new_err(format!(
-                "coefficients: {} pieces, but durations has {}; give as many of both, coefficients of shape (pieces, 4, 8)",
-                coefficients.nrows(),
-                durations.len()
-            )));
-        }
-        let piece = |i: usize| Piece {
-            duration_s: durations.row(i)[0],
-            coefficients: std::array::from_fn(|c| std::array::from_fn(|k| coefficients[(i, c * POWERS + k)])),
-        };
-        let pieces = (0..coefficients.nrows()).map(piece).collect();
-        PiecewisePolynomial::new(pieces).map(Self).map_err(refused)
+        PiecewisePolynomial::new(pieces(durations, coefficients)?).map(Self).map_err(refused)
     }
 
     /// From a file: pieces as CSV, a B-spline, or a plan, which is then solved. "mild" and "aggressive" are the paper's.
@@ -165,74 +168,32 @@ impl Trajectory {
     /// The player that plays it on board, at a rate.
     #[pyo3(signature = (rate_hz=500))]
     fn player(&self, rate_hz: u32) -> PyResult<Player> {
-        let pieces = on_board::pieces(&self.0);
-        let checked = CoreTrajectory::new(&pieces).map_err(refused)?;
-        let player = CorePlayer::new(checked, rate(rate_hz)?);
-        let (checksum, bookmark, end_tick) = (checked.checksum(), player.bookmark(), player.end_tick());
-        Ok(Player { pieces, checksum, bookmark, end_tick, rate_hz })
+        Player::new(&self.0, rate_hz)
     }
 
     fn __len__(&self) -> usize {
         self.0.pieces().len()
     }
 
+    /// For pickle and copy: the pieces, and where each ends.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let boundaries_s = self.0.boundaries_s().to_vec();
+        by_restoring::<Self>(py, (self.durations(py)?, self.coefficients(py)?, boundaries_s))
+    }
+
+    /// From what `__reduce__` returns.
+    #[classmethod]
+    fn _restored(
+        _cls: &Bound<'_, PyType>,
+        durations: &Bound<'_, PyAny>,
+        coefficients: &Bound<'_, PyAny>,
+        boundaries_s: Vec<f64>,
+    ) -> PyResult<Self> {
+        let pieces = pieces(durations, coefficients)?;
+        PiecewisePolynomial::put_together(pieces, &boundaries_s).map(Self).map_err(refused)
+    }
+
     fn __repr__(&self) -> String {
         format!("Trajectory of {} pieces, {} s", self.0.pieces().len(), self.duration())
-    }
-}
-
-/// A control rate that the core takes.
-pub(crate) fn rate(hz: u32) -> PyResult<Rate> {
-    Rate::from_hz(hz).ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "rate_hz: {hz}; must be from {} to {} control steps a second",
-            Rate::MIN_HZ,
-            Rate::MAX_HZ
-        ))
-    })
-}
-
-/// A trajectory as a board plays it, in single precision and by ticks.
-#[pyclass(module = "quatrack")]
-pub(crate) struct Player {
-    pieces: Vec<quatrack::Piece>,
-    checksum: u32,
-    bookmark: Bookmark,
-    end_tick: u32,
-    rate_hz: u32,
-}
-
-#[pymethods]
-impl Player {
-    /// The reference at a tick, with where on the trajectory that is.
-    fn reference(&mut self, tick: u32) -> PyResult<Reference> {
-        let trajectory = CoreTrajectory::new(&self.pieces).map_err(refused)?;
-        let mut player =
-            CorePlayer::resume(trajectory, self.bookmark).ok_or_else(|| refused("player: not its trajectory"))?;
-        let sample = player.at_fifth_order(tick);
-        self.bookmark = player.bookmark();
-        let flat = &sample.flat;
-        let of = |v: &Vector3<f32>| Quantity::of(v.map(f64::from).into());
-        let heading =
-            [flat.heading_rad, flat.heading_rate_rad_s, sample.heading_acceleration_rad_s2, sample.heading_jerk_rad_s3];
-        Ok(Reference {
-            crafts: None,
-            position: [of(&flat.position_m), of(&flat.velocity_m_s), of(&flat.acceleration_m_s2), of(&flat.jerk_m_s3)],
-            beyond: Some([of(&sample.snap_m_s4), of(&sample.crackle_m_s5)]),
-            heading: heading.map(|value| Quantity::of([f64::from(value)])),
-            progress: Some(Progress { trajectory: self.checksum, tick }),
-        })
-    }
-
-    /// The first tick at or after the trajectory's end.
-    #[getter]
-    fn end_tick(&self) -> u32 {
-        self.end_tick
-    }
-
-    /// Ticks a second.
-    #[getter]
-    fn rate_hz(&self) -> u32 {
-        self.rate_hz
     }
 }

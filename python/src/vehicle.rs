@@ -9,6 +9,7 @@ use quatrack_simulation::vehicles;
 
 use crate::arrays::{array, from_matrix};
 use crate::error::refused;
+use crate::pickle::{Reduced, by_restoring};
 use crate::values::Source;
 
 /// Mass, inertia, motors and limits of a craft.
@@ -112,6 +113,17 @@ impl Vehicle {
     #[getter]
     fn hover_force_n(&self) -> f64 {
         self.0.hover_thrust_n()
+    }
+
+    /// For pickle and copy: the text of a vehicle file.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        by_restoring::<Self>(py, (vehicles::to_toml(&self.0).map_err(refused)?,))
+    }
+
+    /// From what `__reduce__` returns.
+    #[classmethod]
+    fn _restored(_cls: &Bound<'_, PyType>, text: &str) -> PyResult<Self> {
+        vehicles::from_toml(text).map(Self).map_err(refused)
     }
 
     fn __repr__(&self) -> String {

@@ -3,7 +3,7 @@ comments here repeat the shapes."""
 
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import Any, Literal, TypeAlias, final
+from typing import Any, Literal, NoReturn, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -43,6 +43,7 @@ class State:
     def body_rates(self) -> _Doubles | None: ...
     @property
     def specific_force(self) -> _Doubles | None: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Reference:
@@ -82,6 +83,7 @@ class Reference:
     def state(self) -> State: ...
     @property
     def thrust(self) -> _Doubles: ...  # () or (N,), m/s^2
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Trajectory:
@@ -107,6 +109,7 @@ class Trajectory:
     def at(self, time: ArrayLike) -> Reference: ...
     def player(self, rate_hz: int = 500) -> Player: ...
     def __len__(self) -> int: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Player:
@@ -137,6 +140,7 @@ class Vehicle:
     def arm_m(self) -> float: ...
     @property
     def hover_force_n(self) -> float: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class GainTable:
@@ -166,6 +170,7 @@ class GainTable:
     def gain(self) -> _Singles: ...  # (rows, columns), or (knots, rows, columns)
     @property
     def certificate(self) -> dict[str, float]: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Controller:
@@ -195,6 +200,7 @@ class Controller:
     def motor_forces(self) -> _Singles | None: ...  # (4,) or (N, 4), N
     @property
     def air(self) -> _Singles | None: ...  # (3,) or (N, 3)
+    def __reduce__(self) -> NoReturn: ...
 
 @final
 class Step:
@@ -278,6 +284,7 @@ class Scenario:
     def true_mass_kg(self) -> float: ...
     @property
     def told_mass_kg(self) -> float: ...
+    def __reduce__(self) -> tuple[Any, ...]: ...
 
 @final
 class Course:

@@ -1,7 +1,7 @@
-//! The contents of a vehicle file, in any format that serde reads; a [`Vehicle`] whose figures are in range out.
+//! The contents of a vehicle file, in any format that serde reads; a [`Vehicle`] whose figures are in range out, and back.
 
 use nalgebra::{Matrix3, Vector3};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::check::{body_rate, check, lag, one_body, positive, thrust_max, torque_per_thrust};
 use super::flown::{AirFigures, BatteryFigures, FlightFigures, ForceFigures, MotorFigures, PropellerFigures};
@@ -19,7 +19,7 @@ const LONGEST_NAME: usize = 64;
 /// `torque_per_thrust_m`, `lag_s` and `published_lag_s`; `limits` with `body_rates_rad_s`; and its figures in flight,
 /// each where somebody has measured it: `air`, `motors.flown`, `motors.force`, `propeller`, `battery`, with the keys of
 /// [`super::FlightFigures`]; and `identified`, the intervals of figures identified from its flights.
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleFile {
     name: String,
@@ -33,14 +33,14 @@ pub struct VehicleFile {
     identified: Identified,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct BodyEntry {
     mass_kg: f64,
     inertia_kg_m2: [[f64; 3]; 3],
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct MotorsEntry {
     arm_m: f64,
@@ -53,10 +53,41 @@ struct MotorsEntry {
     force: Option<ForceFigures>,
 }
 
-#[derive(Deserialize)]
+#[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct LimitsEntry {
     body_rates_rad_s: [f64; 3],
+}
+
+impl From<&Vehicle> for VehicleFile {
+    /// The figures as a file states them: read again, they are the same vehicle to the bit.
+    fn from(vehicle: &Vehicle) -> Self {
+        let Motors { arm_m, thrust_min_n, thrust_max_n, torque_per_thrust_m, lag_s, published_lag_s } = vehicle.motors;
+        let FlightFigures { air, motors: flown, force, propeller, battery } = vehicle.flown;
+        let inertia = &vehicle.inertia_kg_m2;
+        Self {
+            name: vehicle.name.clone(),
+            body: BodyEntry {
+                mass_kg: vehicle.mass_kg,
+                inertia_kg_m2: [0, 1, 2].map(|i| [0, 1, 2].map(|j| inertia[(i, j)])),
+            },
+            motors: MotorsEntry {
+                arm_m,
+                thrust_min_n,
+                thrust_max_n,
+                torque_per_thrust_m,
+                lag_s,
+                published_lag_s,
+                flown,
+                force,
+            },
+            limits: LimitsEntry { body_rates_rad_s: vehicle.body_rates_max_rad_s.into() },
+            air,
+            propeller,
+            battery,
+            identified: vehicle.identified.clone(),
+        }
+    }
 }
 
 impl TryFrom<VehicleFile> for Vehicle {

@@ -3,7 +3,7 @@
 //! All of it is optional, and none is part of a vehicle's identity: a table stays the table of its vehicle when somebody
 //! measures more.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::VehicleError;
 use super::check::{lag, within};
@@ -27,7 +27,7 @@ pub struct FlightFigures {
 }
 
 /// Table `air`.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct AirFigures {
     /// Mass of the craft on which they were identified, kg.
@@ -43,7 +43,7 @@ pub struct AirFigures {
 }
 
 /// Table `motors.flown`.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotorFigures {
     /// Time constant of a thrust that grows, s.
@@ -55,7 +55,7 @@ pub struct MotorFigures {
 }
 
 /// Table `motors.force`: `F = full_n u^command_power (V / reference_v)^voltage_power`, u the command over `thrust_max_n`.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ForceFigures {
     /// N.
@@ -69,7 +69,7 @@ pub struct ForceFigures {
 }
 
 /// Table `propeller`.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct PropellerFigures {
     /// m.
@@ -81,7 +81,7 @@ pub struct PropellerFigures {
 }
 
 /// Table `battery`.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct BatteryFigures {
     /// A h.

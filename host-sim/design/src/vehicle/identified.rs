@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::VehicleError;
 use super::check::check;
@@ -11,7 +11,7 @@ use super::check::check;
 pub type Identified = BTreeMap<String, Interval>;
 
 /// Where a figure lies with a probability of 95 %.
-#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct Interval {
     /// Lower end.

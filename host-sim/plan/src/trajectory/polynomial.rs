@@ -4,6 +4,7 @@
 //! without loss. The text form that other tools write is in [`csv`].
 
 pub mod csv;
+mod error;
 mod piece;
 
 use std::f64::consts::TAU;
@@ -13,6 +14,7 @@ use quatrack_design::model::flat::FlatSample;
 
 use super::Trajectory;
 use super::bspline::BSpline;
+pub use error::PolynomialError;
 pub use piece::{Coordinate, Piece};
 
 /// Coefficients per coordinate: degree 7, that of the on-board pieces.
@@ -38,57 +40,6 @@ pub struct PiecewisePolynomial {
     pieces: Vec<Piece>,
     /// Start of each piece, then the end of the last, s.
     boundaries_s: Vec<f64>,
-}
-
-/// Why pieces do not make a trajectory. Pieces count from 1.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PolynomialError {
-    /// There is nothing to fly.
-    #[error("no pieces: a trajectory needs at least one")]
-    Empty,
-    /// Zero, negative or not a number.
-    #[error("piece {piece}: duration = {value} s; must be positive and finite")]
-    Duration {
-        /// The piece's number, from 1.
-        piece: usize,
-        /// Its duration, s.
-        value: f64,
-    },
-    /// The durations add up to more than a number can hold.
-    #[error("the durations add up to more than 1e308 s; shorten the pieces")]
-    TotalDuration,
-    /// Not a number.
-    #[error("piece {piece}: {coordinate}^{power} = {value}; must be a finite number")]
-    Coefficient {
-        /// The piece's number, from 1.
-        piece: usize,
-        /// The polynomial.
-        coordinate: Coordinate,
-        /// The power.
-        power: usize,
-        /// The coefficient.
-        value: f64,
-    },
-    /// A piece does not start where the one before it ends.
-    #[error(
-        "{coordinate} jumps by {jump:.6} {} from the end of piece {piece} ({end:.6}) to the start of piece {} \
-         ({start:.6}); less than {JOINT_TOLERANCE} {0} can be flown: correct {coordinate}^0 of piece {1} or the duration \
-         of piece {piece}",
-        coordinate.unit(), piece + 1
-    )]
-    Jump {
-        /// The piece before the jump, from 1.
-        piece: usize,
-        /// The coordinate that jumps.
-        coordinate: Coordinate,
-        /// Value at the end of that piece, m or rad.
-        end: f64,
-        /// Value at the start of the next piece, m or rad.
-        start: f64,
-        /// Size of the jump, m or rad; for the heading without whole turns.
-        jump: f64,
-    },
 }
 
 impl PiecewisePolynomial {
@@ -142,6 +93,28 @@ impl PiecewisePolynomial {
             boundaries_s.push(end_s);
         }
         if end_s.is_finite() { Ok(Self { pieces, boundaries_s }) } else { Err(PolynomialError::TotalDuration) }
+    }
+
+    /// A trajectory that was taken apart into its [`Self::pieces`] and [`Self::boundaries_s`], the same to the bit: the ends of a
+    /// spline's pieces are not their durations added up. Its joints are those that were looked at before, and are not judged.
+    ///
+    /// # Errors
+    /// [`PolynomialError`] for pieces without a number or a duration, and for boundaries that are not theirs.
+    pub fn put_together(pieces: Vec<Piece>, boundaries_s: &[f64]) -> Result<Self, PolynomialError> {
+        validate(&pieces)?;
+        let first = boundaries_s.first().copied().unwrap_or(f64::NAN);
+        let joined = |piece: usize, start_s: f64, end_s: f64| {
+            let want_s = start_s + pieces[piece].duration_s;
+            (end_s - want_s).abs() <= 1e-9 * want_s && (piece > 0 || first == 0.0)
+        };
+        let ends = (0..pieces.len()).map(|piece| {
+            let of = |index: usize| boundaries_s.get(index).copied().unwrap_or(f64::NAN);
+            (piece, of(piece), of(piece + 1))
+        });
+        match ends.into_iter().find(|(piece, start_s, end_s)| !joined(*piece, *start_s, *end_s)) {
+            Some((piece, start_s, end_s)) => Err(PolynomialError::Boundaries { piece: piece + 1, start_s, end_s }),
+            None => Ok(Self { boundaries_s: boundaries_s[..=pieces.len()].to_vec(), pieces }),
+        }
     }
 
     /// The same curve as `spline`, to rounding: one piece per span. It takes exactly as long.

@@ -142,3 +142,22 @@ fn numbers_that_are_not_finite_are_refused() {
     let huge = BSpline::new(1, 1e-300, vec![Vector3::zeros(), Vector3::new(1e300, 0.0, 0.0)]).expect("finite points");
     assert!(matches!(PiecewisePolynomial::from_bspline(&huge), Err(PolynomialError::Coefficient { .. })));
 }
+
+#[test]
+fn what_is_taken_apart_is_put_together_to_the_bit() {
+    // 12 / 38 s added up 38 times is not 12 s.
+    let whole = PiecewisePolynomial::from_bspline(&wavy(7, 38)).expect("a spline of a few metres");
+    let (pieces, boundaries_s) = (whole.pieces().to_vec(), whole.boundaries_s().to_vec());
+    assert_ne!(PiecewisePolynomial::new(pieces.clone()).expect("continuous").boundaries_s(), boundaries_s);
+    assert_eq!(PiecewisePolynomial::put_together(pieces.clone(), &boundaries_s), Ok(whole));
+    for (place, value, piece) in
+        [(0, 0.1, 1), (3, boundaries_s[3] + 1e-3, 3), (38, f64::NAN, 38), (38, f64::INFINITY, 38)]
+    {
+        let mut moved = boundaries_s.clone();
+        moved[place] = value;
+        let refused = PiecewisePolynomial::put_together(pieces.clone(), &moved);
+        assert!(matches!(refused, Err(PolynomialError::Boundaries { piece: of, .. }) if of == piece), "{refused:?}");
+    }
+    let short = PiecewisePolynomial::put_together(pieces, &boundaries_s[..38]);
+    assert!(matches!(short, Err(PolynomialError::Boundaries { piece: 38, .. })), "{short:?}");
+}

@@ -24,6 +24,12 @@ pub enum VehicleFileError {
         /// The system's message.
         reason: String,
     },
+    /// A vehicle that TOML does not hold.
+    #[error("vehicle: cannot be written as TOML ({reason})")]
+    Unwritable {
+        /// The writer's message.
+        reason: String,
+    },
     /// Not TOML, a key that is unknown or missing, or a value of the wrong type.
     #[error("vehicle, line {line}: {reason}")]
     Syntax {

@@ -59,6 +59,15 @@ pub fn from_toml(text: &str) -> Result<Vehicle, VehicleFileError> {
     Ok(Vehicle::try_from(file)?)
 }
 
+/// A vehicle as the text of a file, of which [`from_toml`] makes the same vehicle to the bit.
+///
+/// # Errors
+/// [`VehicleFileError::Unwritable`].
+pub fn to_toml(vehicle: &Vehicle) -> Result<String, VehicleFileError> {
+    toml::to_string(&VehicleFile::from(vehicle))
+        .map_err(|error| VehicleFileError::Unwritable { reason: one_line(&error.to_string()) })
+}
+
 /// A vehicle from a file.
 ///
 /// # Errors

@@ -21,6 +21,21 @@ fn the_board_flies_tables_for_the_vehicle_that_they_are_designed_for() {
 }
 
 #[test]
+fn a_vehicle_written_and_read_again_is_the_same() {
+    // All built-in files, one with every optional table, and a number that no decimal of less than 17 digits is.
+    let vehicles = vehicles::names().map(|name| vehicles::by_name(name).expect("built in"));
+    let text = TEXT.replace("mass_kg = 0.029", "mass_kg = 0.028999999999999998");
+    let text =
+        format!("{text}\n[identified.mass_kg]\nlow = 0.1\nhigh = 0.30000000000000004\nsource = \"a \\\"log\\\"\"\n");
+    let own = vehicles::from_toml(&text).expect("in range");
+    assert!(own.mass_kg() < 0.029 && own.identified().len() == 1, "{own:?}");
+    for vehicle in vehicles.into_iter().chain([own]) {
+        let written = vehicles::to_toml(&vehicle).expect("TOML holds it");
+        assert_eq!(vehicles::from_toml(&written), Ok(vehicle), "{written}");
+    }
+}
+
+#[test]
 fn built_in_vehicles_hover_between_their_limits() {
     for name in vehicles::names() {
         let vehicle = vehicles::by_name(name).expect("built in");

@@ -56,7 +56,9 @@ pub(in crate::trajectory) fn read(table: &Table) -> Result<PiecewisePolynomial, 
         let piece = match reason {
             PolynomialError::Empty => return CsvError::Empty,
             PolynomialError::TotalDuration => table.rows.len(),
-            PolynomialError::Duration { piece, .. } | PolynomialError::Coefficient { piece, .. } => piece,
+            PolynomialError::Duration { piece, .. }
+            | PolynomialError::Boundaries { piece, .. }
+            | PolynomialError::Coefficient { piece, .. } => piece,
             PolynomialError::Jump { piece, .. } => piece + 1,
         };
         CsvError::Pieces { line: table.rows[piece - 1].line, reason }
