@@ -55,10 +55,11 @@ pub fn file(recording: &Recording, law: &str, half_arm_m: f64) -> Result<Vec<u8>
         let schema = writer.add_schema(schema, "jsonschema", text.as_bytes())?;
         channels.push(writer.add_channel(schema, topic, "json", &BTreeMap::new())?);
     }
-    for (sequence, (sample, around)) in recording.shown().iter().enumerate() {
+    let rows = recording.shown();
+    for (sequence, (sample, around)) in rows.iter().enumerate() {
         let time_ns = (sample.time_s * 1e9).round() as u64;
         let messages = [
-            (sequence % 10 == 0).then(|| scene(recording, sequence, time_ns, law, half_arm_m)),
+            (sequence % 10 == 0).then(|| scene(&rows, sequence, time_ns, law, half_arm_m)),
             Some(transform(sample, time_ns)),
             Some(pose(&sample.state.position_m, &sample.state.attitude, time_ns)),
             Some(pose(&sample.target_m, &UnitQuaternion::identity(), time_ns)),
@@ -125,7 +126,7 @@ fn numbers(sample: &RigidSample, around: &Around) -> Value {
 }
 
 /// Rotors in the craft's frame, and in the world the course with the way flown so far.
-fn scene(recording: &Recording, until: usize, time_ns: u64, law: &str, half_arm_m: f64) -> Value {
+fn scene(rows: &[(RigidSample, Around)], until: usize, time_ns: u64, law: &str, half_arm_m: f64) -> Value {
     let colour = |r: f64, g: f64, b: f64, a: f64| json!({ "r": r, "g": g, "b": b, "a": a });
     let corners = [(1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
     let rotors: Vec<Value> = corners
@@ -140,7 +141,6 @@ fn scene(recording: &Recording, until: usize, time_ns: u64, law: &str, half_arm_
             })
         })
         .collect();
-    let samples = &recording.flight.samples;
     let line = |points: Vec<Value>, colour: Value| {
         json!({
             "type": 0,
@@ -153,8 +153,8 @@ fn scene(recording: &Recording, until: usize, time_ns: u64, law: &str, half_arm_
             "indices": [],
         })
     };
-    let course = samples.iter().step_by(5).map(|sample| vector(&sample.target_m)).collect();
-    let way = samples.iter().take(until + 1).step_by(5).map(|sample| vector(&sample.state.position_m)).collect();
+    let course = rows.iter().step_by(5).map(|(sample, _)| vector(&sample.target_m)).collect();
+    let way = rows.iter().take(until + 1).step_by(5).map(|(sample, _)| vector(&sample.state.position_m)).collect();
     let entity = |id: &str, frame: &str, cylinders: Vec<Value>, lines: Vec<Value>| {
         json!({
             "timestamp": stamp(time_ns),
