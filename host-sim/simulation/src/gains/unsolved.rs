@@ -24,7 +24,6 @@ pub(super) fn blamed(
         DesignError::Inaccurate { .. }
         | DesignError::HamiltonianOnAxis { .. }
         | DesignError::ClosedLoopOnCircle { .. }
-        | DesignError::RoundedGain { .. }
         | DesignError::Size { .. }
         | DesignError::NotStabilisable { .. } => far_apart(model, weights?),
         _ => None,
