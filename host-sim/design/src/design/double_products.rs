@@ -119,7 +119,7 @@ impl DoubleMatrix {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "x86-v3", target_arch = "x86_64"))]
 mod tests {
     use super::*;
 
@@ -129,7 +129,6 @@ mod tests {
         DoubleMatrix::from_fn(rows, columns, |i, j| entry(i, j).over(Double::new(3.0 + j as f64)))
     }
 
-    #[cfg(all(feature = "x86-v3", target_arch = "x86_64"))]
     #[test]
     fn both_kinds_of_product_have_the_same_bits() {
         let (left, right) = (matrix(9, 13), matrix(13, 5));
