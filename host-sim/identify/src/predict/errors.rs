@@ -18,7 +18,7 @@ pub struct Errors {
     pub body_rate_rad_s: f64,
 }
 
-/// Errors of one way to predict at every step ahead, from 1 to [`HORIZON`].
+/// Errors of one way to predict at every step ahead, from 1 to [`super::HORIZON`].
 pub type Course = Vec<Errors>;
 
 impl Errors {
