@@ -35,6 +35,10 @@ impl Campaign {
         let origin = path.display().to_string();
         // For its line numbers.
         let file = ScenarioFile::parse(text, &origin)?;
+        if let Some(seed) = file.seed.filter(|seed| i64::try_from(*seed).is_err()) {
+            let reason = format!("seed = {seed}: must be at most {} for a campaign", i64::MAX);
+            return Err(CampaignError::Asked(format!("{origin}: {reason}")));
+        }
         let mut whole: Table = toml::from_str(text).map_err(|error| CampaignError::Vary {
             origin: origin.clone(),
             key: String::new(),

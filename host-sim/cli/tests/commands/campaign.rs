@@ -256,6 +256,8 @@ fn inputs_that_cannot_be_flown_are_refused_in_one_line() {
     );
     refused("unknown.toml", &vary("errors.mass = { uniform = [1, 2] }"), &ten, "unknown field `mass`");
     refused("kind.toml", &vary("speed_m_s = { gauss = [1, 2] }"), &ten, "vary.speed_m_s.gauss");
+    let large = format!("seed = 9223372036854775808\n{SCENARIO}");
+    refused("seed.toml", &large, &ten, "seed.toml: seed = 9223372036854775808: must be at most 9223372036854775807");
     refused("law.toml", "vehicle = \"crazyflie-2.1\"\nlaws = [\"mpc\"]\n", &ten, "mpc");
     refused("runs.toml", SCENARIO, &[], "--runs");
     refused("none.toml", SCENARIO, &["--runs", "0"], "--runs");

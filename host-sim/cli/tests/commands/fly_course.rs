@@ -60,6 +60,15 @@ fn a_craft_5_m_from_its_trajectory_is_lost() {
 }
 
 #[test]
+fn a_course_that_ends_before_its_duration_is_said_to() {
+    let (folder, _) = scenario("fly-ends", "");
+    let path = pieces(&folder, "rest.csv", [[0.0; 3]; 2]);
+    let flown = quatrack(&["fly", "--vehicle", "crazyflie-2.1", "--course", &path, "--duration-s", "60"]);
+    let printed = String::from_utf8(flown.stdout).unwrap();
+    assert!(printed.contains("note: the course ends after 2.00 s, before the 60 s that were asked for"), "{printed}");
+}
+
+#[test]
 fn a_slip_in_the_name_of_a_course_is_named_with_its_file_and_the_courses() {
     let (folder, path) = scenario("fly-slip", "vehicle = \"crazyflie-2.1\"\ncourse = \"eigth\"\n");
     let out = folder.join("out").to_str().unwrap().to_owned();

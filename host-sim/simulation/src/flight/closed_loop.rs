@@ -202,9 +202,12 @@ impl<'a> Recorder<'a> {
     fn record(&mut self, time_s: f64, x: &StateVector, input: InputVector) -> std::ops::ControlFlow<()> {
         let sample = Sample { time_s, state: normalised(x), input, target: self.reference.at(time_s) };
         let error_m = sample.position_error_m().norm();
-        // Written so that NaN fails it.
-        if error_m < self.lost_m && input.iter().all(|value| value.is_finite()) {
+        let is_finite = error_m.is_finite() && input.iter().all(|value| value.is_finite());
+        // That of its loss is the worst one.
+        if is_finite {
             self.flight.samples.push(sample);
+        }
+        if is_finite && error_m < self.lost_m {
             std::ops::ControlFlow::Continue(())
         } else {
             self.lose(time_s, format!("{error_m:.0} m from the reference"));

@@ -8,6 +8,7 @@ use nalgebra::{Vector2, Vector3, Vector4};
 
 use super::{Actuation, FULL, ForceTorque};
 use crate::control_law::{ControlLaw, Estimate, Input, Setpoint};
+use crate::vehicles;
 use quatrack_design::model::GRAVITY_M_S2;
 use quatrack_design::vehicle::Vehicle;
 
@@ -101,11 +102,12 @@ impl CascadedPidConfig {
     /// Crazyflie 2.1. A craft that is none of the built-in ones has its weight, `mass_kg`, for base thrust.
     pub fn firmware(vehicle: &Vehicle, mass_kg: f64) -> Self {
         let actuation = Actuation::of(vehicle);
-        let is_brushless = vehicle.name().starts_with("crazyflie-2.1-brushless");
-        let base = match vehicle.name() {
-            _ if is_brushless => 30_000.0,
-            name if name.starts_with("crazyflie-2.1") => 36_000.0,
-            _ => mass_kg * GRAVITY_M_S2 / actuation.force_per_number(),
+        let is_built_in = vehicles::is_built_in(vehicle);
+        let is_brushless = is_built_in && vehicle.name().starts_with("crazyflie-2.1-brushless");
+        let base = match is_built_in {
+            true if is_brushless => 30_000.0,
+            true => 36_000.0,
+            false => mass_kg * GRAVITY_M_S2 / actuation.force_per_number(),
         };
         let rate = if is_brushless { [200.0, 400.0, 2.5] } else { [250.0, 500.0, 2.5] };
         let (force, torque) = (actuation.force_per_number(), actuation.torque_per_number());

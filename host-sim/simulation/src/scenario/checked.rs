@@ -60,6 +60,7 @@ impl Scenario {
             seed: file.seed.unwrap_or(1),
             environment: environment(file, &checks, &vehicle)?,
             truth: truth(file, &checks, &vehicle, duration_s)?,
+            thrust_factor_end: file.errors.thrust_factor_end,
             gyro_bias_rad_s: bias("errors.gyro_bias_rad_s", errors.gyro_bias_rad_s, 1.0, "in rad/s")?,
             accelerometer_bias_m_s2: bias(
                 "errors.accelerometer_bias_m_s2",

@@ -76,6 +76,8 @@ pub(super) struct Flying<'a> {
     /// The law's last input.
     told: Input,
     pub(super) saturated_steps: u64,
+    /// Of the part before what is measured, which counts where the craft is lost there.
+    saturated_before: u64,
     pub(super) lost: Option<Lost>,
 }
 
@@ -102,6 +104,7 @@ impl<'a> Flying<'a> {
                 setpoint: *track.setpoint(0),
                 battery_v: plant.voltage_v(),
             },
+            saturated_before: 0,
             saturated_steps: 0,
             lost: None,
         }
@@ -168,7 +171,8 @@ impl<'a> Flying<'a> {
                 Ok(_) => return self.lose(step, "a force that is not finite".to_owned(), plant, keep),
                 Err(reason) => return self.lose(step, reason, plant, keep),
             }
-            self.saturated_steps += u64::from(measured && is_at(&self.commands_n, self.limits_n));
+            let is_at_limit = u64::from(is_at(&self.commands_n, self.limits_n));
+            *(if measured { &mut self.saturated_steps } else { &mut self.saturated_before }) += is_at_limit;
         }
         if row_s_turn {
             keep.row(time_s, plant, &self.commands_n, &self.track.target_m(step), &self.told.estimate);
@@ -193,6 +197,9 @@ impl<'a> Flying<'a> {
     fn lose(&mut self, step: u32, reason: String, plant: &Plant, keep: &mut impl Keep) -> bool {
         let time_s = f64::from(step) * STEP_S;
         self.lost = Some(Lost { time_s, reason });
+        if step < self.measured_from {
+            self.saturated_steps = self.saturated_before;
+        }
         if plant.is_finite() {
             keep.row(time_s, plant, &self.commands_n, &self.track.target_m(step), &self.told.estimate);
         }

@@ -152,7 +152,7 @@ pub(super) fn lag_range_ms(vehicle: &Vehicle) -> [f64; 2] {
 }
 
 /// As it is printed.
-fn thousandths(value: f64) -> f64 {
+pub(super) fn thousandths(value: f64) -> f64 {
     (1e3 * value).round() / 1e3
 }
 

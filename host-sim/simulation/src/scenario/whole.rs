@@ -13,7 +13,7 @@ use super::file::Estimator as EstimateFrom;
 use super::flight::Setpoints;
 use super::laws::Law;
 use super::sensors::SensorNoise;
-use super::told::ToldFigures;
+use super::told::{ToldFigures, thousandths};
 use crate::plant::{self, Environment, RigidState, Truth};
 pub use flights::Side;
 
@@ -85,8 +85,10 @@ pub struct Scenario {
     pub seed: u64,
     /// The surroundings of the craft.
     pub environment: Environment,
-    /// The figures of the true craft.
+    /// The figures of the true craft. Its thrust's factor changes as over an eight of this duration where no course is flown.
     pub truth: Truth,
+    /// The factor of its thrust at the end of the course, where it is another one there.
+    pub thrust_factor_end: Option<f64>,
     /// Bias of the gyroscope, rad/s.
     pub gyro_bias_rad_s: Vector3<f64>,
     /// Bias of the accelerometer, m/s^2.
@@ -183,10 +185,10 @@ impl fmt::Display for InConditions<'_> {
             write!(f, "drag {x:.3}, {y:.3}, {z:.3} 1/s, moment {:.2}, {:.2} mN m per m/s", 1e3 * c_x, 1e3 * c_y)?;
         }
         if wind.mean_m_s != Vector3::zeros() {
-            write!(f, ", wind {} m/s", wind.mean_m_s.norm())?;
+            write!(f, ", wind {} m/s", thousandths(wind.mean_m_s.norm()))?;
         }
         if let Some(turbulence) = &wind.turbulence {
-            write!(f, ", gusts {} m/s", turbulence.rms_m_s.x)?;
+            write!(f, ", gusts {} m/s", thousandths(turbulence.rms_m_s.x))?;
         }
         let setpoints = if scenario.setpoints == Setpoints::Exact { "exact setpoints" } else { "setpoints at 100 Hz" };
         let noise = if scenario.noise == SensorNoise::default() { "without noise" } else { "with noise" };

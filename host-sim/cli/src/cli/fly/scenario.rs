@@ -3,6 +3,7 @@
 mod outputs;
 
 use quatrack_design::vehicle::Vehicle;
+use quatrack_plan::trajectory::Trajectory as _;
 use quatrack_plan::trajectory::on_board;
 use quatrack_plan::trajectory::polynomial::PiecewisePolynomial;
 use quatrack_plan::trajectory::transform::Transform;
@@ -126,7 +127,12 @@ impl OwnCourse {
         let Some(name) = scenario.course.trajectory() else { return Ok(Self { trajectory: None, note: None }) };
         let trajectory = transformed(name, transform)?;
         on_board::checked(&trajectory).map_err(|error| not_on_board(name, &error))?;
-        let note = reference_note(&scenario.vehicle, &trajectory)?;
+        let whole_s = trajectory.duration_s();
+        let ends = scenario.duration_s.filter(|asked_s| *asked_s > whole_s);
+        let ends = ends
+            .map(|asked_s| format!("the course ends after {whole_s:.2} s, before the {asked_s} s that were asked for"));
+        let notes: Vec<String> = ends.into_iter().chain(reference_note(&scenario.vehicle, &trajectory)?).collect();
+        let note = (!notes.is_empty()).then(|| notes.join("; "));
         Ok(Self { trajectory: Some(trajectory), note })
     }
 

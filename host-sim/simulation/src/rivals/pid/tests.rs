@@ -88,3 +88,17 @@ fn headings_count_by_their_direction() {
     let torque = numbers * actuation().torque_per_number().z;
     assert!((output.torque_n_m.z - torque).abs() < 1e-9 * torque, "{} {torque}", output.torque_n_m.z);
 }
+
+#[test]
+fn the_firmwares_base_thrust_is_that_of_its_own_crafts() {
+    let built_in = vehicles::by_name("crazyflie-2.1").unwrap();
+    let force = Actuation::of(&built_in).force_per_number();
+    assert_eq!(CascadedPidConfig::firmware(&built_in, 0.05).thrust_base_n, 36_000.0 * force);
+    // One gram heavier, it is another craft of the same name.
+    let text = include_str!("../../../../../gains/vehicles/crazyflie-2.1.toml");
+    let heavier = text.replace("mass_kg = 0.029", "mass_kg = 0.03");
+    assert_ne!(heavier, text);
+    let own = vehicles::from_toml(&heavier).unwrap();
+    assert_eq!(own.name(), built_in.name());
+    assert!((CascadedPidConfig::firmware(&own, 0.03).thrust_base_n - 0.03 * GRAVITY_M_S2).abs() < 1e-15);
+}

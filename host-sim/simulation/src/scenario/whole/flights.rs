@@ -7,7 +7,7 @@ use super::Scenario;
 use crate::control_law::ControlLaw;
 use crate::flight::motor_loop;
 use crate::flight::rigid_loop::RigidFlight;
-use crate::plant::{Plant, PlantError, RigidState};
+use crate::plant::{Plant, PlantError, RigidState, Truth};
 use crate::scenario::course::Flown;
 use crate::scenario::error::StartError;
 use crate::scenario::file::Estimator as EstimateFrom;
@@ -72,11 +72,19 @@ impl Scenario {
         } else {
             RigidState::at_rest(point.position[0], 0.25 * self.truth.mass_kg * GRAVITY_M_S2)
         };
-        self.started_at(&self.start.applied(&start))
+        let truth = self.thrust_factor_end.map(|end| {
+            let thrust_factor_per_s = (end - self.truth.thrust_factor) / flown.course.duration_s();
+            Truth { thrust_factor_per_s, ..self.truth.clone() }
+        });
+        self.started_as(truth.as_ref().unwrap_or(&self.truth), &self.start.applied(&start))
     }
 
     /// The craft at a state, and where its law's estimate comes from.
     pub(in crate::scenario) fn started_at(&self, start: &RigidState) -> Result<(Plant, Estimation), StartError> {
+        self.started_as(&self.truth, start)
+    }
+
+    fn started_as(&self, truth: &Truth, start: &RigidState) -> Result<(Plant, Estimation), StartError> {
         let sensors = Sensors::new(self.noise, self.gyro_bias_rad_s, self.accelerometer_bias_m_s2, self.seed);
         let estimation = match self.estimator {
             EstimateFrom::Exact => Estimation::Exact(sensors.into()),
@@ -84,7 +92,8 @@ impl Scenario {
                 Estimation::Filtered(Filtered::start(&self.filter, sensors, self.noise.position_m, start)?.into())
             }
         };
-        Ok((self.plant(start)?, estimation))
+        let plant = Plant::new(&self.vehicle, &self.environment, truth, start, self.seed)?;
+        Ok((plant, estimation))
     }
 
     /// Flies up to four scenarios, each with a law of its own along a track, side by side: every flight has the bits that it has

@@ -80,6 +80,34 @@ fn every_key_of_a_file_is_in_the_scenario() {
 }
 
 #[test]
+fn thrust_fades_to_the_end_of_any_course() {
+    for course in ["course = \"hover\"\nduration_s = 1.0", "course = \"step\"\nduration_s = 2.0", "duration_s = 0.5"] {
+        let text = format!("vehicle = \"crazyflie-2.1-brushless\"\n{course}\n[errors]\nthrust_factor_end = 0.8\n");
+        let flown = scenario(&text).unwrap();
+        let mut law = flown.law.start(&flown.vehicle, &flown.told).unwrap();
+        let recording = flown.record(law.as_mut(), &flown.flown(None)).unwrap();
+        assert!(recording.flight.lost.is_none(), "{course}");
+        let [_, most_n] = recording.around.last().unwrap().thrust_limits_n;
+        // The last row is within 10 ms of the end, 0.2 of a factor over 3 s and more away.
+        let factor = most_n[0] / flown.vehicle.motors().thrust_max_n;
+        assert!((factor - 0.8).abs() < 1e-3, "{course}: {factor}");
+    }
+}
+
+#[test]
+fn motors_at_their_limits_count_where_a_craft_is_lost_before_it_is_measured() {
+    let flown =
+        scenario("vehicle = \"crazyflie-2.1\"\nlaw = \"lee\"\n[errors]\nthrust_factor = 0.5\nmass_factor = 1.9\n")
+            .unwrap();
+    let mut law = flown.law.start(&flown.vehicle, &flown.told).unwrap();
+    let recording = flown.record(law.as_mut(), &flown.flown(None)).unwrap();
+    let lost_s = recording.flight.lost.unwrap().time_s;
+    // It asks for more than there is from its first steps on, at 500 Hz.
+    let [steps, all] = [recording.flight.saturated_steps as f64, 500.0 * lost_s];
+    assert!(lost_s < 5.0 && steps > 0.5 * all && steps <= all + 1.0, "{steps} of {all}");
+}
+
+#[test]
 fn all_but_the_vehicle_may_be_left_out() {
     let read = scenario("vehicle = \"crazyflie-2.1\"").unwrap();
     assert_eq!((&read.course, read.duration_s), (&CourseChoice::Eight(2.1), Some(12.0)));
