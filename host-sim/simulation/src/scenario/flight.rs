@@ -172,7 +172,11 @@ impl<'a> Flying<'a> {
                 Err(reason) => return self.lose(step, reason, plant, keep),
             }
             let is_at_limit = u64::from(is_at(&self.commands_n, self.limits_n));
-            *(if measured { &mut self.saturated_steps } else { &mut self.saturated_before }) += is_at_limit;
+            if measured {
+                self.saturated_steps += is_at_limit;
+            } else {
+                self.saturated_before += is_at_limit;
+            }
         }
         if row_s_turn {
             keep.row(time_s, plant, &self.commands_n, &self.track.target_m(step), &self.told.estimate);
