@@ -42,14 +42,24 @@ pub(super) fn document(figure: &TrackingFigure<'_>) -> Result<String, FigureErro
     let title_size = fitting(figure.title, TITLE)?;
     sheet.text(figure.title, [0.5 * WIDTH, 32.0], title_size, Anchor::Middle);
     legend(&mut sheet, &lines)?;
-    let notes: Vec<String> = figure.flights.iter().filter_map(|flight| note(flight, &axes)).collect();
+    notes(&mut sheet, figure, &axes, [0.5 * WIDTH, 550.0])?;
+    Ok(sheet.into_document())
+}
+
+/// What the axes do not show of the flights, in a line around a place.
+pub(super) fn notes(
+    sheet: &mut Sheet,
+    figure: &TrackingFigure<'_>,
+    axes: &[Range; 3],
+    place: [f64; 2],
+) -> Result<(), FigureError> {
+    let notes: Vec<String> = figure.flights.iter().filter_map(|flight| note(flight, axes)).collect();
     if !notes.is_empty() {
         // An em space: SVG runs ordinary ones together.
         let text = notes.join("\u{2003}");
-        let size = fitting(&text, NOTE)?;
-        sheet.text(&text, [0.5 * WIDTH, 550.0], size, Anchor::Middle);
+        sheet.text(&text, place, fitting(&text, NOTE)?, Anchor::Middle);
     }
-    Ok(sheet.into_document())
+    Ok(())
 }
 
 /// Curves in the order of drawing: flights from wide to narrow, then the reference on top, so that all can be seen
@@ -106,7 +116,7 @@ fn comes_back(flight: &Curve<'_>, reference: &Curve<'_>, near_m: f64) -> bool {
 }
 
 /// Notes on a flight that the axes do not show.
-pub(super) fn note(flight: &Curve<'_>, axes: &[Range; 3]) -> Option<String> {
+fn note(flight: &Curve<'_>, axes: &[Range; 3]) -> Option<String> {
     let samples = || flight.time_s.iter().zip(flight.position_m);
     let outside = |p: &Vector3<f64>| p.iter().zip(axes).any(|(v, axis)| *v < axis.low || *v > axis.high);
     let left = samples().find(|(_, p)| outside(p));

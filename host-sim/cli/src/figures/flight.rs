@@ -74,6 +74,7 @@ impl FlightFigure<'_> {
         let size = compose::fitting(figure.title, TITLE)?;
         sheet.text(figure.title, [0.5 * compose::WIDTH, 32.0], size, Anchor::Middle);
         compose::legend(&mut sheet, &lines)?;
+        compose::notes(&mut sheet, figure, &axes, [0.5 * (SPACE.left + SPACE.right), HEIGHT - 8.0])?;
         Ok(sheet.into_document())
     }
 

@@ -178,6 +178,8 @@ fn a_flight_that_is_lost_before_it_is_measured_has_a_picture() {
     let svg = String::from_utf8(bench.bytes("early.svg")).unwrap();
     // Flight, course and its shadow; 3 errors, 1 tilt, 4 thrusts with 2 limits.
     assert_eq!(svg.matches("<polyline").count(), 3 + 3 + 1 + 4 + 2);
+    // It falls out of the axes, which are those of a hover.
+    assert!(svg.contains("lee leaves the axes at "), "no note");
     // Its row is the same flight: the eighth cell is when it was lost.
     let rows = String::from_utf8(bench.bytes("out/rows.csv")).unwrap();
     let lost_s: f64 = rows.lines().nth(1).unwrap().split(',').nth(7).unwrap().parse().unwrap();
