@@ -100,6 +100,7 @@ pub fn fly(
                 }
             });
             if let Err(error) = begun {
+                // Those that have begun stop.
                 drop(Over(&desk));
                 let reason = format!("--threads {threads}: thread {number} cannot begin ({error}); give fewer");
                 return Err(CampaignError::Asked(reason));

@@ -26,6 +26,9 @@ pub use card::{Card, SCHEMA};
 use partial::{Partial, write};
 pub use rows_on_disk::Growing;
 
+/// Rows in memory at a time.
+const BLOCK: usize = 4096;
+
 /// A campaign's folder.
 #[derive(Clone, Debug)]
 pub struct Folder {
@@ -222,6 +225,3 @@ impl Folder {
         columns::write(&self.path.join("rows.parquet"), &self.card.drawn, self.rows(Shard::WHOLE)?)
     }
 }
-
-/// Rows in memory at a time.
-const BLOCK: usize = 4096;

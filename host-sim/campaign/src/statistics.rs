@@ -59,6 +59,14 @@ pub fn spearman(ranks_x: &[f64], ranks_y: &[f64]) -> Option<f64> {
     (xx > 0.0 && yy > 0.0).then(|| xy / (xx * yy).sqrt())
 }
 
+/// Two-sided 97.5 % of a normal distribution, in deviations.
+const NORMAL_97: f64 = 2.241_402_727_604_947;
+
+/// Whether chance alone gives as large a rank correlation of so many flights in less than one of forty campaigns.
+pub fn is_correlated(rank_correlation: f64, flights: u64) -> bool {
+    rank_correlation.abs() > NORMAL_97 / ((flights.max(2) - 1) as f64).sqrt()
+}
+
 /// Most parts of a figure's flights in [`explained`], and the flights of each at least.
 const PARTS_MOST: usize = 8;
 const FLIGHTS_OF_PART: usize = 10;

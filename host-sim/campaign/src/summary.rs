@@ -10,7 +10,7 @@ use serde::Serialize;
 use crate::error::CampaignError;
 use crate::folder::Folder;
 use crate::row::{Outcome, Row};
-use crate::statistics::{Explained, explained, quantile, ranks, spearman, wilson};
+use crate::statistics::{Explained, explained, is_correlated, quantile, ranks, spearman, wilson};
 
 /// The schema that the file states.
 pub const SCHEMA: &str = "quatrack/campaign-summary/1";
@@ -184,7 +184,6 @@ impl Gathered {
         let flights = self.max_error_m.len() as u64;
         let rates = (flights > 0).then(|| (self.successes as f64 / flights as f64, wilson(self.successes, flights)));
         let error_ranks = ranks(&self.max_error_m);
-        let freedom = (flights.max(2) - 1) as f64;
         let mut matters: Vec<Matter> = names
             .iter()
             .zip(&self.drawn)
@@ -192,7 +191,7 @@ impl Gathered {
                 let ranks = ranks(drawn);
                 let rank_correlation = spearman(&ranks, &error_ranks)?;
                 let Explained { share, beyond_chance } = explained(&ranks, &error_ranks)?;
-                let beyond_chance = beyond_chance || rank_correlation.abs() > NORMAL_97 / freedom.sqrt();
+                let beyond_chance = beyond_chance || is_correlated(rank_correlation, flights);
                 Some(Matter { figure: figure.clone(), explained: share, rank_correlation, beyond_chance })
             })
             .collect();
@@ -218,9 +217,6 @@ impl Gathered {
         }
     }
 }
-
-/// Two-sided 97.5 % of a normal distribution, in deviations.
-const NORMAL_97: f64 = 2.241_402_727_604_947;
 
 impl Worst {
     fn of(row: &Row, folder: &Path) -> Self {

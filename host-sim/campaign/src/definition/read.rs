@@ -9,7 +9,7 @@ use toml::{Table, Value};
 
 use super::{Asked, Campaign, Trajectories};
 use crate::error::CampaignError;
-use crate::vary;
+use crate::vary::{self, Varied};
 
 impl Campaign {
     /// From a scenario's file.
@@ -81,35 +81,37 @@ impl Campaign {
         Ok(campaign)
     }
 
-    /// Every figure at both its ends and in its middle, or at every number of a choice: so that every drawn figure is one that a scenario takes.
-    /// The others are in the middle of what can be drawn; or not there, where the file does not have them.
+    /// Every figure at both its ends and in its middle, or at every number of a choice: every draw has to be one that a scenario
+    /// takes. The others are in their middles; or, if that is refused, as the file has them.
     fn look_at_bounds(&self) -> Result<(), CampaignError> {
-        let mut middle = self.nominal.clone();
+        let mut middles = self.nominal.clone();
         for varied in self.varied.iter().filter(|varied| !varied.relative) {
             // There was a place for it, or its own turn says why not.
-            let _ = varied.put(&mut middle, varied.kind.middle());
+            let _ = varied.put(&mut middles, varied.kind.middle());
         }
         for varied in &self.varied {
             for number in varied.kind.to_look_at() {
-                let with = |others: &Table| {
-                    let mut table = others.clone();
-                    varied.put(&mut table, number).map_err(|reason| (varied, reason))?;
-                    let file = Self::file(table).map_err(|reason| (varied, reason))?;
-                    self.checked_file(&file).map(|_| ()).map_err(|error| {
-                        let why = self.reason(&error);
-                        // Another one in its middle may be at fault.
-                        let others = self.varied.iter().find(|other| why.starts_with(&format!("{} = ", other.name())));
-                        let blamed = others.unwrap_or(varied);
-                        let drawn = if *blamed == *varied { number } else { blamed.kind.middle() };
-                        (blamed, format!("can draw {drawn}: {why}; {}", blamed.kind.remedy()))
-                    })
-                };
-                with(&middle).or_else(|fault| with(&self.nominal).map_err(|_| fault)).map_err(|(blamed, reason)| {
-                    CampaignError::Vary { origin: self.origin.clone(), key: blamed.name(), reason }
-                })?;
+                self.look_at(varied, number, &middles)
+                    .or_else(|fault| self.look_at(varied, number, &self.nominal).map_err(|_| fault))?;
             }
         }
         Ok(())
+    }
+
+    /// One figure at one number, beside the others.
+    fn look_at(&self, varied: &Varied, number: f64, others: &Table) -> Result<(), CampaignError> {
+        let refused =
+            |key: &Varied, reason| CampaignError::Vary { origin: self.origin.clone(), key: key.name(), reason };
+        let mut table = others.clone();
+        varied.put(&mut table, number).map_err(|reason| refused(varied, reason))?;
+        let file = Self::file(table).map_err(|reason| refused(varied, reason))?;
+        let Err(error) = self.checked_file(&file) else { return Ok(()) };
+        let why = self.reason(&error);
+        // Another one in its middle may be at fault.
+        let blamed =
+            self.varied.iter().find(|other| why.starts_with(&format!("{} = ", other.name()))).unwrap_or(varied);
+        let drawn = if blamed == varied { number } else { blamed.kind.middle() };
+        Err(refused(blamed, format!("can draw {drawn}: {why}; {}", blamed.kind.remedy())))
     }
 
     fn look_at_laws(&mut self, trajectories: Trajectories<'_>, file: &ScenarioFile) -> Result<(), CampaignError> {

@@ -1,7 +1,7 @@
 //! Rows as Parquet: read by DuckDB, pandas and polars as they are. A group of rows at a time is in memory.
 
-use std::fs::{self, File};
-use std::path::{Path, PathBuf};
+use std::fs::File;
+use std::path::Path;
 use std::sync::Arc;
 
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
@@ -11,6 +11,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
 
+use super::partial::Partial;
 use crate::error::CampaignError;
 use crate::row::{FIXED, Row};
 
@@ -23,11 +24,8 @@ pub(super) fn write(
     drawn: &[String],
     rows: impl Iterator<Item = Result<Row, CampaignError>>,
 ) -> Result<(), CampaignError> {
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    let partial = PathBuf::from(partial);
     let refused = |error: &dyn std::fmt::Display| CampaignError::file(path, "cannot be written", error);
-    let file = File::create(&partial).map_err(|error| refused(&error))?;
+    let (partial, file) = Partial::beside(path)?;
     let schema = schema(drawn).map_err(|error| refused(&error))?;
     let properties = Arc::new(WriterProperties::builder().set_created_by("quatrack".to_owned()).build());
     let mut writer = SerializedFileWriter::new(file, schema, properties).map_err(|error| refused(&error))?;
@@ -43,7 +41,7 @@ pub(super) fn write(
         write_group(&mut writer, &group).map_err(|error| refused(&error))?;
     }
     writer.close().map_err(|error| refused(&error))?;
-    fs::rename(&partial, path).map_err(|error| refused(&error))
+    partial.rename(path).map_err(|error| refused(&error))
 }
 
 fn schema(drawn: &[String]) -> Result<Arc<Type>, ParquetError> {

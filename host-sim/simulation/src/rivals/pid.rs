@@ -104,10 +104,12 @@ impl CascadedPidConfig {
         let actuation = Actuation::of(vehicle);
         let is_built_in = vehicles::is_built_in(vehicle);
         let is_brushless = is_built_in && vehicle.name().starts_with("crazyflie-2.1-brushless");
-        let base = match is_built_in {
-            true if is_brushless => 30_000.0,
-            true => 36_000.0,
-            false => mass_kg * GRAVITY_M_S2 / actuation.force_per_number(),
+        let base = if is_brushless {
+            30_000.0
+        } else if is_built_in {
+            36_000.0
+        } else {
+            mass_kg * GRAVITY_M_S2 / actuation.force_per_number()
         };
         let rate = if is_brushless { [200.0, 400.0, 2.5] } else { [250.0, 500.0, 2.5] };
         let (force, torque) = (actuation.force_per_number(), actuation.torque_per_number());

@@ -128,8 +128,8 @@ impl OwnCourse {
         let trajectory = transformed(name, transform)?;
         on_board::checked(&trajectory).map_err(|error| not_on_board(name, &error))?;
         let whole_s = trajectory.duration_s();
-        let ends = scenario.duration_s.filter(|asked_s| *asked_s > whole_s);
-        let ends = ends
+        let asked_s = scenario.duration_s.filter(|asked_s| *asked_s > whole_s);
+        let ends = asked_s
             .map(|asked_s| format!("the course ends after {whole_s:.2} s, before the {asked_s} s that were asked for"));
         let notes: Vec<String> = ends.into_iter().chain(reference_note(&scenario.vehicle, &trajectory)?).collect();
         let note = (!notes.is_empty()).then(|| notes.join("; "));
