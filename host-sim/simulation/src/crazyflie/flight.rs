@@ -13,12 +13,10 @@ use super::course::Course;
 use super::firmware::{Firmware, STEPS_HZ, Sensors, Tune};
 use super::recording::Recording;
 use super::setpoints::Setpoints;
+use crate::flight::closed_loop::LOST_M;
 use crate::flight::motor_loop;
 use crate::flight::noise::{Noise, Source};
 use crate::plant::{Craft, Ground, RigidState};
-
-/// Farther than this from its course a craft counts as lost, m.
-const LOST_M: f64 = 5.0;
 
 /// Steps between two samples of the error: 100 Hz.
 const SAMPLE_STEPS: i32 = 10;

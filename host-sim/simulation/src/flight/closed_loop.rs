@@ -15,7 +15,7 @@ const SAMPLES_PER_SECOND: u64 = 100;
 /// Longest step of the plant under a held command, s. The plant's own error is then below 1e-9 m a second.
 const HOLD_STEP_MAX_S: f64 = 0.005;
 
-/// A position error beyond which a flight is lost, m, as in scenarios. The paper's flights stay within 2.6 m.
+/// A position error beyond which a flight is lost, m, in scenarios too. The paper's flights stay within 2.6 m.
 pub const LOST_M: f64 = 5.0;
 
 /// The same where the paper's table is reproduced, which has the error of a whole flight however far it strays, m.

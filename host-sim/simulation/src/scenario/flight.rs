@@ -10,14 +10,10 @@ use super::filtered::Estimation;
 use super::kept::{Keep, Rows};
 use super::track::{SAMPLE_STEPS, STEP_S, Track};
 use crate::control_law::{ControlLaw, Estimate, Input, STEPS_HZ};
-use crate::flight::closed_loop::Lost;
+use crate::flight::closed_loop::{LOST_M, Lost};
 use crate::flight::rigid_loop::RigidFlight;
 use crate::plant::{Plant, RigidState};
 pub(super) use together::together;
-
-/// Farther than this from its course a craft counts as lost, m: of a step from the line between its places, of a start beside the course
-/// by as much more as that is off.
-const LOST_M: f64 = 5.0;
 
 /// The form of the setpoints.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
@@ -190,7 +186,8 @@ impl<'a> Flying<'a> {
         true
     }
 
-    /// How far off its course a craft is that is lost.
+    /// How far off its course a craft is that is lost: of a step from the line between its places, of a start beside the course
+    /// by as much more as that is off.
     #[cold]
     fn lost_at_m(&self, step: u32, plant: &Plant) -> Option<f64> {
         let off_m = self.track.off_m(step, &plant.state().position_m);
